@@ -76,7 +76,8 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
   std::copy(feedback_.position.begin(), feedback_.position.end(), sample_.position.data());
   std::copy(feedback_.velocity.begin(), feedback_.velocity.end(), sample_.velocity.data());
-  has_positions_ = has_positions_ || sample_.position.isFinite().all();
+  // Before its first reading the feedback is 0, as it has been made.
+  has_positions_ = has_positions_ || (sample_.drive.feedback_count > 0 && sample_.position.isFinite().all());
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
   // again; after a fault the commands do not change.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;

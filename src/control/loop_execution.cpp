@@ -39,6 +39,9 @@ Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
       event,          state_,      refusal, interlock, kY, liftTarget(), config_.machine.limits.max_position[kY],
       sample_.swivel, job_swivel_, {}};
   if (refusal == Refusal::kNotPrepared) answer.drive_text = preparation_->why();
+  if (refusal == Refusal::kDriveFault || refusal == Refusal::kDriveFaultStays) {
+    answer.drive_text = sample_.drive.fault_text;
+  }
   return answer;
 }
 

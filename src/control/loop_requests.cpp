@@ -26,6 +26,7 @@ RequestReply Answer::reply() const {
     const Unit unit = axis == kA ? Unit::kRadianPerSecond : Unit::kFeedMetrePerSecond;
     return grinder::text(Quantity{si, unit});
   };
+  const auto words = [&] { return drive_text.view().empty() ? "" : ": " + std::string(drive_text.view()); };
   std::ostringstream text;
   const bool confirmation = refusal == Refusal::kSwivelMeasured || refusal == Refusal::kSwivelInUse;
   text << (confirmation ? "confirm-swivel" : toString(event)) << " refused: ";
@@ -36,8 +37,10 @@ RequestReply Answer::reply() const {
       break;
     case Refusal::kNotOffered: text << "the drive does not " << offer(event); break;
     case Refusal::kEmergencyStop: text << "the emergency stop is pressed; release it first"; break;
-    case Refusal::kDriveFault: text << "the drive reports a fault; reset it first"; break;
-    case Refusal::kDriveFaultStays: text << "the drive still reports a fault after the reset; remove its cause"; break;
+    case Refusal::kDriveFault: text << "the drive reports a fault" << words() << "; reset it first"; break;
+    case Refusal::kDriveFaultStays:
+      text << "the drive still reports a fault after the reset" << words() << "; remove its cause";
+      break;
     case Refusal::kInterlock: text << toString(interlock); break;
     case Refusal::kPreparing: text << "the drive has not become ready in time; wait, then try again"; break;
     case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.view(); break;

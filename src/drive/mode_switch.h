@@ -1,5 +1,7 @@
 #pragma once
 
+#include <utility>
+
 namespace grinder {
 
 /// Switches hardware over to the grinder's commands and back, as ros_control's controller manager does with a
@@ -15,13 +17,13 @@ class ModeSwitch {
   template <typename Hardware>
   void update(bool wanted, Hardware&& hardware) {
     if (!wanted) {
-      if (state_ != State::kOff) hardware.doSwitch(false);
-      state_ = State::kOff;
+      // First, since the hardware may throw.
+      if (std::exchange(state_, State::kOff) != State::kOff) hardware.doSwitch(false);
       return;
     }
     if (state_ == State::kOff) {
-      hardware.doSwitch(true);
       state_ = State::kSwitching;
+      hardware.doSwitch(true);
     }
     if (state_ != State::kSwitching) return;
     const Result result = hardware.switchResult();

@@ -1,5 +1,6 @@
 #include "drive/remote_signals.h"
 
+#include <exception>
 #include <utility>
 
 namespace grinder {
@@ -8,7 +9,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{1};    ///< the control loop wakes no thread
 constexpr std::chrono::milliseconds kRetry{50};  ///< after a failure
-constexpr std::chrono::milliseconds kEnd{500};   ///< for a call that hangs, when the program ends
+constexpr std::chrono::milliseconds kEnd{500};   ///< for the last command, when the program ends
 
 }  // namespace
 
@@ -30,48 +31,61 @@ bool SignalInput::at(Clock::time_point now) const noexcept {
   return received == 0 || old ? safe_ : value_.load();
 }
 
-CommandOutput::CommandOutput(std::function<bool(bool on)> send)
-    : state_(std::make_shared<State>()), thread_([state = state_, send = std::move(send)] { run(*state, send); }) {}
+SwitchOutput::SwitchOutput(Send send) : send_(std::move(send)), thread_([this] { run(); }) {}
 
-CommandOutput::~CommandOutput() {
-  state_->ends = true;
-  const auto deadline = std::chrono::steady_clock::now() + kEnd;
-  while (!state_->has_ended && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(kLook);
-  if (state_->has_ended) {
-    thread_.join();
-  } else {
-    thread_.detach();
-  }
+SwitchOutput::~SwitchOutput() {
+  ends_at_ = (SignalInput::Clock::now() + kEnd).time_since_epoch().count();
+  thread_.join();
 }
 
-void CommandOutput::set(bool on) noexcept {
-  std::uint32_t asked = state_->asked;
-  while ((asked % 2 == 1) != on && !state_->asked.compare_exchange_weak(asked, asked + 1)) {
-  }
-}
-
-bool CommandOutput::is(bool on) const noexcept {
-  const std::uint32_t asked = state_->asked;
-  return (asked % 2 == 1) == on && state_->passed == asked;
-}
-
-void CommandOutput::run(State& state, const std::function<bool(bool)>& send) {
-  // What was asked for last is still passed on at the end.
-  while (!state.ends || state.asked != state.passed) {
-    if (state.asked == state.passed) {
+void SwitchOutput::run() {
+  const auto ends = [this] {
+    const SignalInput::Clock::rep at = ends_at_;
+    return at != 0 && SignalInput::Clock::now().time_since_epoch().count() > at;
+  };
+  while (!ends()) {
+    const bool on = wanted_;
+    if (passed_ == (on ? Passed::kOn : Passed::kOff)) {
+      if (ends_at_ != 0) return;
       std::this_thread::sleep_for(kLook);
       continue;
     }
-    const std::uint32_t next = state.passed + 1;
-    const bool done = send(next % 2 == 1);
-    // What has failed is tried again, unless its contrary has been asked for.
-    if (done || state.asked != next) state.passed = next;
-    state.failed = !done;
-    if (done) continue;
-    if (state.ends) break;
-    std::this_thread::sleep_for(kRetry);
+    bool taken = false;
+    try {
+      taken = send_(on, [&] { return wanted_ == on && !ends(); });
+    } catch (const std::exception&) {  // of a name or a type; said by what throws
+    }
+    if (taken) {
+      passed_ = on ? Passed::kOn : Passed::kOff;
+      continue;
+    }
+    passed_ = on ? Passed::kOnFailed : Passed::kOffFailed;
+    for (auto slept = kLook * 0; slept < kRetry && wanted_ == on; slept += kLook) std::this_thread::sleep_for(kLook);
   }
-  state.has_ended = true;
+}
+
+TriggerOutput::TriggerOutput(Send send) : send_(std::move(send)), thread_([this] { run(); }) {}
+
+TriggerOutput::~TriggerOutput() {
+  ends_ = true;
+  thread_.join();
+}
+
+void TriggerOutput::run() {
+  while (!ends_) {
+    const std::uint32_t number = fired_;
+    if (done_ == number) {
+      std::this_thread::sleep_for(kLook);
+      continue;
+    }
+    bool taken = false;
+    try {
+      taken = send_([&] { return given_up_ != number && !ends_; });
+    } catch (const std::exception&) {  // as above
+    }
+    failed_ = !taken;
+    done_ = number;
+  }
 }
 
 }  // namespace grinder

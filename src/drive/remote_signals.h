@@ -4,12 +4,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <thread>
 
 /// @file
-/// What a drive gets from and passes on to other programs, beside its own hardware.
+/// Inputs from and outputs to other programs, for hardware that lacks them.
 namespace grinder {
 
 /// A yes or no of the machine: stated once and for all, or received from another program again and again.
@@ -26,7 +25,7 @@ class SignalInput {
   const std::string& topic() const { return topic_; }
   /// Thread safe.
   void receive(bool value, Clock::time_point now) noexcept;
-  /// Thread safe and real-time safe.
+  /// @return its value; the safe one before the first message and after the timeout. Thread safe, real-time safe.
   bool at(Clock::time_point now) const noexcept;
 
  private:
@@ -37,31 +36,59 @@ class SignalInput {
   std::atomic<Clock::rep> received_{0};  ///< when; 0 for never
 };
 
-/// Passes an on or off to another program, in a thread of its own, because that may take long or hang.
-class CommandOutput {
+/// Switches something of another program on and off, in a thread of its own, because that may take long or hang. The
+/// latest command wins: one that was withdrawn is given up, and never sent again. Begins with off, since nothing is
+/// known of what a program before has left on.
+class SwitchOutput {
  public:
-  /// @param send called in that thread, and again after a while if it returns false: the other program has refused or
-  ///     does not answer. May outlive this object by as long as it hangs, and must own what it uses.
-  explicit CommandOutput(std::function<bool(bool on)> send);
-  ~CommandOutput();
+  /// @param still_wanted to be asked again and again while the other program does not answer; once false, give up.
+  /// @return whether it was taken. What it throws counts as not.
+  using Send = std::function<bool(bool on, const std::function<bool()>& still_wanted)>;
+
+  /// @param send called in that thread, and again after a while as long as it is not taken.
+  explicit SwitchOutput(Send send);
+  /// Passes the last command on, if that takes no longer than half a second.
+  ~SwitchOutput();
 
   // Thread safe and real-time safe.
-  void set(bool on) noexcept;
-  bool isOn() const noexcept { return is(true); }             ///< on was set, and has been passed on
-  bool isOff() const noexcept { return is(false); }           ///< off was set, and has been passed on
-  bool hasFailed() const noexcept { return state_->failed; }  ///< and is tried again
+  void set(bool on) noexcept { wanted_ = on; }
+  bool isOn() const noexcept { return wanted_ && passed_ == Passed::kOn; }
+  bool isOff() const noexcept { return !wanted_ && passed_ == Passed::kOff; }
+  /// The command has been sent, and was not taken so far.
+  bool hasFailed() const noexcept { return passed_ == (wanted_ ? Passed::kOnFailed : Passed::kOffFailed); }
 
  private:
-  /// Even numbers are off, odd ones on; each counts on from the one before, so that none is left out.
-  struct State {
-    std::atomic<std::uint32_t> asked{0}, passed{0};
-    std::atomic<bool> failed{false};  ///< the one after `passed`
-    std::atomic<bool> ends{false}, has_ended{false};
-  };
-  static void run(State& state, const std::function<bool(bool)>& send);
-  bool is(bool on) const noexcept;
+  enum class Passed : std::uint8_t { kNothing, kOff, kOn, kOffFailed, kOnFailed };
+  void run();
 
-  std::shared_ptr<State> state_;
+  const Send send_;
+  std::atomic<bool> wanted_{false};
+  std::atomic<Passed> passed_{Passed::kNothing};
+  std::atomic<SignalInput::Clock::rep> ends_at_{0};  ///< when to give up; 0: it does not end
+  std::thread thread_;
+};
+
+/// Asks another program to do something once, in a thread of its own.
+class TriggerOutput {
+ public:
+  /// As SwitchOutput::Send, without an off.
+  using Send = std::function<bool(const std::function<bool()>& still_wanted)>;
+
+  explicit TriggerOutput(Send send);
+  ~TriggerOutput();
+
+  // Thread safe and real-time safe.
+  void fire() noexcept { ++fired_; }
+  void giveUp() noexcept { given_up_ = fired_.load(); }  ///< what has been fired so far
+  bool isBusy() const noexcept { return done_ != fired_; }
+  bool hasFailed() const noexcept { return failed_; }  ///< the last one
+
+ private:
+  void run();
+
+  const Send send_;
+  std::atomic<std::uint32_t> fired_{0}, given_up_{0}, done_{0};
+  std::atomic<bool> failed_{false}, ends_{false};
   std::thread thread_;
 };
 

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/drive/export_drive.h"
 #include "flute_grinder/drive/parameters.h"
+#include "flute_grinder/network/service_call.h"
 
 #include <std_msgs/Bool.h>
 #include <std_srvs/SetBool.h>
@@ -14,6 +15,7 @@
 #include <set>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -25,60 +27,65 @@ using Clock = SignalInput::Clock;
 
 constexpr std::chrono::milliseconds kPowerOff{200};  ///< longest wait for the power's service
 constexpr std::chrono::milliseconds kPoll{1};
-/// Of a command that a RobotHW limits to what it just reaches [m], A [rad].
+constexpr double kSwitchTimeout = 2;    ///< for the answer of a service that switches [s]
+constexpr double kHomingTimeout = 1e5;  ///< none but the machine's own [s]
+constexpr double kFast = 0.7;           ///< a cycle shorter than that comes too soon [periods]
+constexpr int kMostUnused = 100;        ///< cycles between prepare() and the power
+constexpr int kMostFast = 100;          ///< of them in a row
+/// A limit that a command just reaches may round it by this [m], A [rad].
 constexpr double kRounding = 1e-9;
 
-/// Calls a service again and again, by a connection that survives the ROS master.
+/// Calls a service, and gives up when the call is no longer wanted, or after a time-out; the log says what is wrong.
+/// @param timeout [s]. @return whether it was done.
 template <typename Service>
-class ServiceCaller {
- public:
-  /// @throw ros::InvalidNameException
-  ServiceCaller(const ros::NodeHandle& nh, const std::string& name) : nh_(nh), name_(nh.resolveName(name)) {}
-
-  /// @return whether it was done; if not, the log says why.
-  bool call(Service service) {
-    if (!client_.isValid()) client_ = nh_.serviceClient<Service>(name_, true);
-    if (!client_.call(service)) {
-      ROS_ERROR_STREAM_THROTTLE(1, "the service " << name_ << " does not answer");
-    } else if (!service.response.success) {
-      ROS_ERROR_STREAM_THROTTLE(1, "the service " << name_ << " has refused: " << service.response.message);
-    } else {
-      return true;
-    }
-    return false;
+bool call(const std::string& name, const typename Service::Request& request, double timeout,
+          const std::function<bool()>& still_wanted) {
+  std::optional<typename Service::Response> response;
+  ServiceCall call(name, ros::service_traits::MD5Sum<Service>::value(), ros::serialization::serializeMessage(request),
+                   ros::WallDuration(timeout), [&](ros::SerializedMessage* answer) {
+                     // The first byte of an answer says whether there is one.
+                     response = responseFrom<Service>(answer);
+                   });
+  while (!call.finished() && still_wanted()) {
+    std::this_thread::sleep_for(kPoll);
+    call.abortIfOverdue();
   }
+  call.end();
+  if (!response) {
+    ROS_ERROR_STREAM_THROTTLE(1, "the service " << name << " does not answer");
+  } else if (!response->success) {
+    ROS_ERROR_STREAM_THROTTLE(1, "the service " << name << " has refused: " << response->message);
+  }
+  return response && response->success;
+}
 
- private:
-  ros::NodeHandle nh_;
-  std::string name_;
-  ros::ServiceClient client_;
-};
-
-/// An on and off, as std_msgs/Bool or std_srvs/SetBool.
-void connectSwitch(std::optional<CommandOutput>& output, const CommandSink& sink, ros::NodeHandle& nh) {
+/// An on and off, as std_msgs/Bool or std_srvs/SetBool. @throw ros::InvalidNameException
+void connectSwitch(std::optional<SwitchOutput>& output, const CommandSink& sink, ros::NodeHandle& nh) {
   if (!sink.topic.empty()) {
     const ros::Publisher publisher = nh.advertise<std_msgs::Bool>(sink.topic, 1, true);
-    output.emplace([publisher](bool on) {
+    output.emplace([publisher](bool on, const std::function<bool()>&) {
       std_msgs::Bool message;
       message.data = on;
       publisher.publish(message);
-      return true;
+      // Who is not there yet gets the latched message later.
+      return publisher.getNumSubscribers() > 0;
     });
   } else if (!sink.service.empty()) {
-    const auto caller = std::make_shared<ServiceCaller<std_srvs::SetBool>>(nh, sink.service);
-    output.emplace([caller](bool on) {
-      std_srvs::SetBool request;
-      request.request.data = on;
-      return caller->call(request);
+    output.emplace([name = nh.resolveName(sink.service)](bool on, const std::function<bool()>& still_wanted) {
+      std_srvs::SetBool::Request request;
+      request.data = on;
+      return call<std_srvs::SetBool>(name, request, kSwitchTimeout, still_wanted);
     });
   }
 }
 
-/// A request without an off.
-void connectTrigger(std::optional<CommandOutput>& output, const CommandSink& sink, ros::NodeHandle& nh) {
+/// A request without an off. @param timeout [s]. @throw ros::InvalidNameException
+void connectTrigger(std::optional<TriggerOutput>& output, const CommandSink& sink, ros::NodeHandle& nh,
+                    double timeout) {
   if (!sink) return;
-  const auto caller = std::make_shared<ServiceCaller<std_srvs::Trigger>>(nh, sink.service);
-  output.emplace([caller](bool on) { return !on || caller->call({}); });
+  output.emplace([name = nh.resolveName(sink.service), timeout](const std::function<bool()>& still_wanted) {
+    return call<std_srvs::Trigger>(name, {}, timeout, still_wanted);
+  });
 }
 
 template <typename Interface>
@@ -161,8 +168,15 @@ void RosControlDrive::connect(const RosControlParameters& parameters) {
   connectSwitch(commands_.power, parameters.commands.power, nh_);
   connectSwitch(commands_.spindle, parameters.commands.spindle, nh_);
   connectSwitch(commands_.coolant, parameters.commands.coolant, nh_);
-  connectTrigger(commands_.home, parameters.commands.home, nh_);
-  connectTrigger(commands_.reset, parameters.commands.reset, nh_);
+  connectTrigger(commands_.home, parameters.commands.home, nh_, kHomingTimeout);
+  connectTrigger(commands_.reset, parameters.commands.reset, nh_, kSwitchTimeout);
+  // controller_manager prepares a stop, too; some RobotHW stop only then.
+  stop_.emplace([this](const std::function<bool()>&) {
+    const std::lock_guard<std::mutex> lock(prepare_mutex_);
+    prepared_ = false;
+    robot_hw_->prepareSwitch(none_, controller_);
+    return true;
+  });
 }
 
 void RosControlDrive::listen(std::optional<SignalInput>& input, const std::string& source, bool safe, double timeout) {
@@ -185,7 +199,10 @@ DriveCapabilities RosControlDrive::capabilities() const {
 }
 
 void RosControlDrive::prepare() {
-  if (!robot_hw_->prepareSwitch(controller_, none_)) {
+  const std::lock_guard<std::mutex> lock(prepare_mutex_);
+  const bool ready = robot_hw_->prepareSwitch(controller_, none_);
+  prepared_ = true;
+  if (!ready) {
     throw std::runtime_error("the RobotHW refuses to switch to the grinder's commands");
   }
 }
@@ -197,7 +214,12 @@ void RosControlDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
   // First, because it must not depend on what the RobotHW may throw.
   readStatus(feedback.status);
   readFault(feedback.status);
+  read_blocks_ = false;
   robot_hw_->read(cycle.time, cycle.period);
+  read_blocks_ = true;
+  // It may have hung, and powerOff() have been called meanwhile.
+  feedback.status.enabled = feedback.status.enabled && !power_off_;
+  fast_ = cycle.period < cycle.nominal * kFast ? fast_ + 1 : 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     feedback.position[i] = joints_[i].state.getPosition();
     feedback.velocity[i] = joints_[i].state.getVelocity();
@@ -210,7 +232,9 @@ void RosControlDrive::readStatus(DriveStatus& status) {
   status.emergency_stop = signals_.emergency_stop->at(now);
   status.enabled = mode_.isOn() && !power_off_ && signals_.enabled->at(now);
   status.homed = signals_.homed->at(now);
-  status.homing = sent_.home && commands_.home && !commands_.home->isOn() && !commands_.home->hasFailed();
+  // Reported in at least one reading, however soon the service answers.
+  status.homing = sent_.home && commands_.home && (commands_.home->isBusy() || !homing_seen_);
+  homing_seen_ = sent_.home;
   status.spindle_at_speed = signals_.spindle_at_speed->at(now);
   status.coolant_on = signals_.coolant_on->at(now);
   status.probe_free = signals_.probe_free->at(now);
@@ -225,8 +249,12 @@ void RosControlDrive::readFault(DriveStatus& status) {
     status.fault_text += kJointNames[static_cast<std::size_t>(changed_axis_)];
   } else if (mode_.isRefused()) {
     status.fault_text = "the RobotHW has failed to switch to the grinder's commands";
-  } else if (sent_.enable && commands_.power && commands_.power->hasFailed()) {
-    status.fault_text = "the service that switches the power on has refused; see the log";
+  } else if (commands_.power && commands_.power->hasFailed()) {
+    status.fault_text = "the power cannot be switched; see the log";
+  } else if (sent_.home && commands_.home && !status.homing && commands_.home->hasFailed()) {
+    status.fault_text = "the homing service has failed; see the log";
+  } else if (fast_ > kMostFast) {
+    status.fault_text = "read() returns sooner than control_rate allows";
   } else {
     return;
   }
@@ -237,31 +265,47 @@ void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command
   if (!command.enable) power_off_ = false;
   if (command.reset) changed_axis_ = kAxisCount;
   passOn(command);
+  const DriveCommand last = std::exchange(sent_, command);
+  used_ = used_ || command.enable;
   const bool powered = command.enable && !power_off_ && (!commands_.power || commands_.power->isOn());
+  const bool was_on = mode_.isOn();
   mode_.update(powered, *this);
-  commandJoints(cycle, command);
-  sent_ = command;
+  if (!powered) prepareStop();
+  commandJoints(cycle, last, was_on && mode_.isOn());
+}
+
+void RosControlDrive::prepareStop() {
+  if (std::exchange(stopping_, stop_->isBusy()) && !stopping_) doSwitch(false);
+  if (sent_.enable || !prepared_ || stopping_) return;
+  // The power follows the preparation at once, unless it was withdrawn meanwhile.
+  if (!used_ && ++unused_ < kMostUnused) return;
+  stop_->fire();
+  stopping_ = true;
+  used_ = false;
+  unused_ = 0;
 }
 
 void RosControlDrive::passOn(const DriveCommand& command) {
   if (commands_.power) commands_.power->set(command.enable && !power_off_);
   if (commands_.spindle) commands_.spindle->set(command.spindle);
   if (commands_.coolant) commands_.coolant->set(command.coolant);
-  if (commands_.home) commands_.home->set(command.home);
-  // On for one cycle: the next one takes it back, which is nothing to the service.
-  if (commands_.reset) commands_.reset->set(command.reset);
+  if (commands_.home && command.home && !sent_.home) commands_.home->fire();
+  if (commands_.home && !command.home && sent_.home) commands_.home->giveUp();
+  if (commands_.reset && command.reset) commands_.reset->fire();
 }
 
-void RosControlDrive::commandJoints(const DriveCycle& cycle, const DriveCommand& command) {
+/// @param moves both this command and the one before reach the axes.
+void RosControlDrive::commandJoints(const DriveCycle& cycle, const DriveCommand& last, bool moves) {
   const double period = cycle.nominal.toSec();
   for (std::size_t i = 0; i < joints_.size(); ++i) {
-    joints_[i].command(command.position[i], (command.position[i] - sent_.position[i]) / period);
+    const double velocity = moves ? (sent_.position[i] - last.position[i]) / period : 0;
+    joints_[i].command(sent_.position[i], velocity);
   }
   robot_hw_->write(cycle.time, cycle.nominal);
   if (!mode_.isOn() || changed_axis_ < kAxisCount) return;
   for (int i = 0; i < kAxisCount; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    if (!(std::abs(joints_[axis].commanded() - command.position[axis]) <= kRounding)) changed_axis_ = i;
+    if (!(std::abs(joints_[axis].commanded() - sent_.position[axis]) <= kRounding)) changed_axis_ = i;
   }
 }
 
@@ -278,11 +322,13 @@ double RosControlDrive::Joint::commanded() const {
 }
 
 ros::Duration RosControlDrive::wait(const ros::Duration& nominal) {
-  return read_is_clock_ ? sinceLastCycle(nominal) : Drive::wait(nominal);
+  return read_is_clock_ && read_blocks_ ? sinceLastCycle(nominal) : Drive::wait(nominal);
 }
 
 bool RosControlDrive::powerOff() {
   power_off_ = true;
+  if (commands_.spindle) commands_.spindle->set(false);
+  if (commands_.coolant) commands_.coolant->set(false);
   if (!commands_.power) return false;
   commands_.power->set(false);
   const auto deadline = Clock::now() + kPowerOff;

@@ -16,6 +16,7 @@
 #include <atomic>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
@@ -50,7 +51,8 @@ class RosControlDrive : public Drive {
         probe_contact;
   };
   struct Commands {
-    std::optional<CommandOutput> power, home, spindle, coolant, reset;
+    std::optional<SwitchOutput> power, spindle, coolant;
+    std::optional<TriggerOutput> home, reset;
   };
 
   void doSwitch(bool on);
@@ -62,7 +64,8 @@ class RosControlDrive : public Drive {
   void readStatus(DriveStatus& status);
   void readFault(DriveStatus& status);
   void passOn(const DriveCommand& command);
-  void commandJoints(const DriveCycle& cycle, const DriveCommand& command);
+  void prepareStop();
+  void commandJoints(const DriveCycle& cycle, const DriveCommand& last, bool moves);
 
   // The class loader must outlive what it has loaded.
   std::unique_ptr<pluginlib::ClassLoader<hardware_interface::RobotHW>> loader_;
@@ -72,12 +75,21 @@ class RosControlDrive : public Drive {
   const std::list<hardware_interface::ControllerInfo> none_;
 
   ros::NodeHandle nh_;
-  std::list<ros::Subscriber> subscribers_;
   Signals signals_;
+  std::list<ros::Subscriber> subscribers_;  ///< their callbacks use the signals
   Commands commands_;
   bool read_is_clock_ = false;
 
   ModeSwitch mode_;
+  std::mutex prepare_mutex_;           ///< of what is never called in the control thread
+  std::atomic<bool> prepared_{false};  ///< a switch to the grinder's commands, and no stop since
+  std::optional<TriggerOutput> stop_;
+  bool used_ = false;         ///< the power was asked for since the last stop
+  int unused_ = 0;            ///< cycles since a preparation without that
+  bool stopping_ = false;     ///< a stop is being prepared
+  bool homing_seen_ = false;  ///< it has been reported
+  bool read_blocks_ = true;   ///< the last read() has returned
+  int fast_ = 0;              ///< cycles in a row that came too soon
   DriveCommand sent_;
   int changed_axis_ = kAxisCount;       ///< whose command the RobotHW has changed
   std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false

@@ -23,6 +23,15 @@ CommandSink sink(const ParameterReader& p, const std::string& name) {
   return sink;
 }
 
+/// Must be stated: without it a stop leaves the drives energised, unless the RobotHW's own switch does not.
+CommandSink power(const ParameterReader& p) {
+  if (p.has("commands/power/service") || p.has("commands/power/topic")) return sink(p, "power");
+  const std::string what = "a service, a topic, or none";
+  const std::string stated = p.text("commands/power", what);
+  if (stated == "none") return {};
+  throw ParameterError("parameter " + p.name("commands/power") + " = " + stated + "; allowed: " + what);
+}
+
 /// A command without an off.
 CommandSink service(const ParameterReader& p, const std::string& name) {
   const CommandSink found = sink(p, name);
@@ -54,7 +63,7 @@ RosControlParameters readRosControlParameters(const ParameterReader& p) {
   r.signals.probe_free = signal(p, "probe_free", "always");
   r.signals.probe_contact = signal(p, "probe_contact", "never");
   r.signal_timeout = p.number("signal_timeout", 0, 60);
-  r.commands.power = sink(p, "power");
+  r.commands.power = power(p);
   r.commands.spindle = sink(p, "spindle");
   r.commands.coolant = sink(p, "coolant");
   r.commands.home = service(p, "home");

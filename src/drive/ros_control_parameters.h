@@ -26,7 +26,8 @@ struct RosControlParameters {
     std::string enabled, fault, probe_free, probe_contact;
   } signals;
   struct {
-    CommandSink power, home, spindle, coolant, reset;
+    CommandSink power;  ///< must be stated, if only that there is none
+    CommandSink home, spindle, coolant, reset;
   } commands;
 };
 

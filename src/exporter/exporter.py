@@ -145,7 +145,10 @@ class Records:
         # One that cannot be read is not tried again.
         self.counted = names
         for entry in entries:
-            self.add(entry)
+            try:
+                self.add(entry)
+            except (KeyError, TypeError) as error:
+                say(entry.get('file'), 'not counted: %r' % error)
         self.save()
 
     def judged(self, names):

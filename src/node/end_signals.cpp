@@ -12,6 +12,7 @@ namespace grinder {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{10};
+constexpr std::chrono::seconds kShutdown{1};  ///< at most
 
 }  // namespace
 
@@ -32,7 +33,12 @@ EndAtOnce::EndAtOnce(const EndSignals& signals, std::string during)
         while (!over_) {
           if (!signals.await(kLook)) continue;
           ROS_WARN_STREAM("ended by a signal while " << during);
-          ros::shutdown();
+          // It waits for callbacks and for the master, which may hang as well.
+          std::thread([] {
+            ros::shutdown();
+            std::_Exit(0);
+          }).detach();
+          std::this_thread::sleep_for(kShutdown);
           std::_Exit(0);
         }
       }) {}

@@ -22,7 +22,7 @@ class EndSignals {
   sigset_t signals_{};
 };
 
-/// While it exists, such a signal ends the process at once: for what may block for ever, with the power off.
+/// While it exists, such a signal ends the process within a second: for what may block for ever, with the power off.
 class EndAtOnce {
  public:
   /// @param signals must outlive this object. @param during what is being done then, for the log.

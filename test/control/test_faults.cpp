@@ -202,7 +202,8 @@ TEST(ControlLoopFault, OfADriveThatThrowsWithoutPowerRefusesThePower) {
   rig.run(3);
   EXPECT_EQ(rig.last().state, S::kDisabled);
   EXPECT_EQ(rig.last().drive.fault_text.view(), "no answer (thrown by its read())");
-  EXPECT_EQ(rig.ask(E::kEnable).text, "enable refused: the drive reports a fault; reset it first");
+  EXPECT_EQ(rig.ask(E::kEnable).text,
+            "enable refused: the drive reports a fault: no answer (thrown by its read()); reset it first");
   rig.drive.on_read = nullptr;
   ASSERT_NO_FATAL_FAILURE(rig.enable());
 }

@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <condition_variable>
+#include <atomic>
+#include <functional>
 #include <mutex>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -52,43 +55,27 @@ TEST(SignalInput, WithoutATimeoutALastMessageStays) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Commands
 
-/// Another program: it takes what it is sent, refuses it, or hangs.
+/// Another program: it takes what it is sent, refuses it, throws, or hangs until it is no longer wanted.
 class Receiver {
  public:
-  bool operator()(bool on) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    ++visits_;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return !hangs_; });
-    got_ += on ? '1' : '0';
-    changed_.notify_all();
-    return !refuses_;
+  bool take(char what, const std::function<bool()>& still_wanted) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      got_ += what;
+    }
+    while (hangs && still_wanted()) std::this_thread::sleep_for(milliseconds(1));
+    if (throws) throw std::runtime_error("of the test");
+    return !hangs && !refuses;
   }
-  template <typename Change>
-  void change(Change how) {
+  std::string got() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    how(*this);
-    changed_.notify_all();
+    return got_;
   }
-  /// Waits until the end of what it has got is that.
-  ::testing::AssertionResult gets(const std::string& end) {
-    std::unique_lock<std::mutex> lock(mutex_);
-    const bool has = changed_.wait_for(lock, std::chrono::seconds(60), [&] {
-      return got_.size() >= end.size() && got_.compare(got_.size() - end.size(), end.size(), end) == 0;
-    });
-    return (has ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << "got " << got_;
-  }
-  void awaitVisit() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return visits_ > 0; });
-  }
-  bool hangs_ = false, refuses_ = false;
+  std::atomic<bool> hangs{false}, refuses{false}, throws{false};
 
  private:
   std::mutex mutex_;
-  std::condition_variable changed_;
   std::string got_;
-  int visits_ = 0;
 };
 
 /// Waits for a condition.
@@ -99,78 +86,104 @@ bool soon(const Condition& condition) {
   return condition();
 }
 
-class Command : public testing::Test {
+class Switch : public testing::Test {
  protected:
-  ~Command() override {
-    receiver->change([](Receiver& r) { r.hangs_ = false; });
+  Switch() {
+    EXPECT_FALSE(output->isOn());
+    EXPECT_TRUE(soon([&] { return output->isOff(); })) << "nothing is known of before: it begins with off";
+  }
+  static SwitchOutput::Send to(Receiver& receiver) {
+    return [&](bool on, const std::function<bool()>& wanted) { return receiver.take(on ? '1' : '0', wanted); };
   }
 
-  std::shared_ptr<Receiver> receiver = std::make_shared<Receiver>();
-  CommandOutput output{[r = receiver](bool on) { return (*r)(on); }};
+  Receiver receiver;
+  std::optional<SwitchOutput> output{std::in_place, to(receiver)};
 };
 
-TEST_F(Command, IsOffAtFirstAndSendsNothing) {
-  EXPECT_TRUE(output.isOff());
-  EXPECT_FALSE(output.isOn() || output.hasFailed());
-  output.set(false);
-  EXPECT_TRUE(output.isOff());
+TEST_F(Switch, IsOnOnceItHasBeenTaken) {
+  receiver.hangs = true;
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return receiver.got() == "01"; }));
+  EXPECT_FALSE(output->isOn() || output->isOff() || output->hasFailed());
+  receiver.hangs = false;
+  EXPECT_TRUE(soon([&] { return output->isOn(); }));
+  output->set(false);
+  EXPECT_FALSE(output->isOn());
+  EXPECT_TRUE(soon([&] { return output->isOff(); }));
 }
 
-TEST_F(Command, IsOnOnceItHasBeenTaken) {
-  receiver->change([](Receiver& r) { r.hangs_ = true; });
-  output.set(true);
-  EXPECT_FALSE(output.isOn() || output.isOff());
-  receiver->change([](Receiver& r) { r.hangs_ = false; });
-  EXPECT_TRUE(soon([&] { return output.isOn(); }));
-  EXPECT_TRUE(receiver->gets("1"));
+TEST_F(Switch, IsTriedAgainUntilItIsTaken) {
+  receiver.refuses = true;
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return receiver.got() == "0111"; }));
+  EXPECT_TRUE(output->hasFailed());
+  receiver.refuses = false;
+  EXPECT_TRUE(soon([&] { return output->isOn() && !output->hasFailed(); }));
 }
 
-TEST_F(Command, LeavesNoChangeOut) {
-  receiver->change([](Receiver& r) { r.hangs_ = true; });
-  for (const bool on : {true, true, false, true, false, false}) output.set(on);
-  receiver->change([](Receiver& r) { r.hangs_ = false; });
-  EXPECT_TRUE(receiver->gets("1010"));
-  EXPECT_TRUE(soon([&] { return output.isOff(); }));
+TEST_F(Switch, OnThatWasWithdrawnIsNeverSentAgain) {
+  receiver.refuses = true;
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return output->hasFailed(); }));
+  const std::size_t tries = receiver.got().size();
+  output->set(false);
+  receiver.refuses = false;
+  EXPECT_TRUE(soon([&] { return output->isOff(); }));
+  EXPECT_EQ(receiver.got(), "0" + std::string(tries - 1, '1') + "0");
 }
 
-TEST_F(Command, IsTriedAgainUntilItIsTaken) {
-  receiver->change([](Receiver& r) { r.refuses_ = true; });
-  output.set(true);
-  EXPECT_TRUE(soon([&] { return output.hasFailed(); }));
-  EXPECT_TRUE(receiver->gets("11"));
-  EXPECT_FALSE(output.isOn());
-  receiver->change([](Receiver& r) { r.refuses_ = false; });
-  EXPECT_TRUE(soon([&] { return output.isOn() && !output.hasFailed(); }));
+TEST_F(Switch, OffDoesNotWaitForAnOnThatHangs) {
+  receiver.hangs = true;
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return receiver.got() == "01"; }));
+  output->set(false);
+  EXPECT_TRUE(soon([&] { return receiver.got() == "010"; }));
 }
 
-TEST_F(Command, ThatIsRefusedDoesNotBlockItsContrary) {
-  receiver->change([](Receiver& r) { r.refuses_ = true; });
-  output.set(true);
-  EXPECT_TRUE(soon([&] { return output.hasFailed(); }));
-  output.set(false);
-  EXPECT_TRUE(receiver->gets("0"));
+TEST_F(Switch, AnExceptionIsAFailure) {
+  receiver.throws = true;
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return output->hasFailed(); }));
 }
 
-TEST(CommandOutput, IsPassedOnBeforeTheEnd) {
-  const auto receiver = std::make_shared<Receiver>();
-  {
-    CommandOutput output([receiver](bool on) { return (*receiver)(on); });
-    output.set(true);
-    output.set(false);
+TEST_F(Switch, IsPassedOnBeforeTheEnd) {
+  output->set(true);
+  EXPECT_TRUE(soon([&] { return output->isOn(); }));
+  output->set(false);
+  output.reset();
+  EXPECT_EQ(receiver.got(), "010");
+}
+
+TEST_F(Switch, ThatHangsDoesNotKeepTheProgramFromItsEnd) {
+  receiver.hangs = true;
+  output->set(true);
+  output.reset();
+  EXPECT_EQ(receiver.got().substr(0, 2), "01");
+}
+
+TEST(TriggerOutput, AsksOnceForEveryTimeItIsFired) {
+  Receiver receiver;
+  TriggerOutput output([&](const std::function<bool()>& wanted) { return receiver.take('!', wanted); });
+  EXPECT_FALSE(output.isBusy());
+  for (const bool refuses : {false, true, false}) {
+    receiver.refuses = refuses;
+    output.fire();
+    EXPECT_TRUE(soon([&] { return !output.isBusy(); }));
+    EXPECT_EQ(output.hasFailed(), refuses);
   }
-  EXPECT_TRUE(receiver->gets("10"));
+  EXPECT_EQ(receiver.got(), "!!!");
 }
 
-TEST(CommandOutput, ThatHangsDoesNotKeepTheProgramFromItsEnd) {
-  const auto receiver = std::make_shared<Receiver>();
-  receiver->change([](Receiver& r) { r.hangs_ = true; });
-  {
-    CommandOutput output([receiver](bool on) { return (*receiver)(on); });
-    output.set(true);
-    receiver->awaitVisit();
-  }
-  receiver->change([](Receiver& r) { r.hangs_ = false; });
-  EXPECT_TRUE(receiver->gets("1"));
+TEST(TriggerOutput, IsGivenUp) {
+  Receiver receiver;
+  receiver.hangs = true;
+  TriggerOutput output([&](const std::function<bool()>& wanted) { return receiver.take('!', wanted); });
+  output.fire();
+  EXPECT_TRUE(soon([&] { return receiver.got() == "!"; }));
+  EXPECT_TRUE(output.isBusy());
+  output.giveUp();
+  EXPECT_TRUE(soon([&] { return !output.isBusy(); }));
+  EXPECT_TRUE(output.hasFailed());
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -243,6 +256,7 @@ class Parameters : public testing::Test {
     all["robot_hw"]["type"] = "maker/Machine";
     all["clock"] = "monotonic";
     all["signal_timeout"] = 0.5;
+    all["commands"]["power"] = "none";
     for (const char* signal : {"emergency_stop", "homed", "spindle_at_speed", "coolant_on"}) {
       all["signals"][signal] = "never";
     }
@@ -285,6 +299,7 @@ TEST_F(Parameters, TakeWhatIsStated) {
   all["clock"] = "read";
   all["signals"]["fault"] = "/plc/fault";
   all["commands"]["spindle"]["topic"] = "/plc/spindle";
+  all["commands"]["power"] = XmlRpc::XmlRpcValue();
   all["commands"]["power"]["service"] = "/plc/power";
   const RosControlParameters p = read();
   EXPECT_EQ(p.joints, (std::array<std::string, 4>{"axis_x", "axis_y", "axis_z", "work_head"}));
@@ -302,6 +317,13 @@ TEST_F(Parameters, MustStateWhatNoRobotHwHas) {
                              " is missing; allowed: always, never, or a topic of std_msgs/Bool");
     all = before;
   }
+}
+
+TEST_F(Parameters, MustSayHowThePowerIsSwitchedOff) {
+  all["commands"]["power"] = "off";
+  EXPECT_EQ(refusal(), "parameter /grinder/hardware/commands/power = off; allowed: a service, a topic, or none");
+  remove("commands", "power");
+  EXPECT_EQ(refusal(), "parameter /grinder/hardware/commands/power is missing; allowed: a service, a topic, or none");
 }
 
 TEST_F(Parameters, AreRefusedByName) {

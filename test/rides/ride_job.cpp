@@ -3,9 +3,11 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 namespace grinder::test_support {
 

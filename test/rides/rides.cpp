@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
+#include <map>
 
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
@@ -17,7 +18,7 @@ int main(int argc, char** argv) {
   app.add_option("--from", first, "number of the first ride; each number is always the same ride")
       ->capture_default_str();
   app.add_option("--count", count, "how many rides")->capture_default_str();
-  app.add_option("--for", seconds, "at most so long, e.g. 8h")
+  app.add_option("--for", seconds, "for at most this long, e.g. 8h")
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                         CLI::AsNumberWithUnit::CASE_INSENSITIVE));
   CLI11_PARSE(app, argc, argv);

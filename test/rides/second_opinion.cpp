@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 namespace second_opinion {
 
@@ -42,8 +43,8 @@ Watch::Watch(Asked asked) : asked_(std::move(asked)) {
 }
 
 /// What the rounding of a place and of what it is computed from comes to.
-Real Watch::noiseOf(const Point& p, int axis) const {
-  return 64 * kEps * (std::abs(p[static_cast<std::size_t>(axis)]) + (axis == 3 ? turn_ : 0) + 1e-3L);
+Real Watch::noiseOf(int axis) const {
+  return 64 * kEps * (farthest_[static_cast<std::size_t>(axis)] + (axis == 3 ? turn_ : 0) + 1e-3L);
 }
 
 Real Watch::curve(const Tooth& t, Real x) const {
@@ -64,6 +65,10 @@ void Watch::start(std::size_t first_pass) {
 }
 
 void Watch::see(const Row& row) {
+  // A move is computed from its ends, which may lie far from where it is.
+  for (std::size_t i = 0; i < row.at.size(); ++i) {
+    farthest_[i] = std::max({farthest_[i], std::abs(row.at[i]), row.of_job ? std::abs(row.work[i]) : 0});
+  }
   if (has_last_ && !row.free && !last_.free) {
     checkMotion(row);
   } else {
@@ -87,7 +92,7 @@ void Watch::checkMotion(const Row& row) {
   const Real t = asked_.period;
   for (int i = 0; i < 4; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    const Real noise = noiseOf(row.at, i);
+    const Real noise = noiseOf(i);
     const Real velocity = (Real(row.at[axis]) - last_.at[axis]) / t;
     if (!(std::abs(velocity) <= asked_.velocity[axis] * (1 + 1e-9L) + noise / t)) {
       throw Violation(text("velocity", i, velocity, asked_.velocity[axis]));
@@ -125,13 +130,13 @@ void Watch::checkPlace(const Row& row) {
     // A run begins wherever the axes are.
     const auto stays = [&](std::size_t axis) { return row.work[axis] == last_.work[axis]; };
     const bool begins = row.cycle == 0 || !last_.of_job;
-    if (begins || (stays(0) && stays(2) && stays(3) && row.work[1] >= last_.work[1] - noiseOf(row.work, 1))) return;
+    if (begins || (stays(0) && stays(2) && stays(3) && row.work[1] >= last_.work[1] - noiseOf(1))) return;
     throw Violation("a lift moves another axis, or down");
   }
   const Real x = row.work[0], y = row.work[1];
   const Tooth& tooth = asked_.teeth[static_cast<std::size_t>(row.tooth)];
   const Real surface = x * tooth.growth;
-  const Real noise = noiseOf(row.work, 1);
+  const Real noise = noiseOf(1);
   if (y >= surface + asked_.clearance - noise) return;
   const auto [low, high] = std::minmax(asked_.from, asked_.to);
   if (y >= std::max(low * tooth.growth, high * tooth.growth) + asked_.clearance - noise) return;
@@ -139,16 +144,16 @@ void Watch::checkPlace(const Row& row) {
   if (!(y >= lowest(x) - noise)) throw Violation(text("depth: place", 1, y, lowest(x)));
   // Wherever the wheel is near the work, it is on the path of the tooth.
   const Real off = (row.work[3] - curve(tooth, x)) * (asked_.radius + (x - tooth.lead) * tooth.growth);
-  const Real a_noise = noiseOf(row.work, 3) * (asked_.radius + std::abs(x)) + 1e-15L;
+  const Real a_noise = noiseOf(3) * (asked_.radius + std::abs(x)) + 1e-15L;
   if (!(std::abs(off) <= asked_.deviation * (1 + 1e-9L) + a_noise)) {
     throw Violation(text("off the curve: deviation", 3, off, asked_.deviation));
   }
-  if (!(std::abs(row.work[2] - z(tooth, x)) <= noiseOf(row.work, 2))) {
+  if (!(std::abs(row.work[2] - z(tooth, x)) <= noiseOf(2))) {
     throw Violation(text("off the law of Z: place", 2, row.work[2], z(tooth, x)));
   }
   const auto goes = [&](int axis) {
     const auto i = static_cast<std::size_t>(axis);
-    return !(std::abs(row.work[i] - last_.work[i]) <= noiseOf(row.work, axis));
+    return !(std::abs(row.work[i] - last_.work[i]) <= noiseOf(axis));
   };
   // A stroke ends off the curve by what the deviation allows.
   const bool across = last_.of_job && (goes(0) || goes(2));
@@ -169,9 +174,8 @@ void Watch::checkStroke(const Row& row) {
   const Pass& own = asked_.passes[next ? ground_ : ground_ - 1];
   const Real x = row.work[0];
   const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
-  if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(row.work, 1)))
-    throw Violation(text("stroke: place", 1, row.work[1], y));
-  if (next && std::abs(x - asked_.to) <= noiseOf(row.work, 0)) ++ground_;
+  if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(1))) throw Violation(text("stroke: place", 1, row.work[1], y));
+  if (next && std::abs(x - asked_.to) <= noiseOf(0)) ++ground_;
 }
 
 }  // namespace second_opinion

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-// What every setpoint of a job must keep to, computed anew from the job's figures: curve, depth, limits, order. Knows
-// nothing of the product's code.
+// What every setpoint of a job must keep to, computed anew from the laws of its strokes: curve, depth, limits, order.
+// Knows nothing of the product's code.
 namespace second_opinion {
 
 using Real = long double;
@@ -78,11 +78,12 @@ class Watch {
   void checkPlace(const Row& row);
   void checkStroke(const Row& row);
   Real lowest(Real x) const;
-  Real noiseOf(const Point& p, int axis) const;
+  Real noiseOf(int axis) const;
 
   Asked asked_;
   std::size_t ground_ = 0;
-  Real turn_ = 0;  ///< the largest of A's terms [rad]
+  Real turn_ = 0;                     ///< the largest of A's terms [rad]
+  std::array<double, 4> farthest_{};  ///< of each axis from 0
   Row last_;
   bool has_last_ = false;
   std::array<Point, 3> ends_{};  ///< of the last pairs, newest first

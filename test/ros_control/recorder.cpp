@@ -51,7 +51,7 @@ class Recorder : public hi::RobotHW {
 
   bool checkForConflict(const std::list<hi::ControllerInfo>&) const override { return fails_ == "conflict"; }
   bool prepareSwitch(const std::list<hi::ControllerInfo>& start, const std::list<hi::ControllerInfo>&) override {
-    interface_ = start.front().claimed_resources.front().hardware_interface;
+    if (!start.empty()) interface_ = start.front().claimed_resources.front().hardware_interface;
     return fails_ != "prepare";
   }
   void doSwitch(const std::list<hi::ControllerInfo>& start, const std::list<hi::ControllerInfo>& stop) override {

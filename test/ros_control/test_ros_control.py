@@ -63,7 +63,7 @@ class TestRosControl(unittest.TestCase):
             'robot_hw': dict(robot_hw, type='recorder/Recorder', record=self.record),
             'signals': dict({'emergency_stop': 'never', 'homed': 'always', 'spindle_at_speed': 'always',
                              'coolant_on': 'always'}, **dict(signals)),
-            'commands': dict(commands)}
+            'commands': dict({'power': 'none'}, **dict(commands))}
         TestRosControl.started += 1
         self.node = gc.NodeProcess('recorded%d' % self.started, parameters, environment={
             'ROS_PACKAGE_PATH': self.folder + ':' + os.environ['ROS_PACKAGE_PATH']})
@@ -117,7 +117,7 @@ class TestRosControl(unittest.TestCase):
         self.assertEqual(commands[0], (-0.05, 0.05, 0, 0), 'the first command is the position')
         self.assertTrue(self.call('disable').success)
         client.wait_power_off()
-        self.assertEqual(self.recorded()[0][3], '2')
+        gc.poll(lambda: self.recorded()[0][3] == '3', 'the second switch off, which has been prepared')
 
     def test_velocities_where_they_are_taken(self):
         client = self.start(with_velocity=True)
@@ -215,7 +215,7 @@ class TestRosControl(unittest.TestCase):
         client.wait_for(lambda: client.states[-1].homed, 'the reference')
         emergency.publish(True)
         client.wait_state(GrinderState.FAULT)
-        self.assertEqual(self.recorded()[0][3], '2', 'switched off')
+        gc.poll(lambda: self.recorded()[0][3] == '3', 'off, and once more when that was prepared')
         emergency.unregister()
         homed.unregister()
 

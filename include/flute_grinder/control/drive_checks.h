@@ -15,8 +15,11 @@ class DriveChecks {
   /// @param config must outlive this object.
   explicit DriveChecks(const LoopConfig& config) noexcept : config_(config) {}
 
-  /// Power has come on: counts underruns from now on.
-  void powerOn(const DriveStatus& drive) noexcept { underruns_at_power_on_ = drive.underruns; }
+  /// Power has come on: counts underruns and slow cycles from now on.
+  void powerOn(const DriveStatus& drive) noexcept {
+    underruns_at_power_on_ = drive.underruns;
+    time_ = bounded_time_ = cycles_ = slow_ = 0;
+  }
 
   /// The drive has been commanded to clear its fault.
   void reset() noexcept { was_reset_ = true; }

@@ -63,7 +63,7 @@ struct Answer {
   double limit = 0;                        ///< what is allowed
   Swivel swivel;                           ///< for kSwivel and kSwivelMeasured
   double job_swivel = 0;                   ///< for kSwivel and kSwivelInUse [rad]
-  FaultText drive_text;                    ///< for kNotPrepared
+  FaultText drive_text;                    ///< for kNotPrepared, kDriveFault and kDriveFaultStays; may be empty
 
   RequestReply reply() const;
 };

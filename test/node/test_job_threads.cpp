@@ -5,6 +5,7 @@
 #include "flute_grinder/job/valid_job.h"
 #include "node/job_gate.h"
 #include "node/planner.h"
+#include "random_cases.h"
 
 #include <atomic>
 #include <chrono>
@@ -26,7 +27,6 @@ using test_support::machineConfig;
 using E = MachineEvent;
 using S = MachineState;
 
-constexpr int kGoals = 300;
 constexpr int kMaxGoals = 10000;  ///< until all kinds of ends have been seen
 constexpr std::chrono::seconds kPatience(60);
 
@@ -164,7 +164,8 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 4000));
     emergency_stop_ = random() % 4 == 0;
   });
-  for (int number = 0; (number < kGoals || !seenAll()) && number < kMaxGoals && !HasFatalFailure(); ++number) {
+  const int goals = test_support::randomCases(300);
+  for (int number = 0; (number < goals || !seenAll()) && number < kMaxGoals && !HasFatalFailure(); ++number) {
     runGoal(number);
   }
   busy_ = false;

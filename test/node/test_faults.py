@@ -68,7 +68,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
         self.assertRegex(run.text, 'the drive has switched its power off')
-        self.assertEqual(g.wait_state(GrinderState.FAULT).fault, run.text.split(' (')[0])
+        gc.poll(lambda: g.fresh_state().fault == run.text.split(' (')[0], 'the fault of the state')
 
     def test_way_back_from_an_emergency_stop(self):
         g = grinder()

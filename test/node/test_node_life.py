@@ -110,8 +110,8 @@ BAD_PARAMETERS = [
     ('control_rate', math.nan, 'nan; allowed: 10 to 20000'),
     ('history_limit', -1, 'allowed: 0 to 1e+12'),
     ('hardware/type', 'flute_grinder/NoSuchDrive',
-     '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
-    ('hardware/type', None, ' is missing; allowed: flute_grinder/HalHardware; flute_grinder/SimulatedDrive'),
+     '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/RosControlDrive; flute_grinder/SimulatedDrive'),
+    ('hardware/type', None, ' is missing; allowed: flute_grinder/HalHardware; flute_grinder/RosControlDrive; flute_grinder/SimulatedDrive'),
     # By an exception of the drive's init().
     ('hardware/axis_x/time_constant', None,
      'the drive flute_grinder/SimulatedDrive: parameter /doubtful/hardware/axis_x/time_constant is missing; allowed: a number'),

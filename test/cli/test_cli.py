@@ -2,6 +2,7 @@
 """Shows what `grind table`, `grind plan` and wrong usage print, and the exit status: 0 done, 1 the job said no, 2 wrong usage or an
 unreadable file."""
 
+import io
 import math
 import os
 import pathlib
@@ -11,8 +12,9 @@ import subprocess
 import sys
 
 import flute_grinder.job
-from flute_grinder.msg import Process
+from flute_grinder.msg import GrindActionGoal, Process
 import rostest
+import yaml
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
@@ -210,6 +212,24 @@ class TestGoal(CommandLine):
                 self.assert_close(*pair, text)
         else:
             self.assertTrue(math.isclose(value, expected, rel_tol=1e-12), '%s = %r, not %r' % (text, value, expected))
+
+    def test_the_folder_has_a_job_for_everything_that_a_job_can_ask_for(self):
+        jobs = [yaml.safe_load(path.read_text()) for path in pathlib.Path(gc.package_file('jobs')).glob('*.yaml')]
+        jobs = [job for job in jobs if 'operations' not in job]
+        self.assertEqual({'file' in job['process']['wheel'] for job in jobs}, {True, False})
+        self.assertEqual({job['process']['order'] for job in jobs}, {'tooth_major', 'pass_major'})
+        self.assertEqual({job['process']['direction'] for job in jobs}, {'from_end', 'to_end'})
+        self.assertEqual({job['interpolation']['even_step'] for job in jobs}, {'published', 'third_order', 'exact'})
+        self.assertEqual({job['cutter']['spiral_angle_deg'] > 0 for job in jobs}, {True, False})
+        self.assertEqual({job['cutter']['cone_angle_deg'] > 0 for job in jobs}, {True, False})
+        self.assertEqual({'tooth_angles_deg' in job['cutter'] for job in jobs}, {True, False})
+
+    def test_goal_of_64_teeth_is_short(self):
+        message = GrindActionGoal(goal=gc.goal_of(gc.paper(tooth_angles=[i * math.pi / 32 for i in range(64)])))
+        message.goal_id.id = '/' + 'n' * 40 + '-12345-1700000000.123456789'
+        written = io.BytesIO()
+        message.serialize(written)
+        self.assertLess(len(written.getvalue()), 1000)
 
     def test_what_is_refused_is_said_as_by_plan(self):
         bad = gc.job_file(self.path('bad.yaml'), cone_angle_deg=90)

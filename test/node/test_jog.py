@@ -117,20 +117,6 @@ class TestStep(JogTest):
         self.check_at(at)
         self.assertEqual(len(g.batches), batches, 'setpoints of no job were published')
 
-    def test_refusals(self):
-        g = grinder()
-        for arguments, text in (((X, 400 * MM), 'it would lead axis X to 350 mm; allowed: up to 300 mm'),
-                                ((X, float('nan')), 'it would lead axis X to nan'),
-                                ((7, 1 * MM), 'axis = 7; allowed: 0 to 3 for X, Y, Z, A'),
-                                ((X, 1 * MM, 1.0), 'speed of axis X = 60000 mm/min; allowed: ')):
-            reply = step(*arguments)
-            self.assertFalse(reply.success)
-            self.assertTrue(reply.message.startswith('jog refused: ' + text), reply.message)
-        self.check_at(g.park())
-        self.assertTrue(g.disable().success)
-        self.assertEqual(step(X, 1 * MM).message,
-                         'jog refused: the machine is in state disabled; allowed: enable, disable, reset')
-
     def test_a_goal_is_rejected_meanwhile_and_a_stop_ends_it(self):
         g = grinder()
         self.assertTrue(step(X, 300 * MM, 10 * MM).success)

@@ -104,19 +104,6 @@ class TestCycles(ProbeTest):
         self.assertEqual(refused.returncode, 1)
         self.assertIn('--stickout = 20 mm; allowed: ', refused.stderr)
 
-    def test_a_known_diameter_sets_y(self):
-        self.start()
-        self.bring_ball(30 * MM, 7 * MM)
-        self.jog(A, 1.0)  # the run-out is not where it is touched
-        before = self.client.wait_rest()
-        said = self.cycle('diameter', '--at', '10.03', '--job', JOB)
-        self.assertAlmostEqual(number(said['diameter']), 10, delta=2 * TOUCH / MM)
-        self.assertAlmostEqual(number(said['run-out']), 0.02, delta=2 * TOUCH / MM)
-        self.assertAlmostEqual(self.client.wait_rest()[A], before[A], delta=1e-5)
-        # As if the axis were nearer by half of what is missing.
-        zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
-        self.assertAlmostEqual(self.offset(Y)['offset_mm'], zeros['y_mm'] - 0.015, delta=2 * TOUCH / MM)
-
     def test_a_flange_mistyped_changes_x_only_if_confirmed(self):
         self.start()
         self.bring_ball(12 * MM, 0)

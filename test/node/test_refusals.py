@@ -87,15 +87,6 @@ class TestState(unittest.TestCase):
         self.assertEqual(run.setpoints, [])
         self.assertEqual(grinder().positions(), rest)
 
-    def test_bad_goal_and_dry_run_are_busy_too(self):
-        first = grinder().send(LONG).wait_in_stroke(0)
-        for job, fields in ((gc.paper(feed=NAN), {}), (gc.MOTION, {'dry_run': True})):
-            other = grinder().send(job, **fields).wait()
-            self.assertEqual((other.status, other.code), ('REJECTED', GrindResult.BUSY))
-        self.assertFalse(first.done)
-        first.cancel()
-        first.wait()
-
     def test_unknown_fault_cannot_be_injected(self):
         for fault, axis, named in (('earthquake', X, 'fault = earthquake; allowed: none, emergency_stop'),
                                    ('stuck_axis', 4, 'axis = 4; allowed: 0 to 3 for X, Y, Z, A')):

@@ -110,9 +110,8 @@ def setUpModule():
     FILES['recording'] = Recording(folder)
     FILES['plan'] = os.path.join(folder, 'plan.csv')
     FILES['printed'] = gc.grind('plan', PAPER_JOB, '--csv', FILES['plan']).stdout
-    for length in ('0.2', '0.5'):
-        FILES['table ' + length] = os.path.join(folder, 'table%s.csv' % length)
-        gc.grind('table', PAPER_JOB, '--step-length', length, '--csv', FILES['table ' + length])
+    FILES['table'] = os.path.join(folder, 'table.csv')
+    gc.grind('table', PAPER_JOB, '--step-length', '0.2', '--csv', FILES['table'])
 
 
 class Page(html.parser.HTMLParser):
@@ -303,22 +302,12 @@ def timestamp(utc):
 class TestTable(ReportCase):
     """The paper's figures, and its Figures 3 to 5."""
 
-    def check_figures(self, length, points, odd, even):
-        page = self.report(FILES['table ' + length])
-        self.assert_page(page, PATH)
-        self.assertEqual(page.rows['points'], [str(points)])
-        self.assertEqual(page.rows['maximum odd error'], [odd + ' rad'])
-        if even:
-            self.assertEqual(page.rows['maximum even error'], [even + ' rad'])
-        self.assertIn('the points of a table have no time', page.text)
-
-    def test_papers_figures_at_02(self):
-        self.check_figures('0.2', 152, '3.9785e-05', '3.5000e-07')
-
     def test_pictures_show_the_points(self):
-        page = self.report(FILES['table 0.2'])
+        page = self.report(FILES['table'])
+        self.assert_page(page, PATH)
+        self.assertIn('the points of a table have no time', page.text)
         helix = checks.Helix(gc.PAPER)
-        points = [(float(row['x_mm']), float(row['a_rad'])) for row in read_csv(FILES['table 0.2'])]
+        points = [(float(row['x_mm']), float(row['a_rad'])) for row in read_csv(FILES['table'])]
         self.assertEqual(len(points), 153)
         for name, first, last in (('path', 0, 152), ('path-start', 0, 9), ('path-end', 143, 152)):
             shown = list(enumerate(points))[first:last + 1]
@@ -622,21 +611,6 @@ class TestVerdict(ReportCase):
             ('land', 'passed'), ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed constancy', 'passed'),
             ('late cycles', 'passed')])
 
-    def test_each_tolerance_fails_what_is_beyond_it(self):
-        data = self.judged()
-        figures = {c['name']: c for c in data['criteria']}
-        for key, name, percent in (('following_error_um', 'following error in strokes', False),
-                                   ('feed_percent', 'feed constancy', True)):
-            off = abs(figures[name]['measured'] - figures[name]['asked'])
-            off = 100 * off / figures[name]['asked'] if percent else off
-            for share, result in ((0.99, 'failed'), (1.01, 'passed')):
-                changed = self.judged(**{key: share * off})
-                self.assertEqual(self.result(changed, name), result, (key, share))
-                self.assertEqual(changed['verdict'], 'failed' if result == 'failed' else 'passed')
-        least = figures['land']['measured']
-        self.assertEqual(self.result(self.judged(land_mm=1.01 * least), 'land'), 'failed')
-        self.assertEqual(self.result(self.judged(land_mm=0.99 * least), 'land'), 'passed')
-
     def test_measured_is_what_simulate_measures(self):
         done = gc.grind('simulate', FILES['recording'].bag, '--run', '1', '--json', '--sections', '17')
         sections = json.loads(done.stdout)['sections']
@@ -653,22 +627,10 @@ class TestVerdict(ReportCase):
         data = self.judged(self.rewritten('cut.bag', lambda topic, _: not topic.endswith('grind/result')))
         self.assertEqual((data['verdict'], data['verdict_because']), ('unfinished', ['the end of the job is not in the file']))
 
-    def test_canceled_job_has_failed(self):
-        data = self.data_of(dict(self.kept(), outcome='canceled', reason='canceled; stopped on the path'))
-        self.assertEqual((data['verdict'], data['verdict_because'][0]), ('failed', 'the job ended as canceled'))
-
     def data_of(self, record, **changes):
         with open(self.path('changed.json'), 'w') as file:
             json.dump(record, file)
         return self.judged(self.path('changed.json'), job=None, **changes)
-
-    def test_feed_that_the_plan_reduces_is_not_judged(self):
-        record = self.kept()
-        for from_x, to_x, result in ((-0.5, 3.9, 'not measured'), (29, 31, 'not measured'), (3.9, -0.5, 'not measured'),
-                                     (31, 36, 'failed'), (-1, -0.5, 'failed')):
-            record['planned']['feed_limits'] = [{'cause': 'axis A jerk', 'from_x_mm': from_x, 'to_x_mm': to_x}]
-            found = self.data_of(record, feed_percent=5)
-            self.assertEqual(self.result(found, 'feed constancy'), result, (from_x, to_x))
 
     def test_record_of_a_drive_that_read_nan(self):
         record = self.kept()
@@ -676,13 +638,6 @@ class TestVerdict(ReportCase):
         record['late_cycles']['longest_ms'] = None
         self.assertEqual(self.result(self.data_of(record), 'following error in strokes'), 'not measured')
         self.assertEqual(self.report(self.path('changed.json')).rows['1, 1'][5], '-, -, -')
-
-    def test_late_cycles_of_a_record_are_of_all_its_cycles(self):
-        record = self.kept()
-        record['late_cycles']['count'] = 40
-        late, = (c for c in self.data_of(record)['criteria'] if c['name'] == 'late cycles')
-        cycles = (timestamp(record['ended']) - timestamp(record['started'])) / 1e-3
-        self.assertAlmostEqual(late['measured'], 100 * 40 / cycles, delta=1e-3)
 
     def test_record_that_is_not_complete(self):
         for text, reason in (('{"record": 1}', 'is no complete record of a job: machine is missing'),
@@ -706,17 +661,6 @@ class TestVerdict(ReportCase):
             self.assertEqual(self.result(data, name), 'not measured')
         self.assertEqual(data['verdict'], 'incomplete')
         self.assertIn('not all of its teeth were ground in this job', ' '.join(data['left_out']))
-
-    def test_bad_tolerances(self):
-        path = self.path('bad.yaml')
-        for text, reason in (('feed_percent: 5', 'land_mm is missing'), ('land: 1', 'land: not known; allowed: land_mm, .*'),
-                             ('land_mm: -1', 'land_mm = -1; allowed: a number from 0'), ('land_mm: .nan', r'land_mm = \.nan; .*'),
-                             ('', 'is empty'), ('# none', 'has no keys; .*'), ('a: [', '.*')):
-            with open(path, 'w') as file:
-                file.write(text)
-            done = gc.grind('report', FILES['plan'], '--json', '--tolerances', path)
-            self.assertEqual((done.returncode, done.stdout), (2, ''))
-            self.assertRegex(done.stderr.rstrip('\n'), '^%s: ?%s$' % (re.escape(path), reason))
 
 
 class TestInterruptedJob(ReportCase):

@@ -5,10 +5,8 @@ end of the process; and that the wheel is not left in the work."""
 import contextlib
 import os
 import random
-import shutil
 import signal
 import subprocess
-import tempfile
 import threading
 import time
 import unittest
@@ -196,25 +194,6 @@ class TestTheWayDown(NodeTest):
     def setUp(self):
         """Every test starts its node."""
 
-    TWO_PASSES = gc.paper(flute_length=5 * MM, feed=300 * MM_MIN, clearance=1 * MM, infeed=0.3 * MM)
-
-    def test_cancel_does_not_wait_for_the_disk(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
-        disk = gc.SlowDisk(folder)
-        self.start(machine(), environment=disk.environment).make_ready()
-        run = self.client.send(self.TWO_PASSES).wait_in_stroke(0)
-        disk.stop()
-        run.wait_past(lambda s: s.pass_ == 1 and s.move == STROKE, 'the second pass')
-        run.cancel()
-        run.wait_complete()
-        self.assertEqual(run.status, 'PREEMPTED')
-        self.client.wait_state(GrinderState.READY)
-        # What the journal does not have is not reported.
-        self.assertEqual(self.client.fresh_state().progress.pass_, 0)
-        disk.release()
-        gc.poll(lambda: self.client.fresh_state().progress.pass_ == 1, 'the pass in the journal')
-
     def test_full_pipe(self):
         read, write = os.pipe()
         self.addCleanup(os.close, read)
@@ -270,13 +249,6 @@ class TestStates(NodeTest):
         self.client.wait_state(GrinderState.READY)
         self.publish_stop(Stop.DISABLE)
         self.client.wait_state(GrinderState.DISABLED)
-
-    def test_disable_stops_on_the_path_and_lifts_first(self):
-        run = self.send_into_stroke()
-        self.assertTrue(self.client.disable().success)
-        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
-        self.check_stopped_on_path_and_lifted(run)
-        self.assertFalse(self.client.wait_state(GrinderState.DISABLED).wheel_in_work)
 
     def test_cancel_stops_on_the_path_and_lifts(self):
         run = self.send_into_stroke()

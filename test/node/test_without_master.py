@@ -135,20 +135,14 @@ class TestWithoutMaster(RunTest):
         self.master.end(self.master.process)
         return command
 
-    def test_ctrl_c_stops_the_job_when_the_master_is_gone(self):
-        command = self.start_run()
-        command.send(signal.SIGINT)
-        self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'canceled; stopped on the path \(.*\(code -11\)\n$')
-        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
-
-    def test_ctrl_z_holds_the_job_when_the_master_is_gone(self):
+    def test_ctrl_z_holds_and_ctrl_c_stops_the_job_when_the_master_is_gone(self):
         command = self.start_run()
         command.send(signal.SIGTSTP)
         command.wait_text('  held  ')
         command.send(signal.SIGINT)
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'canceled; stopped on the path \(.*\(code -11\)\n$')
+        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
 
     def test_commands_say_that_the_master_is_missing(self):
         self.start_master()

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace grinder {
 namespace test_planned_job {
@@ -49,6 +50,16 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   const auto closest = checkCollision(*whole.program, MachineShapes(shippedUrdf())).closest;
   EXPECT_EQ(whole.closest->distance, closest->distance);
   EXPECT_EQ(whole.closest->leg, closest->leg);
+}
+
+TEST(PlannedJob, OfEveryShippedFileIsGood) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
+    const PlannedJob whole = planned(readJobFile(entry.path(), {}, "flute"));
+    EXPECT_TRUE(whole.good()) << entry.path() << text(whole.reasons);
+    ++files;
+  }
+  EXPECT_GE(files, 8);
 }
 
 TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {

@@ -2,14 +2,21 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
 /// Arguments of `grind history`.
 struct HistoryOptions {
-  std::string folder;      ///< empty for the default folder of the grinder
-  std::string tolerances;  ///< YAML of what a tool is passed by; empty for the package's own
+  std::vector<std::string> folders;  ///< one for each grinder; empty for the default folder of the grinder
+  std::string tolerances;            ///< YAML of what a tool is passed by; empty for the package's own
+  // Which records are listed; empty for all.
+  std::string tool;          ///< part of the job's name or of the tool in words, in upper or lower case
+  std::string grinder;       ///< a part of its folder's path
+  std::string since, until;  ///< as of timeOfDate()
+  std::string verdict;       ///< as of addVerdict()
   bool json = false;
+  std::string csv;  ///< a file to write; empty for none
 };
 
 /// The folder in which a grinder keeps the records of its jobs by default, on the computer and for the user that run
@@ -26,9 +33,11 @@ std::optional<std::string> newestRecord(const std::string& folder);
 /// one.
 std::string doneOperations(const std::string& node, const std::string& job);
 
-/// Lists the records of a grinder with the verdict on each, the newest last. @param node as for historyFolder().
-/// @return the exit status: 2 if a record could not be read.
-/// @throw FileError if the folder cannot be read, JobFileError if the tolerances cannot.
+/// Lists the records of one or many grinders with the verdict on each, the newest last. What cannot be read is named,
+/// and the rest is listed. @param node as for historyFolder().
+/// @return the exit status: 2 if a folder or a record could not be read.
+/// @throw std::invalid_argument if no record can be meant, JobFileError if the tolerances cannot be read, FileError if
+/// the CSV file cannot be written.
 int printHistory(const std::string& node, const HistoryOptions& options);
 
 }  // namespace grinder

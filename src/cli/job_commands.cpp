@@ -8,8 +8,10 @@
 #include "cli/report.h"
 #include "cli/setup.h"
 #include "cli/simulate.h"
+#include "cli/time_text.h"
 
 #include <memory>
+#include <stdexcept>
 
 namespace grinder {
 
@@ -121,7 +123,7 @@ void addReport(Commands& commands) {
   file->type_name(kAnyFile);
   auto* last = command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself");
   last->excludes(file);
-  command.add_option("--folder", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
+  command.add_option("--from", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
       ->needs(last)
       ->type_name(kFolder);
   command.add_option("-o,--output", options->html, "HTML file to write")->type_name(kAnyFile);
@@ -135,14 +137,40 @@ void addReport(Commands& commands) {
   addMachine(command, options->parameters, options->urdf);
 }
 
+/// A day or a time of `grind history`. @param last as of timeOfDate().
+void addDate(CLI::App& command, const char* name, std::string& date, bool last, const char* description) {
+  const auto check = [last](const std::string& text) {
+    try {
+      timeOfDate(text, last);
+      return std::string();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+  };
+  command.add_option(name, date, description)->type_name("DATE")->check(check);
+}
+
 void addHistory(Commands& commands) {
   const auto options = std::make_shared<HistoryOptions>();
-  auto& command = commands.add("history", "list the records of the grinder's last jobs, the newest last", "",
+  auto& command = commands.add("history", "list the records of one or many grinders' last jobs, the newest last",
+                               "--from left right --since 2026-11-01 --verdict failed",
                                [&commands, options] { return printHistory(commands.node, *options); });
-  command.add_option("--folder", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
-      ->type_name(kFolder);
+  auto* from = command.add_option("--from", options->folders,
+                                  "folders of the records, one for each grinder (default: the grinder's below ~/.ros)");
+  from->type_name(kFolder);
+  command.add_option("--grinder", options->grinder, "only of this one: a name in its folder's path")
+      ->needs(from)
+      ->type_name("NAME");
+  command.add_option("--tool", options->tool, "only with this in the job's name or the tool")->type_name("TEXT");
+  addDate(command, "--since", options->since, false,
+          "only of jobs that started then or later; 2026-11-22T18:04 or ...22");
+  addDate(command, "--until", options->until, true, "only of jobs that started until then, on that day included");
+  command.add_option("--verdict", options->verdict, "only with this one; incomplete: passed as far as measured")
+      ->check(CLI::IsMember({"passed", "incomplete", "failed"}).description(""))
+      ->type_name("{passed|incomplete|failed}");
   addTolerances(command, options->tolerances);
   addJson(command, options->json);
+  addCsv(command, options->csv, "write the list to this file");
 }
 
 }  // namespace

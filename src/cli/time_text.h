@@ -8,4 +8,10 @@ namespace grinder {
 /// @param time since the epoch [s].
 std::string timeText(double time, bool utc);
 
+/// The time of a day or a time in ISO 8601, since the epoch [s]: "2026-11-22", "2026-11-22T18:04", with seconds, or
+/// with milliseconds; as the clocks here show it, or in UTC with a Z at its end.
+/// @param last of the day, the minute or the second, its last millisecond; else its first.
+/// @throw std::invalid_argument naming any other text, and what is allowed.
+double timeOfDate(const std::string& text, bool last);
+
 }  // namespace grinder

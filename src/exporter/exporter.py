@@ -156,7 +156,7 @@ class Records:
         with tempfile.TemporaryDirectory() as folder:
             for name in names:
                 shutil.copy(str(self.folder / name), folder)
-            listed = subprocess.run([str(job.GRIND), 'history', '--folder', folder, '--json'], stdout=subprocess.PIPE)
+            listed = subprocess.run([str(job.GRIND), 'history', '--from', folder, '--json'], stdout=subprocess.PIPE)
             for entry in json.loads(listed.stdout.decode()):
                 yield dict(entry, record=json.loads(pathlib.Path(entry['file']).read_text()))
 

@@ -4,6 +4,7 @@
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -14,12 +15,19 @@ namespace {
 using namespace units;
 
 /// Where a key of a job file stands, e.g. "process.overtravel_mm[0]".
-Json& at(Json& file, const std::string& key) {
+Json::json_pointer pointerTo(const std::string& key) {
   std::string pointer = "/";
   for (const char c : key) {
     if (c != ']') pointer += c == '.' || c == '[' ? '/' : c;
   }
-  return file[Json::json_pointer(pointer)];
+  return Json::json_pointer(pointer);
+}
+
+/// The key of a choice of a job, see visitJobChoices().
+std::string choiceKey(const std::string& path) {
+  const std::string wheel = "process.wheel_";
+  const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
+  return of_wheel ? "process.wheel." + path.substr(wheel.size()) : path;
 }
 
 std::vector<double> degrees(const std::vector<double>& angles) {
@@ -60,13 +68,10 @@ void addTeeth(Json& file, const GrindJob& job) {
 Json fieldsOf(const GrindJob& job) {
   Json file = Json::object();
   visitJobFields([&](const JobField& field, auto of) {
-    if (field.isOf(job.process.kind)) at(file, field.file_key) = shopNumber(of(job), field.unit);
+    if (field.isOf(job.process.kind)) file[pointerTo(field.file_key)] = shopNumber(of(job), field.unit);
   });
-  visitJobChoices([&](const std::string& path, int, auto of) {
-    const std::string wheel = "process.wheel_";
-    const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
-    at(file, of_wheel ? "process.wheel." + path.substr(wheel.size()) : path) = choiceJson(of(job));
-  });
+  visitJobChoices(
+      [&](const std::string& path, int, auto of) { file[pointerTo(choiceKey(path))] = choiceJson(of(job)); });
   Json& process = file["process"];
   process.erase("kind");
   if (!isTapered(job.process.wheel_profile)) process["wheel"].erase("side");
@@ -85,6 +90,54 @@ Json operationOf(const GrindJob& job) {
   process["relief"] = toString(job.process.kind);
   for (const char* key : {"z_law", "incomplete_ok"}) process.erase(key);
   return process;
+}
+
+/// @throw std::invalid_argument naming what is no name of a value.
+template <typename Enum>
+Enum namedIn(const Json& file, const std::string& key) {
+  const std::string name = file.value(pointerTo(key), std::string(toString(Enum{})));
+  const auto value = valueOf<Enum>(name);
+  if (!value) throw std::invalid_argument(key + " = " + name + "; allowed: " + namesOf<Enum>());
+  return *value;
+}
+
+template <typename Choice>
+void takeChoice(const Json& file, const std::string& key, Choice& choice) {
+  if constexpr (std::is_enum_v<Choice>)
+    choice = namedIn<Choice>(file, key);
+  else
+    choice = file.value(pointerTo(key), choice);
+}
+
+std::vector<double> radians(const Json& degrees) {
+  std::vector<double> angles;
+  for (const Json& angle : degrees) angles.push_back(angle.get<double>() * shopScale(Unit::kRadian));
+  return angles;
+}
+
+void takeTeeth(const Json& cutter, GrindJob& job) {
+  job.tooth_angles = cutter.contains("teeth") ? evenAngles(cutter["teeth"].get<std::size_t>())
+                                              : radians(cutter.at("tooth_angles_deg"));
+  if (!cutter.contains("spiral_angles_deg")) return;
+  job.spiral_angles = radians(cutter["spiral_angles_deg"]);
+  job.cutter.spiral_angle = job.spiral_angles.at(0);
+}
+
+/// The job of one operation, with the rest of the file but the other ones.
+GrindJob singleOf(const Json& file) {
+  GrindJob job;
+  visitJobFields([&](const JobField& field, auto of) {
+    of(job) = file.value(pointerTo(field.file_key), 0.0) * shopScale(field.unit);
+  });
+  visitJobChoices([&](const std::string& path, int, auto of) {
+    if (path != "process.kind") takeChoice(file, choiceKey(path), of(job));
+  });
+  job.process.kind = namedIn<OperationKind>(file, "process.relief");
+  takeTeeth(file.at("cutter"), job);
+  for (const Json& point : file.at("process").at("wheel").value("points_mm", Json::array())) {
+    job.wheel_points.push_back({point.at(0).get<double>() * kMillimetre, point.at(1).get<double>() * kMillimetre});
+  }
+  return job;
 }
 
 }  // namespace
@@ -116,6 +169,18 @@ Json toJson(const GrindJob& job) {
     file["operations"].push_back(operationOf(job.ofOperation(i)));
   }
   return file;
+}
+
+GrindJob jobOf(const Json& file) {
+  GrindJob job = singleOf(file);
+  if (!file.contains("operations")) return job;
+  Json alone = file;
+  for (const Json& operation : file["operations"]) {
+    alone["process"] = operation;
+    const GrindJob single = singleOf(alone);
+    job.operations.push_back({single.process, single.wheel_points});
+  }
+  return job.ofOperation(static_cast<int>(namedIn<OperationKind>(file, "operation")));
 }
 
 std::string text(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }

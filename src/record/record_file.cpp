@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
+#include "record/record_summary.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,34 @@ namespace {
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
 constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
+
+std::string textOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string text(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
+  if (!file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()))) {
+    throw FileError(path + ": cannot be read");
+  }
+  return text;
+}
+
+/// @throw FileError
+Json recordIn(const std::string& path, Json (*parse)(const std::string&)) {
+  Json record;
+  try {
+    record = parse(textOf(path));
+  } catch (const FileError&) {
+    throw;
+  } catch (const std::exception& error) {
+    throw FileError(path + ": is no record of a job: " + error.what());
+  }
+  if (!record.is_object() || record.value("record", Json()) != 1)
+    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
+  for (const char* key :
+       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
+    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
+  }
+  return record;
+}
 
 }  // namespace
 
@@ -74,21 +103,9 @@ RecordFiles recordFilesIn(const std::string& folder) {
 }
 
 Json readRecord(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw FileError(path + ": cannot be read");
-  Json record;
-  try {
-    record = Json::parse(file);
-  } catch (const Json::parse_error& error) {
-    throw FileError(path + ": is no record of a job: " + error.what());
-  }
-  if (!record.is_object() || record.value("record", Json()) != 1)
-    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
-  for (const char* key :
-       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
-    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
-  }
-  return record;
+  return recordIn(path, [](const std::string& text) { return Json::parse(text); });
 }
+
+Json readRecordSummary(const std::string& path) { return recordIn(path, summaryOf); }
 
 }  // namespace grinder

@@ -13,6 +13,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,12 +54,13 @@ class Criterion {
   void setRemark(std::string remark) { remark_ = std::move(remark); }
   void addToPlace(const std::string& text) { place_ += text; }
 
+  const std::string& name() const { return name_; }
   const std::string& place() const { return place_; }
+  std::string_view result() const;
   Json json() const;
 
  private:
   double distance(std::optional<double> value, std::optional<double> asked) const;
-  const char* result() const;
 
   std::string name_, unit_;
   std::optional<int> digits_;
@@ -85,7 +87,7 @@ void Criterion::add(std::optional<double> value, std::string place, std::optiona
   remark_ = value ? "" : "there is none";
 }
 
-const char* Criterion::result() const {
+std::string_view Criterion::result() const {
   if (!worst_) return "not measured";
   return *worst_ <= tolerance_.value_or(0) ? "passed" : "failed";
 }
@@ -103,7 +105,7 @@ Json Criterion::json() const {
           {"measured", orNull(measured_)},
           {"tolerance", orNull(tolerance_)},
           {"place", place_},
-          {"result", result()},
+          {"result", std::string(result())},
           {"remark", remark_}};
 }
 
@@ -302,7 +304,7 @@ Criterion lateCyclesOf(const Json& data, const Tolerances& tolerances) {
 }
 
 /// The lines of the verdict, in the order of the report.
-Json criteriaOf(const Json& data, const Tolerances& tolerances) {
+std::vector<Criterion> criteriaOf(const Json& data, const Tolerances& tolerances) {
   const Json& job = data.at("job").at("file");
   const Json& strokes = data.at("strokes");
   const Json none;
@@ -310,37 +312,34 @@ Json criteriaOf(const Json& data, const Tolerances& tolerances) {
   // for.
   const Json& recorded = isOwnRecord(data) ? none : find(data, "tool");
   const Json& ground = !recorded.is_null() && allTeethGround(recorded) ? recorded : none;
-  Json list = Json::array();
-  list.push_back(deviationOf(job, strokes).json());
   const Json& flutes = find(ground, "on_planned") == true ? none : ground;
-  for (const Criterion& criterion : ofFlutes(job, flutes, tolerances)) list.push_back(criterion.json());
-  for (const Criterion& criterion : ofReliefs(job, ground, tolerances)) list.push_back(criterion.json());
-  for (const Criterion& criterion :
-       {gougeOf(job, recorded), followingErrorOf(job, strokes, tolerances),
-        feedOf(job, strokes, find(find(data, "planned"), "feed_limits"), tolerances), lateCyclesOf(data, tolerances)}) {
-    list.push_back(criterion.json());
-  }
+  std::vector<Criterion> list = ofFlutes(job, flutes, tolerances);
+  list.insert(list.begin(), deviationOf(job, strokes));
+  for (Criterion& criterion : ofReliefs(job, ground, tolerances)) list.push_back(std::move(criterion));
+  list.push_back(gougeOf(job, recorded));
+  list.push_back(followingErrorOf(job, strokes, tolerances));
+  list.push_back(feedOf(job, strokes, find(find(data, "planned"), "feed_limits"), tolerances));
+  list.push_back(lateCyclesOf(data, tolerances));
   return list;
 }
 
 /// The names of the criteria that have a result, each with an end.
-std::vector<std::string> criteriaThat(const Json& criteria, const char* result, const char* end) {
+std::vector<std::string> criteriaThat(const std::vector<Criterion>& criteria, const char* result, const char* end) {
   std::vector<std::string> names;
-  for (const Json& criterion : criteria) {
-    if (criterion.at("result") == result) names.push_back(criterion.at("name").get<std::string>() + end);
+  for (const Criterion& criterion : criteria) {
+    if (criterion.result() == result) names.push_back(criterion.name() + end);
   }
   return names;
 }
 
-/// passed, failed, unfinished or incomplete; and why.
-std::pair<const char*, std::vector<std::string>> verdictOf(const Json& data) {
+Verdict verdictOf(const Json& data, const std::vector<Criterion>& criteria) {
   const Json& outcome = find(data, "outcome");
-  std::vector<std::string> failed = criteriaThat(data.at("criteria"), "failed", "");
+  std::vector<std::string> failed = criteriaThat(criteria, "failed", "");
   if (!outcome.is_null() && outcome != "done") {
     failed.insert(failed.begin(), "the job ended as " + outcome.get<std::string>());
   }
   if (!failed.empty()) return {"failed", failed};
-  std::vector<std::string> unknown = criteriaThat(data.at("criteria"), "not measured", ": not measured");
+  std::vector<std::string> unknown = criteriaThat(criteria, "not measured", ": not measured");
   if (outcome.is_null()) {
     unknown.insert(unknown.begin(), "the end of the job is not in the file");
     return {"unfinished", unknown};
@@ -350,6 +349,13 @@ std::pair<const char*, std::vector<std::string>> verdictOf(const Json& data) {
     unknown.insert(unknown.begin(), format("%lld setpoints are not in the file", lost.get<long long>()));
   }
   return {unknown.empty() ? "passed" : "incomplete", unknown};
+}
+
+/// Adds to a record that the grinder keeps what a verdict needs beside its keys.
+void completeRecord(Json& record) {
+  record["kind"] = "record";
+  // The times are in whole milliseconds.
+  record["duration_s"] = std::round(1000 * (timeOf(record.at("ended")) - timeOf(record.at("started")))) / 1000;
 }
 
 }  // namespace
@@ -385,17 +391,23 @@ Tolerances readTolerances(const std::string& path) {
 }
 
 void addVerdict(Json& data, const Tolerances& tolerances) {
-  data["criteria"] = criteriaOf(data, tolerances);
-  const auto [verdict, because] = verdictOf(data);
-  data["verdict"] = verdict;
-  data["verdict_because"] = because;
+  const std::vector<Criterion> criteria = criteriaOf(data, tolerances);
+  Json list = Json::array();
+  for (const Criterion& criterion : criteria) list.push_back(criterion.json());
+  const Verdict verdict = verdictOf(data, criteria);
+  data["criteria"] = list;
+  data["verdict"] = verdict.verdict;
+  data["verdict_because"] = verdict.because;
 }
 
 void judgeRecord(Json& record, const Tolerances& tolerances) {
-  record["kind"] = "record";
-  // The times are in whole milliseconds.
-  record["duration_s"] = std::round(1000 * (timeOf(record.at("ended")) - timeOf(record.at("started")))) / 1000;
+  completeRecord(record);
   addVerdict(record, tolerances);
+}
+
+Verdict verdictOnRecord(Json& record, const Tolerances& tolerances) {
+  completeRecord(record);
+  return verdictOf(record, criteriaOf(record, tolerances));
 }
 
 }  // namespace grinder

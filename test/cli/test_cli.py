@@ -162,9 +162,9 @@ class TestPlan(CommandLine):
         os.mkdir(self.path('history'))
         for make, name in ((os.mkfifo, '20261122T170413.000Z.json'), (os.mkdir, '20261122T170413.001Z.json')):
             make(self.path('history/' + name))
-        done = self.grind(0, 'history', '--folder', self.path('history'))
+        done = self.grind(0, 'history', '--from', self.path('history'))
         self.assertRegex(done.stderr, r'(.*\d\d[01]Z\.json: skipped: named like a record, but not a regular file\n){2}$')
-        self.assertIn('has no record', self.grind(2, 'report', '--last', '--folder', self.path('history'), '--json').stderr)
+        self.assertIn('has no record', self.grind(2, 'report', '--last', '--from', self.path('history'), '--json').stderr)
 
     def test_shell_without_the_package(self):
         done = subprocess.run([gc.program('grind'), 'plan', PAPER_JOB], stdout=subprocess.PIPE, stderr=subprocess.PIPE,

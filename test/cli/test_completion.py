@@ -93,7 +93,7 @@ class TestCompletion(unittest.TestCase):
         self.assertEqual(self.offered('grind', 'plan', 'a.yaml', '--csv', 'n'), {'notes.txt'})
         self.assertEqual(self.offered('grind', 'simulate', 'record.bag', '--job', ''), jobs)
         self.assertEqual(self.offered('grind', 'simulate', 'n'), {'notes.txt'})
-        self.assertEqual(self.offered('grind', 'history', '--folder', ''), {'jobs'})
+        self.assertEqual(self.offered('grind', 'history', '--from', ''), {'jobs'})
         self.assertEqual(self.offered('grind', 'history', ''), set())
 
     def test_choices_and_numbers(self):

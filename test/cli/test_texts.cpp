@@ -26,6 +26,24 @@ TEST(TimeText, IsToTheSecond) {
   EXPECT_EQ(timeText(time, false), "2026-11-23 18:04:13");
 }
 
+TEST(TimeOfDate, IsOfTheClocksHereOrOfUtc) {
+  setenv("TZ", "Europe/Berlin", 1);
+  tzset();
+  const double day = 20780 * 86400.0;  // 2026-11-23 in UTC, an hour later than here
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23Z", false), day);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23", false), day - 3600);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23", true), day - 3600 + 86400 - 0.001);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23T17:04", false), day - 3600 + 17 * 3600 + 4 * 60);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23T17:04Z", true), day + 17 * 3600 + 5 * 60 - 0.001);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23T17:04:13Z", true), day + 17 * 3600 + 4 * 60 + 13.999);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-11-23T17:04:13.123Z", true), day + 17 * 3600 + 4 * 60 + 13.123);
+  EXPECT_DOUBLE_EQ(timeOfDate("2026-07-01", false), (20780 - 145) * 86400.0 - 7200);  // summer time
+  for (const char* wrong :
+       {"", "Z", "yesterday", "2026-11", "2026-11-23T17", "2026-11-23 17:04", "2026-02-29", "2026-11-23T25:00"}) {
+    EXPECT_THROW(timeOfDate(wrong, false), std::invalid_argument) << wrong;
+  }
+}
+
 flute_grinder::JobProgress progress() {
   flute_grinder::JobProgress progress;
   progress.job_name = "mill";

@@ -15,7 +15,6 @@ import unittest
 
 import prometheus_client
 import rostest
-import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from flute_grinder import job
 from flute_grinder.msg import GrindActionFeedback, GrinderState, Reason
@@ -25,29 +24,9 @@ sys.path[:0] = [str(ROOT / 'test/node'), str(ROOT / 'src/exporter')]
 
 import exporter  # noqa: E402
 import grinder_client as gc  # noqa: E402
+from record_files import job_of, record_of  # noqa: E402
 
 NAME = '20261122T17%02d00.000Z.json'
-
-
-def wheel_of(process):
-    """A wheel as records have it."""
-    if 'file' not in process['wheel']:
-        return process['wheel']
-    with open(gc.package_file('jobs/' + process['wheel']['file'])) as text:
-        wheel = yaml.safe_load(text)
-    return dict({key: wheel[key] for key in wheel if key not in ('flange_mm', 'measured')}, wear_mm=0)
-
-
-def job_of(path, operation=None):
-    """A job file, or one of its operations, as records have it."""
-    with open(gc.package_file(path)) as text:
-        file = yaml.safe_load(text)
-    for process in file.get('operations', [file.get('process')]):
-        process['wheel'] = wheel_of(process)
-    if operation is not None:
-        file['process'] = file['operations'][operation]
-        file['operation'] = file['process'].get('relief', file['process']['kind'])
-    return file
 
 
 class Folder(unittest.TestCase):
@@ -70,15 +49,8 @@ class Folder(unittest.TestCase):
         """A record of a job that started at a minute."""
         file = file or job_of('test/jobs/paper.yaml')
         file['process']['wheel']['wear_mm'] = wear
-        stroke = {'tooth': 1, 'pass': 1, 'depth_mm': 1, 'started_s': 0, 'duration_s': 1, 'feed_min_mm_min': 600,
-                  'feed_max_mm_min': 600, 'feed_min_x_mm': 0, 'deviation_um': 0, 'deviation_x_mm': 0,
-                  'following_error': {'x_um': 0, 'y_um': 0, 'z_um': 0, 'a_mdeg': 0}}
-        record = {'record': 1, 'machine': {'period_ms': 1}, 'job': {'name': 'job', 'digest': '', 'file': file},
-                  'started': '2026-11-22T17:%02d:00.000Z' % minute, 'ended': '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds),
-                  'outcome': outcome, 'reason': '', 'first': {'tooth': 1, 'pass': 1}, 'planned': {'feed_limits': []},
-                  'setpoints': {'written': setpoints, 'lost': 0}, 'late_cycles': {'count': 0, 'longest_ms': 1},
-                  'strokes': [dict(stroke, complete=i < complete) for i in range(complete + broken_off)],
-                  'holds': [], 'overrides': []}
+        record = record_of(file, '2026-11-22T17:%02d:00.000Z' % minute, '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds), outcome,
+                           [True] * complete + [False] * broken_off, setpoints)
         with open(os.path.join(self.folder, NAME % minute), 'w') as text:
             json.dump(record, text)
 
@@ -160,7 +132,7 @@ class TestRecords(Folder):
 
     def test_have_the_tool_that_a_state_has(self):
         self.write(1, file=job_of('jobs/unequal_d12_t4.yaml'))
-        entry, = json.loads(gc.grind('history', '--folder', self.folder, '--json').stdout)
+        entry, = json.loads(gc.grind('history', '--from', self.folder, '--json').stdout)
         self.assertEqual(exporter.tool_text(job.goal(gc.package_file('jobs/unequal_d12_t4.yaml')).cutter), entry['tool'])
 
 

@@ -240,8 +240,8 @@ class TestCommand(Kept):
     def test_json(self):
         done = self.grind('--json')
         first, second = json.loads(done.stdout)
-        self.assertEqual(list(first), ['file', 'started', 'job', 'operation', 'tool', 'outcome', 'reason', 'strokes', 'passes',
-                                       'duration_s', 'holds', 'verdict', 'verdict_because'])
+        self.assertEqual(list(first), ['file', 'grinder', 'started', 'job', 'operation', 'tool', 'outcome', 'reason', 'strokes',
+                                       'passes', 'duration_s', 'holds', 'verdict', 'verdict_because'])
         self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))
         self.assertEqual([first[key] for key in ('started', 'job', 'outcome', 'reason', 'strokes', 'passes', 'holds')],
                          [self.first['started'], 'two.yaml', 'done', '', 4, 4, 0])
@@ -274,22 +274,22 @@ class TestCommand(Kept):
                 file.write(text)
         with open(os.path.join(folder, 'notes.json'), 'w') as file:
             file.write('not ours')
-        done = self.grind('--folder', folder)
+        done = self.grind('--from', folder)
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stdout, self.grind().stdout)
         lines = done.stderr.splitlines()
         for name in broken:
             self.assertTrue(any(os.path.join(folder, name) in line for line in lines), (name, lines))
         self.assertNotIn('notes', done.stderr)
-        done = self.grind('--folder', folder, '--json')
+        done = self.grind('--from', folder, '--json')
         self.assertEqual((done.returncode, len(json.loads(done.stdout))), (2, 2))
 
     def test_empty_folder(self):
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
-        done = self.grind('--folder', folder)
+        done = self.grind('--from', folder)
         self.assertEqual((done.returncode, done.stdout), (0, 'no records in %s\n' % folder))
-        self.assertEqual(json.loads(self.grind('--folder', folder, '--json').stdout), [])
+        self.assertEqual(json.loads(self.grind('--from', folder, '--json').stdout), [])
 
 
 if __name__ == '__main__':

@@ -3,6 +3,7 @@
 #include "flute_grinder/messages/json.h"
 
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -19,6 +20,11 @@ struct Tolerances {
 /// or unknown, or a value is no number from 0.
 Tolerances readTolerances(const std::string& path);
 
+struct Verdict {
+  std::string verdict;               ///< passed, failed, unfinished or incomplete
+  std::vector<std::string> because;  ///< which criteria failed, or what is not known
+};
+
 /// Whether a tool, as `grind simulate` measures it, has a stroke of each tooth: of a job that was continued it has not.
 bool allTeethGround(const Json& tool);
 
@@ -31,5 +37,8 @@ void addVerdict(Json& data, const Tolerances& tolerances);
 
 /// The same for a record that the grinder keeps of a job: adds "kind" and "duration_s", too.
 void judgeRecord(Json& record, const Tolerances& tolerances);
+
+/// The same without "criteria", "verdict" and "verdict_because", which take time. @param record or its summary.
+Verdict verdictOnRecord(Json& record, const Tolerances& tolerances);
 
 }  // namespace grinder

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Shows what `grind history --from` lists of the records of several grinders: one table of all, filtered, as JSON and as CSV; what
+cannot be read is named, and does not keep the rest from it."""
+
+import csv
+import json
+import os
+import pathlib
+import sys
+
+import rostest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+from grind_command import CommandLine  # noqa: E402
+from record_files import job_of, record_of  # noqa: E402
+
+
+class TestShop(CommandLine):
+    """Three grinders: `left` and `right` grind in turn, `old` has a broken record beside a good one."""
+
+    def setUp(self):
+        super().setUp()
+        self.started = {}
+        for grinder, hour, name, file, outcome in (
+                ('left/grinder', 8, 'mill, "short".yaml', 'test/jobs/paper.yaml', 'done'),
+                ('right/grinder', 9, 'four.yaml', 'jobs/unequal_d12_t4.yaml', 'canceled'),
+                ('left/grinder', 10, 'four.yaml', 'jobs/unequal_d12_t4.yaml', 'fault'),
+                ('old', 7, 'mill.yaml', 'test/jobs/paper.yaml', 'done')):
+            self.keep(grinder, hour, json.dumps(record_of(
+                job_of(file), '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T%02d:00:01.500Z' % hour, outcome, name=name)))
+        self.keep('old', 6, '{"record": 1, "machine": {')
+        self.folders = [self.path(folder) for folder in ('left/grinder', 'right/grinder/', 'old')]
+
+    def keep(self, grinder, hour, text):
+        os.makedirs(self.path(grinder), exist_ok=True)
+        self.write('%s/20261122T%02d0000.000Z.json' % (grinder, hour), text)
+
+    def hours(self, status, *arguments):
+        """Of the records that are listed."""
+        listed, said = self.json(status, 'history', '--from', *self.folders, *arguments)
+        return [int(entry['started'][11:13]) for entry in listed], said
+
+    def test_all_are_in_one_list_by_time_and_what_is_broken_is_named(self):
+        self.folders.append(self.path('none'))
+        hours, said = self.hours(2)
+        self.assertEqual(hours, [7, 8, 9, 10])
+        broken, missing = sorted(said.splitlines(), reverse=True)
+        self.assertIn(self.path('old/20261122T060000.000Z.json') + ': is no record of a job: it is cut off', broken)
+        self.assertIn(self.path('none') + ': cannot be read: No such file or directory', missing)
+
+    def test_table_says_whose_it_is(self):
+        lines = self.grind(2, 'history', '--from', *self.folders).stdout.splitlines()
+        self.assertRegex(lines[0], '^start +grinder +job +tool +outcome')
+        self.assertEqual([self.path(grinder) in line for line, grinder in
+                          zip(lines[1:], ('old', 'left/grinder', 'right/grinder', 'left/grinder'))], [True] * 4)
+        self.assertNotIn('grinder ', self.grind(0, 'history', '--from', self.folders[0]).stdout.splitlines()[0])
+
+    def test_filters(self):
+        for arguments, hours in ((['--tool', 'SHORT'], [8]), (['--tool', '4 teeth'], [9, 10]), (['--tool', 'drill'], []),
+                                 (['--verdict', 'failed'], [9, 10]), (['--verdict', 'passed'], []),
+                                 (['--since', '2026-11-22T08:00Z', '--until', '2026-11-22T09:00:00.000Z'], [8, 9]),
+                                 (['--since', '2026-11-22T08:00Z', '--until', '2026-11-22Z'], [8, 9, 10]),
+                                 (['--since', '2026-11-23Z'], []), (['--until', '2026-11-22Z', '--since', '2026-11-22T09Z'], None),
+                                 (['--grinder', 'left'], [8, 10]), (['--grinder', 'right', '--verdict', 'incomplete'], [])):
+            with self.subTest(arguments):
+                # The broken record is of 6 o'clock, in the folder of `old`.
+                good = arguments[0] in ('--since', '--grinder')
+                if hours is None:
+                    self.assertIn('2026-11-22T09Z; allowed: YYYY-MM-DD', self.grind(2, 'history', *arguments).stderr)
+                else:
+                    self.assertEqual(self.hours(0 if good else 2, *arguments)[0], hours)
+        self.assertIn('no such records in ', self.grind(0, 'history', '--from', *self.folders, '--since', '2027-01-01').stdout)
+
+    def test_what_cannot_match_is_refused(self):
+        for arguments, said in ((['--grinder', 'middle'], '--grinder middle: no folder of --from has it in its path; allowed: of '),
+                                (['--since', '2026-11-23', '--until', '2026-11-22'],
+                                 '--until 2026-11-22 is before --since 2026-11-23; allowed: the same or later')):
+            self.assertIn(said, self.grind(2, 'history', '--from', *self.folders, *arguments).stderr)
+
+    def test_csv_has_what_the_json_has(self):
+        listed, _ = self.json(2, 'history', '--from', *self.folders, '--csv', self.path('list.csv'))
+        with open(self.path('list.csv'), newline='') as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([list(row) for row in rows], [list(entry) for entry in listed])
+        texts = [{key: '; '.join(value) if isinstance(value, list) else str(value) for key, value in entry.items()}
+                 for entry in listed]
+        self.assertEqual([dict(row) for row in rows], texts)
+        self.assertEqual([row['grinder'] for row in rows],
+                         [self.path(folder) for folder in ('old', 'left/grinder', 'right/grinder', 'left/grinder')])
+        self.assertEqual((rows[1]['job'], rows[1]['duration_s']), ('mill, "short".yaml', '1.5'))
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'shop', '__main__')

@@ -1,0 +1,104 @@
+#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/record/record_file.h"
+#include "flute_grinder/record/verdict.h"
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <string>
+
+/// @file
+/// The summary of a record is judged as the record is.
+
+namespace grinder {
+namespace test_record_summary {
+
+const Tolerances kTolerances{0.5, 0.02, 50, 5, 1};
+
+/// Without strokes. The texts have what a scanner may stumble on.
+Json document() {
+  return Json::parse(R"({
+    "record": 1, "machine": {"name": "}]\\", "period_ms": 1, "max_velocity": {"x_mm_s": 1}},
+    "job": {"name": "a \"job\" {[,", "digest": "", "file": {
+      "cutter": {"end_diameter_mm": 10, "cone_angle_deg": 5, "flute_length_mm": 20, "rake_angle_deg": 8,
+                 "rake_tolerance_deg": 0.5, "chordal_rake_tolerance_deg": 4, "core_tolerance_mm": 0.25,
+                 "spiral_tolerance_deg": 0.25, "clearance_deg": 7, "clearance_tolerance_deg": 1, "land_mm": 1},
+      "process": {"feed_mm_min": 100, "wheel": {"wear_mm": 0}}, "operation": "secondary", "operations": [{}, {}],
+      "interpolation": {"tolerance_um": 2}}},
+    "started": "2026-11-22T17:04:13.123Z", "ended": "2026-11-22T17:04:23.123Z", "outcome": "done", "reason": "",
+    "planned": {"feed_limits": []}, "setpoints": {"written": 1000, "lost": 0},
+    "late_cycles": {"count": 0, "longest_ms": 1.25}, "strokes": [], "holds": [{"reason": "]"}, {}], "overrides": []})");
+}
+
+class RecordSummary : public ::testing::Test {
+ protected:
+  Json summaryOf(const std::string& text) {
+    const std::string path = folder_.path() / "20261122T170413.123Z.json";
+    std::ofstream(path) << text;
+    return readRecordSummary(path);
+  }
+
+  test_support::TempFolder folder_;
+};
+
+/// Around what is allowed, so that about half of the records fail; or null.
+Json figure(std::mt19937& engine, double asked, double tolerance) {
+  if (std::uniform_int_distribution<>(0, 39)(engine) == 0) return nullptr;
+  return asked + std::uniform_real_distribution<>(0, 1.02)(engine) * tolerance;
+}
+
+Json randomStroke(std::mt19937& engine) {
+  return {{"tooth", 1},
+          {"pass", 2},
+          {"feed_min_mm_min", figure(engine, 100, -5)},
+          {"feed_max_mm_min", figure(engine, 100, 5)},
+          {"deviation_um", figure(engine, 0, 2)},
+          {"following_error",
+           {{"x_um", figure(engine, 0, 50)}, {"y_um", figure(engine, 0, 50)}, {"a_mdeg", figure(engine, 0, 400)}}},
+          {"complete", std::uniform_int_distribution<>(0, 1)(engine) == 1}};
+}
+
+TEST_F(RecordSummary, HasTheVerdictOfTheRecord) {
+  std::mt19937 engine(1);
+  int failed = 0;
+  for (int i = 0; i < 1000; ++i) {
+    Json record = document();
+    for (int n = i % 6; n > 0; --n) record["strokes"].push_back(randomStroke(engine));
+    Json summary = summaryOf(record.dump(i % 2 == 0 ? -1 : 2));
+    judgeRecord(record, kTolerances);
+    const Verdict verdict = verdictOnRecord(summary, kTolerances);
+    ASSERT_EQ(verdict.verdict, record["verdict"]) << record;
+    ASSERT_EQ(Json(verdict.because), record["verdict_because"]) << record;
+    failed += record["verdict"] == "failed" ? 1 : 0;
+  }
+  EXPECT_GT(failed, 200);
+  EXPECT_LT(failed, 800);
+}
+
+TEST_F(RecordSummary, CountsStrokesAndHolds) {
+  Json record = document();
+  for (const bool complete : {true, false, true}) record["strokes"].push_back({{"complete", complete}});
+  const Json summary = summaryOf(record.dump());
+  EXPECT_EQ(summary["complete_strokes"], 2);
+  EXPECT_EQ(summary["holds"], 2);
+  EXPECT_EQ(summary["job"]["name"], record["job"]["name"]);
+}
+
+TEST_F(RecordSummary, OfATextThatIsCutOffIsNone) {
+  Json record = document();
+  std::mt19937 engine(1);
+  record["strokes"] = {randomStroke(engine)};
+  const std::string whole = record.dump();
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_THROW(summaryOf(whole.substr(0, size)), FileError) << whole.substr(0, size);
+  }
+  for (const std::string& more : {"}", "1", ","}) EXPECT_THROW(summaryOf(whole + more), FileError) << more;
+  for (const char* other : {"[]", "1", "{}", "{\"record\": 2}", "{1: 2}", "{\"a\" 1}", "]", "{\"record\": 1,}"}) {
+    EXPECT_THROW(summaryOf(other), FileError) << other;
+  }
+}
+
+}  // namespace test_record_summary
+}  // namespace grinder

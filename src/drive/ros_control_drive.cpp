@@ -30,8 +30,8 @@ constexpr std::chrono::milliseconds kPoll{1};
 constexpr double kSwitchTimeout = 2;    ///< for the answer of a service that switches [s]
 constexpr double kHomingTimeout = 1e5;  ///< none but the machine's own [s]
 constexpr double kFast = 0.7;           ///< a cycle shorter than that comes too soon [periods]
-constexpr int kMostUnused = 100;        ///< cycles between prepare() and the power
 constexpr int kMostFast = 100;          ///< of them in a row
+constexpr int kMostUnused = 100;        ///< cycles between prepare() and the power
 /// A limit that a command just reaches may round it by this [m], A [rad].
 constexpr double kRounding = 1e-9;
 
@@ -42,10 +42,8 @@ bool call(const std::string& name, const typename Service::Request& request, dou
           const std::function<bool()>& still_wanted) {
   std::optional<typename Service::Response> response;
   ServiceCall call(name, ros::service_traits::MD5Sum<Service>::value(), ros::serialization::serializeMessage(request),
-                   ros::WallDuration(timeout), [&](ros::SerializedMessage* answer) {
-                     // The first byte of an answer says whether there is one.
-                     response = responseFrom<Service>(answer);
-                   });
+                   ros::WallDuration(timeout),
+                   [&](ros::SerializedMessage* answer) { response = responseFrom<Service>(answer); });
   while (!call.finished() && still_wanted()) {
     std::this_thread::sleep_for(kPoll);
     call.abortIfOverdue();
@@ -199,12 +197,13 @@ DriveCapabilities RosControlDrive::capabilities() const {
 }
 
 void RosControlDrive::prepare() {
+  // A stop that came after it would undo it.
+  while (stop_->isBusy()) std::this_thread::sleep_for(kPoll);
+  prepared_ = false;
   const std::lock_guard<std::mutex> lock(prepare_mutex_);
   const bool ready = robot_hw_->prepareSwitch(controller_, none_);
   prepared_ = true;
-  if (!ready) {
-    throw std::runtime_error("the RobotHW refuses to switch to the grinder's commands");
-  }
+  if (!ready) throw std::runtime_error("the RobotHW refuses to switch to the grinder's commands");
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -214,12 +213,12 @@ void RosControlDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
   // First, because it must not depend on what the RobotHW may throw.
   readStatus(feedback.status);
   readFault(feedback.status);
-  read_blocks_ = false;
+  read_returned_ = false;
   robot_hw_->read(cycle.time, cycle.period);
-  read_blocks_ = true;
+  read_returned_ = true;
   // It may have hung, and powerOff() have been called meanwhile.
   feedback.status.enabled = feedback.status.enabled && !power_off_;
-  fast_ = cycle.period < cycle.nominal * kFast ? fast_ + 1 : 0;
+  if (fast_ <= kMostFast) fast_ = cycle.period < cycle.nominal * kFast ? fast_ + 1 : 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     feedback.position[i] = joints_[i].state.getPosition();
     feedback.velocity[i] = joints_[i].state.getVelocity();
@@ -263,7 +262,10 @@ void RosControlDrive::readFault(DriveStatus& status) {
 
 void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command) {
   if (!command.enable) power_off_ = false;
-  if (command.reset) changed_axis_ = kAxisCount;
+  if (command.reset) {
+    changed_axis_ = kAxisCount;
+    fast_ = 0;
+  }
   passOn(command);
   const DriveCommand last = std::exchange(sent_, command);
   used_ = used_ || command.enable;
@@ -276,6 +278,7 @@ void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command
 
 void RosControlDrive::prepareStop() {
   if (std::exchange(stopping_, stop_->isBusy()) && !stopping_) doSwitch(false);
+  if (!prepared_) unused_ = 0;
   if (sent_.enable || !prepared_ || stopping_) return;
   // The power follows the preparation at once, unless it was withdrawn meanwhile.
   if (!used_ && ++unused_ < kMostUnused) return;
@@ -322,7 +325,8 @@ double RosControlDrive::Joint::commanded() const {
 }
 
 ros::Duration RosControlDrive::wait(const ros::Duration& nominal) {
-  return read_is_clock_ && read_blocks_ ? sinceLastCycle(nominal) : Drive::wait(nominal);
+  const bool read_paces = read_is_clock_ && read_returned_ && fast_ <= kMostFast;
+  return read_paces ? sinceLastCycle(nominal) : Drive::wait(nominal);
 }
 
 bool RosControlDrive::powerOff() {

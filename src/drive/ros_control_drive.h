@@ -32,7 +32,7 @@ class RosControlDrive : public Drive {
   void prepare() override;
   void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
   void write(const DriveCycle& cycle, const DriveCommand& command) override;
-  /// By the monotonic clock, unless the RobotHW's read() is the clock: then at once.
+  /// By the monotonic clock, unless the RobotHW's read() is the clock, and blocks: then at once.
   ros::Duration wait(const ros::Duration& nominal) override;
   bool powerOff() override;
 
@@ -84,12 +84,12 @@ class RosControlDrive : public Drive {
   std::mutex prepare_mutex_;           ///< of what is never called in the control thread
   std::atomic<bool> prepared_{false};  ///< a switch to the grinder's commands, and no stop since
   std::optional<TriggerOutput> stop_;
-  bool used_ = false;         ///< the power was asked for since the last stop
-  int unused_ = 0;            ///< cycles since a preparation without that
-  bool stopping_ = false;     ///< a stop is being prepared
-  bool homing_seen_ = false;  ///< it has been reported
-  bool read_blocks_ = true;   ///< the last read() has returned
-  int fast_ = 0;              ///< cycles in a row that came too soon
+  bool used_ = false;          ///< the power was asked for since the last stop
+  int unused_ = 0;             ///< cycles since a preparation without that
+  bool stopping_ = false;      ///< a stop is being prepared
+  bool homing_seen_ = false;   ///< it has been reported
+  bool read_returned_ = true;  ///< the last read(), instead of throwing
+  int fast_ = 0;               ///< cycles in a row that came too soon; kept once they are too many, until a reset
   DriveCommand sent_;
   int changed_axis_ = kAxisCount;       ///< whose command the RobotHW has changed
   std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false

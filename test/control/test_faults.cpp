@@ -208,6 +208,16 @@ TEST(ControlLoopFault, OfADriveThatThrowsWithoutPowerRefusesThePower) {
   ASSERT_NO_FATAL_FAILURE(rig.enable());
 }
 
+TEST(ControlLoop, WritesNothingBeforeTheFirstReading) {
+  Rig<FakeDrive> rig;
+  rig.drive.on_read = [](FakeDrive&) { throw Thrown("no answer"); };
+  rig.run(3);
+  EXPECT_EQ(rig.drive.writes, 0) << "0 is no position";
+  rig.drive.on_read = nullptr;
+  rig.cycle();
+  EXPECT_EQ(rig.drive.writes, 1);
+}
+
 TEST(ControlLoop, WritesNothingBeforeAllPositionsHaveBeenFinite) {
   Rig<FakeDrive> rig;
   rig.drive.on_read = [](FakeDrive& d) { d.position[kZ] = kNan; };

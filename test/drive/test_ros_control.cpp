@@ -46,10 +46,12 @@ TEST(SignalInput, IsSafeUntilAMessageComesAndWhenNoneComesAnyMore) {
 }
 
 TEST(SignalInput, WithoutATimeoutALastMessageStays) {
-  SignalInput signal("/homed", false, 0);
-  EXPECT_FALSE(signal.at(kNow));
-  signal.receive(true, kNow);
-  EXPECT_TRUE(signal.at(kNow + std::chrono::hours(1000)));
+  for (const bool safe : {true, false}) {
+    SignalInput signal("/homed", safe, 0);
+    EXPECT_EQ(signal.at(kNow), safe);
+    signal.receive(!safe, kNow);
+    EXPECT_EQ(signal.at(kNow + std::chrono::hours(1000)), !safe);
+  }
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -578,6 +578,32 @@ def machine_file(path, **changes):
     return path
 
 
+def plugin_package(folder, of, library, plugin, base):
+    """Makes of a folder a ROS package with a plugin of the package `of`, and gives the environment in which it is found: the
+    class `plugin` of this build's `library` under the name tested/Plugin."""
+    with open(os.path.join(folder, 'package.xml'), 'w') as file:
+        file.write("""<package format="2">
+  <name>tested</name>
+  <version>0.1.0</version>
+  <description>A plugin of tests.</description>
+  <maintainer email="me@example.org">Me</maintainer>
+  <license>BSD-3-Clause</license>
+  <depend>%s</depend>
+  <export>
+    <%s plugin="${prefix}/plugins.xml"/>
+  </export>
+</package>
+""" % (of, of))
+    with open(os.path.join(folder, 'plugins.xml'), 'w') as file:
+        file.write("""<library path="lib/libflute_grinder_%s">
+  <class name="tested/Plugin" type="%s" base_class_type="%s">
+    <description>Of tests.</description>
+  </class>
+</library>
+""" % (library, plugin, base))
+    return {'ROS_PACKAGE_PATH': folder + ':' + os.environ['ROS_PACKAGE_PATH']}
+
+
 class NodeProcess:
     """A grinder's node with parameters of its own, and with files of its own unless the parameters name them."""
 

@@ -2,7 +2,6 @@
 """Shows what the node does with drive plugins from a package of their own: those of another version of the drive interface it
 refuses before it makes the drive, those that cannot do what the machine needs before they get power, and it waits for slow ones."""
 
-import os
 import re
 import shutil
 import signal
@@ -19,25 +18,6 @@ from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
 
-PACKAGE = """<package format="2">
-  <name>drives</name>
-  <version>0.1.0</version>
-  <description>Drives of tests.</description>
-  <maintainer email="me@example.org">Me</maintainer>
-  <license>BSD-3-Clause</license>
-  <depend>flute_grinder</depend>
-  <export>
-    <flute_grinder plugin="${prefix}/plugins.xml"/>
-  </export>
-</package>
-"""
-PLUGINS = """<library path="lib/libflute_grinder_%s">
-  <class name="drives/Drive" type="%s" base_class_type="grinder::Drive">
-    <description>A drive.</description>
-  </class>
-</library>
-"""
-
 
 class TestDrivePlugin(unittest.TestCase):
     started = 0
@@ -47,14 +27,11 @@ class TestDrivePlugin(unittest.TestCase):
         self.addCleanup(shutil.rmtree, self.folder)
 
     def start(self, library, plugin, **hardware):
-        for name, text in (('package.xml', PACKAGE), ('plugins.xml', PLUGINS % (library, plugin))):
-            with open(os.path.join(self.folder, name), 'w') as file:
-                file.write(text)
+        environment = gc.plugin_package(self.folder, 'flute_grinder', library, plugin, 'grinder::Drive')
         parameters = gc.machine()
-        parameters['hardware'] = dict(hardware, type='drives/Drive')
+        parameters['hardware'] = dict(hardware, type='tested/Plugin')
         TestDrivePlugin.started += 1
-        node = gc.NodeProcess('doubtful%d' % self.started, parameters, environment={
-            'ROS_PACKAGE_PATH': self.folder + ':' + os.environ['ROS_PACKAGE_PATH']})
+        node = gc.NodeProcess('doubtful%d' % self.started, parameters, environment=environment)
         self.addCleanup(node.close)
         return node
 
@@ -66,7 +43,7 @@ class TestDrivePlugin(unittest.TestCase):
 
     def test_other_version(self):
         text = self.refusal('drive_of_other_version', 'RefusedDrive')
-        pattern = (r'parameter /doubtful\d+/hardware/type = drives/Drive was built against version (\d+) of the drive interface; '
+        pattern = (r'parameter /doubtful\d+/hardware/type = tested/Plugin was built against version (\d+) of the drive interface; '
                    r'allowed: version (\d+)\. Build it again: \S+/libflute_grinder_drive_of_other_version\.so')
         self.assertRegex(text, pattern)
         built, allowed = re.search(pattern, text).groups()
@@ -75,7 +52,7 @@ class TestDrivePlugin(unittest.TestCase):
     def test_no_version(self):
         """Though the libraries that it is linked with, and the node itself, may have one."""
         self.assertRegex(self.refusal('drive_of_no_version', 'RefusedDrive'),
-                         r'parameter /doubtful\d+/hardware/type = drives/Drive states no version of the drive interface; '
+                         r'parameter /doubtful\d+/hardware/type = tested/Plugin states no version of the drive interface; '
                          r'allowed: version \d+\. Build it again: \S+/libflute_grinder_drive_of_no_version\.so')
 
     def awkward(self, how):
@@ -84,10 +61,10 @@ class TestDrivePlugin(unittest.TestCase):
     def test_period(self):
         """One that the drive cannot hold."""
         self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward='slow bus'),
-                         r'parameter /doubtful\d+/control_rate = 1000; allowed: up to 500, which the drive drives/Drive can hold')
+                         r'parameter /doubtful\d+/control_rate = 1000; allowed: up to 500, which the drive tested/Plugin can hold')
 
     def test_buffer(self):
-        self.assertIn('the drive drives/Drive buffers 5000 commands; allowed: up to 4095',
+        self.assertIn('the drive tested/Plugin buffers 5000 commands; allowed: up to 4095',
                       self.refusal('awkward_drive', 'AwkwardDrive', awkward='long buffer'))
 
     def test_callbacks_during_init(self):
@@ -108,7 +85,7 @@ class TestDrivePlugin(unittest.TestCase):
             go = rospy.Publisher('/%s/hardware/go' % node.name, Empty, queue_size=1)
             gc.poll(lambda: go.get_num_connections() > 0, 'init() to listen')
             self.assertEqual(node.end(with_signal), 0, node.output)
-            self.assertIn('ended by a signal while the drive drives/Drive was being initialised', node.output)
+            self.assertIn('ended by a signal while the drive tested/Plugin was being initialised', node.output)
             go.unregister()
             self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
 

@@ -28,6 +28,7 @@ class Recorder : public hi::RobotHW {
  public:
   bool init(ros::NodeHandle& root, ros::NodeHandle& nh) override {
     fails_ = nh.param<std::string>("fails", "");
+    blocks_ = nh.param("blocks", false);
     record_.reserve(kMost);
     const bool lacks = fails_ == "joint";
     const std::array<const char*, 4> names{"x_slide", "y_slide", "z_slide", lacks ? "other" : "work_head"};
@@ -66,6 +67,7 @@ class Recorder : public hi::RobotHW {
   }
 
   void read(const ros::Time&, const ros::Duration&) override {
+    if (blocks_) std::this_thread::sleep_for(std::chrono::milliseconds(1));  // a bus with a cycle of its own
     if (now_ == "read") throw std::runtime_error("E17: encoder");
     while (now_ == "hang") std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (written_ && on_) position_ = command_;
@@ -112,7 +114,7 @@ class Recorder : public hi::RobotHW {
   std::array<double, 4> position_{}, shown_{}, velocity_{}, effort_{}, command_{}, command_velocity_{};
   std::vector<Row> record_;
   std::atomic<bool> on_{false}, wrong_{false};
-  bool written_ = false;
+  bool written_ = false, blocks_ = false;
   std::atomic<int> switches_{0};
   mutable int cycles_ = 0;
   hi::JointStateInterface states_;

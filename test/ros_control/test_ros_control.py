@@ -24,24 +24,6 @@ except ImportError:
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), os.pardir, 'node'))
 import grinder_client as gc  # noqa: E402
 
-PACKAGE = """<package format="2">
-  <name>recorder</name>
-  <version>0.1.0</version>
-  <description>A RobotHW of tests.</description>
-  <maintainer email="me@example.org">Me</maintainer>
-  <license>BSD-3-Clause</license>
-  <depend>hardware_interface</depend>
-  <export>
-    <hardware_interface plugin="${prefix}/plugins.xml"/>
-  </export>
-</package>
-"""
-PLUGINS = """<library path="lib/libflute_grinder_recorder">
-  <class name="recorder/Recorder" type="Recorder" base_class_type="hardware_interface::RobotHW">
-    <description>Records its commands.</description>
-  </class>
-</library>
-"""
 JOINTS = {'axis_x': 'x_slide', 'axis_y': 'y_slide', 'axis_z': 'z_slide', 'axis_a': 'work_head'}
 
 
@@ -51,22 +33,20 @@ class TestRosControl(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
-        for name, text in (('package.xml', PACKAGE), ('plugins.xml', PLUGINS)):
-            with open(os.path.join(self.folder, name), 'w') as file:
-                file.write(text)
+        self.environment = gc.plugin_package(self.folder, 'hardware_interface', 'recorder', 'Recorder',
+                                             'hardware_interface::RobotHW')
         self.record = os.path.join(self.folder, 'record')
 
     def node_with(self, signals=(), commands=(), clock='monotonic', **robot_hw):
         parameters = gc.machine()
         parameters['hardware'] = {
             'type': 'flute_grinder/RosControlDrive', 'joints': JOINTS, 'clock': clock, 'signal_timeout': 0,
-            'robot_hw': dict(robot_hw, type='recorder/Recorder', record=self.record),
+            'robot_hw': dict(robot_hw, type='tested/Plugin', record=self.record),
             'signals': dict({'emergency_stop': 'never', 'homed': 'always', 'spindle_at_speed': 'always',
                              'coolant_on': 'always'}, **dict(signals)),
             'commands': dict({'power': 'none'}, **dict(commands))}
         TestRosControl.started += 1
-        self.node = gc.NodeProcess('recorded%d' % self.started, parameters, environment={
-            'ROS_PACKAGE_PATH': self.folder + ':' + os.environ['ROS_PACKAGE_PATH']})
+        self.node = gc.NodeProcess('recorded%d' % self.started, parameters, environment=self.environment)
         self.addCleanup(self.node.close)
         return self.node
 
@@ -133,7 +113,7 @@ class TestRosControl(unittest.TestCase):
     def test_what_does_not_start(self):
         for fails, why in (('joint', 'work_head'),
                            ('interface', 'the RobotHW offers no hardware_interface::PositionJointInterface'),
-                           ('init', 'robot_hw/type = recorder/Recorder: its init() has returned false'),
+                           ('init', 'robot_hw/type = tested/Plugin: its init() has returned false'),
                            ('conflict', 'the RobotHW finds its four joints in conflict with one another')):
             with self.subTest(fails):
                 node = self.node_with(fails=fails)
@@ -147,6 +127,17 @@ class TestRosControl(unittest.TestCase):
                 client = self.start(fails=fails)
                 self.assertIn(why, self.call('enable').message)
                 self.assertFalse(client.fresh_state().enabled)
+
+    def test_clock_of_the_bus(self):
+        """With read() as the clock, one that blocks paces the loop, and one that does not is found and paced."""
+        client = self.start(clock='read', blocks=True)
+        self.enable()
+        begin = client.fresh_state().header.stamp
+        # Longer than the average of the cycles is taken over.
+        client.wait_for(lambda: (client.states[-1].header.stamp - begin).to_sec() > 2.5, 'cycles')
+        self.assertEqual(client.states[-1].state, GrinderState.READY, client.states[-1].fault)
+        self.start(clock='read')
+        self.assertIn('read() returns sooner than control_rate allows', self.call('enable').message)
 
     def test_switch_that_takes_its_time(self):
         client = self.start(fails='late switch')
@@ -230,7 +221,7 @@ class TestRosControl(unittest.TestCase):
 
         def on_home(_):
             calls.append(('home', True))
-            return TriggerResponse(True, '')
+            return TriggerResponse(not refuse.is_set(), 'an axis stands on its switch')
 
         services = [switch('power'), switch('spindle'), rospy.Service('/cell/home', Trigger, on_home)]
         client = self.start(commands={name: {'service': '/cell/' + name} for name in ('power', 'spindle', 'home')})
@@ -248,6 +239,11 @@ class TestRosControl(unittest.TestCase):
         self.assertIn('the drive does not switch the coolant', self.call('coolant_on').message)
         self.assertTrue(self.call('disable').success)
         gc.poll(lambda: {('spindle', False), ('power', False)} <= set(calls[-2:]), 'the end of spindle and power')
+        gc.poll(lambda: self.call('enable').success, 'the power')
+        refuse.set()
+        self.call('home')
+        client.wait_state(GrinderState.FAULT)
+        self.assertIn('the homing service has failed', client.states[-1].fault)
         for service in services:
             service.shutdown()
 

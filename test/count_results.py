@@ -19,9 +19,8 @@ for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
     # catkin writes a file of its own for a test that left none.
     if not cases:
         failed.append('%s: no test case' % path.name)
-    # A sub-test that fails is in its suite's number alone.
     if counted and not any(case.find(kind) is not None for case in cases for kind in ('failure', 'error')):
-        failed.append('%s: %d of its sub-tests' % (path.name, counted))
+        failed.append('%s: %d that no test case shows' % (path.name, counted))
     for case in cases:
         skip = case.find('skipped')
         if skip is not None:
@@ -30,7 +29,8 @@ for path in sorted(pathlib.Path(sys.argv[1]).rglob('*.xml')):
         failures = case.findall('failure') + case.findall('error')
         passed += not failures
         for failure in failures[:1]:
-            said = (failure.text or failure.get('message') or '').strip().splitlines()[-5:]
+            said = (failure.text or failure.get('message') or '').strip().splitlines()
+            said = said[:6] + said[max(6, len(said) - 5):]  # the message, and where it was
             failed.append('\n  '.join(['%s: %s.%s' % (path.name, case.get('classname'), case.get('name')), *said]))
 for name in skipped:
     print('SKIPPED ' + name)

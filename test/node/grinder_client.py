@@ -22,6 +22,7 @@ import rosgraph
 import roslib.packages
 import rospkg
 import rospy
+import rosunit.xmlrunner
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
@@ -45,6 +46,15 @@ ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
 # Much longer than anything takes, even on a host that stalls.
 PATIENCE = 60
+
+
+def add_sub_test(result, _test, sub_test, error):
+    """rosunit counts a sub-test that fails, and would write nothing of it."""
+    if error:
+        result.addFailure(sub_test, (AssertionError, AssertionError('%s: %s' % (sub_test.id(), error[1])), error[2]))
+
+
+rosunit.xmlrunner._XMLTestResult.addSubTest = add_sub_test
 
 
 def goal_of(job, **fields):

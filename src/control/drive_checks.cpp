@@ -8,8 +8,9 @@ namespace grinder {
 namespace {
 
 constexpr double kAveraged = 1;  ///< over which the time of a cycle is averaged [s]
-/// The longest time of a cycle on average [periods]. The next fraction of the rate, a half, is well beyond it.
-constexpr double kLongest = 1.6;
+/// The longest time of a cycle on average, of the time from which the axes are slowed down. By default that is two
+/// periods, and the next fraction of the rate, a half, is well beyond it.
+constexpr double kLongest = 0.8;
 
 /// @param value,limit what is beyond which limit, at which axis.
 LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis = 0) noexcept {
@@ -27,11 +28,16 @@ void DriveChecks::observe(const CycleSample& sample) noexcept {
   // A fault that comes after the present one has cleared is a new one.
   was_reset_ = was_reset_ && sample.drive.fault;
   time_ += sample.period;
-  bounded_time_ += std::min(sample.period, 2 * config_.machine.period);  // a stall of the computer passes
+  bounded_time_ +=
+      std::min(sample.period, config_.late_slow_down * config_.machine.period);  // a stall of the computer passes
   ++cycles_;
   if (bounded_time_ < kAveraged) return;
-  slow_ = bounded_time_ > cycles_ * kLongest * config_.machine.period ? time_ / cycles_ : 0;
+  slow_ = bounded_time_ > cycles_ * longestOnAverage() ? time_ / cycles_ : 0;
   time_ = bounded_time_ = cycles_ = 0;
+}
+
+double DriveChecks::longestOnAverage() const noexcept {
+  return kLongest * config_.late_slow_down * config_.machine.period;
 }
 
 Refusal DriveChecks::powerRefusal(const CycleSample& sample) const noexcept {
@@ -58,7 +64,7 @@ std::optional<LoopFault> DriveChecks::findFault(const CycleSample& sample, bool 
     return fault;
   }
   if (!sample.drive.enabled) return faultOf(FaultKind::kPowerLost);
-  if (slow_ > 0) return faultOf(FaultKind::kSlow, slow_, kLongest * config_.machine.period);
+  if (slow_ > 0) return faultOf(FaultKind::kSlow, slow_, longestOnAverage());
   return findFeedbackFault(sample);
 }
 

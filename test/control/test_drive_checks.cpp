@@ -78,6 +78,14 @@ TEST_F(DriveChecksTest, ALoopAtHalfItsRateIsAFaultWhateverTheAxesDo) {
   sample_.drive.enabled = true;
   pass(checks_, sample_, 1);
   EXPECT_EQ(found(), FaultKind::kNone);
+  LoopConfig patient = config_;
+  patient.late_slow_down = 4;
+  DriveChecks checks(patient);
+  checks.powerOn(sample_.drive);
+  pass(checks, sample_, 3);
+  EXPECT_FALSE(checks.findFault(sample_, true));
+  pass(checks, sample_, 3.5);
+  EXPECT_TRUE(checks.findFault(sample_, true));
 }
 
 TEST_F(DriveChecksTest, ALoopThatIsLateNowAndThenIsNotSlow) {

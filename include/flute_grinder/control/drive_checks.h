@@ -34,6 +34,7 @@ class DriveChecks {
   std::optional<LoopFault> findFault(const CycleSample& sample, bool moving_unbuffered) const noexcept;
 
  private:
+  double longestOnAverage() const noexcept;  ///< [s]
   bool feedbackIsFresh(const CycleSample& sample) const noexcept;
   std::optional<LoopFault> findFeedbackFault(const CycleSample& sample) const noexcept;
 
@@ -42,7 +43,7 @@ class DriveChecks {
   bool was_reset_ = false;  ///< since the drive reported its present fault
   // Of the cycles in the present second.
   double time_ = 0;          ///< [s]
-  double bounded_time_ = 0;  ///< in which a late cycle counts as two periods [s]
+  double bounded_time_ = 0;  ///< in which a cycle counts at most as the one from which the axes are slowed down [s]
   double cycles_ = 0;
   double slow_ = 0;  ///< average time of a cycle in the second before, if that was too long; 0 if not [s]
 };

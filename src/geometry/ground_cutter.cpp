@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace grinder {
 
@@ -100,17 +102,9 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
   for (const WheelSweep& sweep : flute) {
     const auto one = sweep.arc(x, r);
     if (!one) continue;
-    if (!all) {
-      all = one;
-      continue;
-    }
-    // Whether an end is complete is for the stroke to say that goes farther there; of two that go as far, for either.
-    const auto complete = [&](double farther) {
-      if (std::abs(farther) * r <= kSameArcEnd) return all->complete || one->complete;
-      return farther > 0 ? one->complete : all->complete;
-    };
-    all = Arc{std::min(all->low, one->low), std::max(all->high, one->high),
-              complete(all->low - one->low) && complete(one->high - all->high)};
+    if (!all) all = one;
+    if (one->low < all->low) all->low = one->low, all->low_x = one->low_x;
+    if (one->high > all->high) all->high = one->high, all->high_x = one->high_x;
   }
   return all;
 }
@@ -183,10 +177,30 @@ bool GroundCutter::landsAreAlike(std::size_t a, std::size_t b) const {
 bool GroundCutter::isComplete(const Flute& flute, double x, double core_radius) const {
   const double depth = cutter_.radius(x) - core_radius;
   for (int i = 1; i <= kRingsOfDepth; ++i) {
-    const auto ring = arc(flute, x, core_radius + depth * i / kRingsOfDepth);
-    if (!ring || !ring->complete) return false;
+    if (!arcIsComplete(flute, x, core_radius + depth * i / kRingsOfDepth)) return false;
   }
   return true;
+}
+
+bool GroundCutter::arcIsComplete(const Flute& flute, double x, double r) const {
+  std::vector<std::pair<const WheelSweep*, Arc>> reached;
+  double min = std::numeric_limits<double>::infinity(), max = -min;
+  for (const WheelSweep& sweep : flute) {
+    const auto arc = sweep.arc(x, r);
+    if (!arc) continue;
+    reached.emplace_back(&sweep, *arc);
+    min = std::min(min, arc->low);
+    max = std::max(max, arc->high);
+  }
+  // Whether an end is complete is for the stroke to say that goes farthest there; of those that go as far, for any.
+  const auto complete = [&](double Arc::*angle, double Arc::*axis_x, double farthest, bool high) {
+    return std::any_of(reached.begin(), reached.end(), [&](const auto& one) {
+      const auto& [sweep, arc] = one;
+      return std::abs(arc.*angle - farthest) * r <= kSameArcEnd &&
+             sweep->isComplete(x, r, arc.*angle, arc.*axis_x, high);
+    });
+  };
+  return complete(&Arc::low, &Arc::low_x, min, false) && complete(&Arc::high, &Arc::high_x, max, true);
 }
 
 ToothSection GroundCutter::measure(const Flute& flute, double x) const {

@@ -110,12 +110,13 @@ SetupTrial::Reach SetupTrial::reach(const WheelSweep& sweep, double x) const {
   Reach reach{x, x, true};
   for (int i = 0; i <= kRingsOfReach; ++i) {
     const double part = i == 0 ? kFloor : static_cast<double>(i) / kRingsOfReach;
+    const double ring = core + part * (r - core);
     for (const bool high : {false, true}) {
-      const auto wall = sweep.wall(x, core + part * (r - core), high);
+      const auto wall = sweep.wall(x, ring, high);
       if (!wall) return {x, x, false};
       reach.from = std::min(reach.from, wall->axis_x);
       reach.to = std::max(reach.to, wall->axis_x);
-      reach.complete = reach.complete && wall->complete;
+      reach.complete = reach.complete && sweep.isComplete(x, ring, wall->angle, wall->axis_x, high);
     }
   }
   return reach;

@@ -269,18 +269,19 @@ WheelSweep::Window WheelSweep::openReach(double x, double r) const noexcept {
   return {apex_ < 0 ? std::max(all.from, nearest) : all.from, apex_ > 0 ? std::min(all.to, nearest) : all.to};
 }
 
-bool WheelSweep::isComplete(double x, double r, const Extremum& end, bool high) const {
+bool WheelSweep::isComplete(double x, double r, double angle, double axis_x, bool high) const {
+  const double end = high ? angle : -angle;
   const Window all = openReach(x, r);
   const auto farther = [&](double from, double to) {
-    return from < to && extremum(x, r, {from, to}, high).value > end.value + kSameAngle;
+    return from < to && extremum(x, r, {from, to}, high).value > end + kSameAngle;
   };
   const double from = std::min(stroke_.from, stroke_.to), to = std::max(stroke_.from, stroke_.to);
   const bool before = farther(all.from, std::min(all.to, from)), after = farther(std::max(all.from, to), all.to);
   if (apex_ < 0 ? after : before) return false;
-  const bool at_end = std::abs(end.axis_x - (apex_ < 0 ? from : to)) < kCorner;
+  const bool at_end = std::abs(axis_x - (apex_ < 0 ? from : to)) < kCorner;
   if (!before && !after && !at_end) return true;
   const auto spoiled = spoiling(x, r, high);
-  return spoiled ? std::abs(end.value - spoiled->end.value) < kSameEnd : !before && !after;
+  return spoiled ? std::abs(end - spoiled->end.value) < kSameEnd : !before && !after;
 }
 
 std::optional<WheelSweep::Spoiling> WheelSweep::spoiling(double x, double r, bool high) const {
@@ -401,7 +402,7 @@ std::optional<Arc> WheelSweep::arc(double x, double r) const {
   const Extremum high = anyExtremum(x, r, *w, true);
   if (high.value == kNotReached) return std::nullopt;
   const Extremum low = anyExtremum(x, r, *w, false);
-  return Arc{-low.value, high.value, isComplete(x, r, low, false) && isComplete(x, r, high, true)};
+  return Arc{-low.value, high.value, low.axis_x, high.axis_x};
 }
 
 WheelSweep::Normal WheelSweep::normal(const Pose& p, double r, double theta, double w) const noexcept {
@@ -443,7 +444,7 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   const double part = difference == 0 ? 0.5 : std::clamp(-below.along_motion / difference, 0.0, 1.0);
   const double radial = below.radial + part * (above.radial - below.radial);
   const double tangential = below.tangential + part * (above.tangential - below.tangential);
-  return Wall{angle, -radial / (r * tangential), w, end.axis_x, isComplete(x, r, end, high)};
+  return Wall{angle, -radial / (r * tangential), w, end.axis_x};
 }
 
 double WheelSweep::minRadius(double x, double blank_radius) const {

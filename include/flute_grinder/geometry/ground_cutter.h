@@ -131,6 +131,7 @@ class GroundCutter {
   double areaRemoved(double x, double core_radius) const;
   ToothSection measure(const Flute& flute, double x) const;
   bool isComplete(const Flute& flute, double x, double core_radius) const;
+  bool arcIsComplete(const Flute& flute, double x, double r) const;
   bool isComplete(double x) const;
   std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
   bool landsAreAlike(std::size_t a, std::size_t b) const;

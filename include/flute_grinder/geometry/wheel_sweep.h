@@ -37,17 +37,16 @@ struct GrindStroke {
 
 /// A part of a circle about the cutter's axis.
 struct Arc {
-  double low = 0, high = 0;  ///< ends, counted as A is [rad]
-  bool complete = true;      ///< a longer stroke would not make it any longer
+  double low = 0, high = 0;      ///< ends, counted as A is [rad]
+  double low_x = 0, high_x = 0;  ///< where on the stroke they are formed [m]
 };
 
 /// A wall of a groove where it meets a circle about the cutter's axis.
 struct Wall {
-  double angle = 0;      ///< counted as A is [rad]
-  double slope = 0;      ///< d angle / d radius [rad/m]
-  double w = 0;          ///< the place on the wheel's profile that forms it [m]
-  double axis_x = 0;     ///< where on the stroke it is formed [m]
-  bool complete = true;  ///< a longer stroke would not move it
+  double angle = 0;   ///< counted as A is [rad]
+  double slope = 0;   ///< d angle / d radius [rad/m]
+  double w = 0;       ///< the place on the wheel's profile that forms it [m]
+  double axis_x = 0;  ///< where on the stroke it is formed [m]
 };
 
 /// What a wheel removes from a cutter's blank in one stroke: for each circle about the cutter's axis, the arc that the
@@ -70,6 +69,12 @@ class WheelSweep {
   /// arc.
   /// @param high the end at the larger angle, else the other one.
   std::optional<Wall> wall(double x, double r, bool high) const;
+
+  /// Whether no longer stroke, short of one that spoils it, would take an end of an arc farther.
+  /// @param x,r of the circle [m].
+  /// @param angle,axis_x the end, or the wall there, and where on the stroke it is formed [rad, m].
+  /// @param high whether it is the end at the larger angle.
+  bool isComplete(double x, double r, double angle, double axis_x, bool high) const;
 
   /// The minimum radius that is removed from a blank at `x`, to a nanometre; infinite if nothing is, 0 if the wheel
   /// cuts through the axis [m].
@@ -126,8 +131,6 @@ class WheelSweep {
     Extremum end;
   };
   std::optional<Spoiling> spoiling(double x, double r, bool high) const;
-  /// Whether no longer stroke, short of one that spoils it, would take an end of an arc farther.
-  bool isComplete(double x, double r, const Extremum& end, bool high) const;
   Extremum anyExtremum(double x, double r, const Window& window, bool high) const;
   /// A normal of the wheel, its length free: along the cutter's radius, in the sense of rising angles, and along the
   /// wheel's motion against the cutter.

@@ -36,6 +36,7 @@ NOT_RUN = {
     'scripts/bench --json after.json --before before.json': 'measures for minutes',
     'scripts/bench_commands': 'measures for minutes',
     'scripts/bench_hal': 'measures for minutes',
+    'scripts/bench_peers': 'measures for minutes',
     'scripts/bench_rviz': 'measures for minutes',
     'scripts/bench_stop': 'measures for minutes',
     'kill -STOP': 'lacks the number of a process; test/hal/test_hal_stops.py does it',

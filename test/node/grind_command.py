@@ -72,14 +72,15 @@ class CommandLine(unittest.TestCase):
 class Command:
     """The command line in a process of its own, with what it says on stderr as it comes: by a pipe, or as a terminal."""
 
-    def __init__(self, *arguments, columns=None, term='xterm', before=default_signals, environment=()):
+    def __init__(self, *arguments, columns=None, term='xterm', before=default_signals, environment=(), prefix=()):
+        """`prefix`: of a command that runs it, as `ip netns exec NAME`."""
         self.text = ''
         if columns is None:
             self.reader, writer = os.pipe()
         else:
             self.reader, writer = pty.openpty()
             self.resize(columns)
-        self.process = subprocess.Popen([gc.program('grind'), *arguments], stdout=subprocess.PIPE, stderr=writer,
+        self.process = subprocess.Popen([*prefix, gc.program('grind'), *arguments], stdout=subprocess.PIPE, stderr=writer,
                                         env=dict(os.environ, TERM=term, **dict(environment)), preexec_fn=before)
         os.close(writer)
         self.thread = threading.Thread(target=self.read)

@@ -1,30 +1,34 @@
 #!/usr/bin/env python3
-"""What LinuxCNC makes of the strokes that flute_grinder grinds, on this computer. `scripts/bench_peers` runs it."""
+"""The strokes that flute_grinder grinds, and what LinuxCNC makes of the same ones, on this computer. `scripts/bench_peers` runs it."""
 
+import argparse
+import csv
+import io
 import math
 import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as xml
 
+import flute_grinder.job
 import numpy
 import yaml
 
+import bench_all
 import figures
 import linuxcnc_peer
 import peers
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+PAGE = ROOT / 'docs/comparison.md'
 CUTTERS = {name: peers.Cutter(diameter, *map(math.radians, angles)) for name, diameter, angles in (
     ("the paper's", 0.01, (5, 30, 8)), ('cylinder', 0.01, (0, 30, 8)), ('steep cone', 0.002, (15, 45, 8)))}
 FEEDS = (60, 600)  # along the edge [mm/min]
 MODES = ('G64 P0.001', 'G61')
-HEADER = ('cutter', 'feed mm/min', 'mode', 'spacing mm', 'A at points rad', 'between rad', 'feed least', 'most',
-          'acceleration of limit, 1 cycle', '2 cycles', 'jerk of limit, 1 cycle', '2 cycles', 'bytes', 'to motion ms',
-          '% of a core', 'MB')
+HEADER = ['cutter', 'feed mm/min', 'by', 'spacing mm', 'A at points rad', 'between rad', 'feed reached mm/min',
+          'acceleration / limit', 'jerk / limit', 'bytes', 'to motion ms', '% of a core', 'MB']
 
 
 def limits():
@@ -36,9 +40,49 @@ def limits():
             [more[name]['max_acceleration'], more[name]['max_jerk']] for name in names]
 
 
-def measure(cutters, feeds):
-    """Yields the table's rows."""
-    of_axes = numpy.array(limits())
+def row(name, feed, by, spacing, found, size, more=(None, None, None)):
+    """Of the table. @param spacing of the goal's points [m]. @param found by peers.judge(). @param size of the goal [bytes]."""
+    least, most = (figures.number(6e4 * value) for value in found['feed'])
+    used = (' and '.join(map(figures.number, found[what])) for what in ('acceleration', 'jerk'))
+    return [name, str(feed), by, figures.number(spacing and 1e3 * spacing), figures.number(found['at_points']),
+            figures.number(found['between']), '%s to %s' % (least, most), *used, str(size), *map(figures.number, more)]
+
+
+def job_file(folder, cutter, feed):
+    """A job with a flute of this law, 1 mm beyond either end. Whatever tool it grinds is good enough."""
+    job = yaml.safe_load((ROOT / 'test/jobs/paper.yaml').read_text())
+    diameter = 1e3 * cutter.diameter
+    job['cutter'].update({key + '_deg': math.degrees(angle) for key, angle in (
+        ('cone_angle', cutter.cone), ('spiral_angle', cutter.spiral), ('rake_angle', cutter.rake))},
+        end_diameter_mm=diameter, shank_diameter_mm=2e3 * cutter.radius(peers.LENGTH), core_diameter_mm=0.7 * diameter,
+        core_diameter_end_mm=0.7 * diameter, core_tolerance_mm=100, rake_tolerance_deg=90, chordal_rake_tolerance_deg=90,
+        spiral_tolerance_deg=90)
+    job['process'].update(feed_mm_min=feed, depth_mm=0.15 * diameter, infeed_mm=0.15 * diameter, overtravel_mm=[1, 1],
+                          incomplete_ok=True)
+    path = pathlib.Path(folder) / 'job.yaml'
+    path.write_text(yaml.safe_dump(job))
+    return path
+
+
+def measure_own(cutters, feeds, of_axes):
+    """Yields the table's rows of flute_grinder: of the plan, whose setpoints the node streams to the bit."""
+    for name, cutter in cutters.items():
+        for feed in feeds:
+            with tempfile.TemporaryDirectory() as folder:
+                job, setpoints = job_file(folder, cutter, feed), pathlib.Path(folder) / 'setpoints.csv'
+                subprocess.run([bench_all.gc.program('grind'), 'plan', job, '--csv', setpoints], check=True, stdout=subprocess.DEVNULL)
+                with open(setpoints) as file:
+                    stroke = [[float(p[key]) for key in ('x_mm', 'y_mm', 'z_mm', 'a_rad')]
+                              for p in csv.DictReader(file) if p['move'] == 'stroke']
+                goal = io.BytesIO()
+                flute_grinder.job.goal(str(job)).serialize(goal)
+            rows = numpy.array(stroke) * (1e-3, 1e-3, 1e-3, 1)
+            yield row(name, feed, 'flute_grinder', None, peers.judge(cutter, rows, of_axes[:, 3], of_axes[:, 4]),
+                      len(goal.getvalue()))
+
+
+def measure_linuxcnc(cutters, feeds, of_axes):
+    """Yields the table's rows of LinuxCNC."""
     cases = [(name, feed, mode, cutters[name].points(spacing)) for name in cutters for feed in feeds
              for spacing in sorted({cutters[name].spacing(), 1e-5}, reverse=True) for mode in MODES]
     programs = [peers.g_code(cutters[name], points, feed / 6e4, mode) for name, feed, mode, points in cases]
@@ -46,20 +90,34 @@ def measure(cutters, feeds):
         runs = linuxcnc_peer.run(pathlib.Path(folder), programs, of_axes[:, :4].tolist())
         for (name, feed, mode, points), program, run in zip(cases, programs, runs):
             found = peers.judge(cutters[name], numpy.array(run['rows']), of_axes[:, 3], of_axes[:, 4], points)
-            values = [1e3 * points[1], found['at_points'], found['between'], *(6e4 * v for v in found['feed']),
-                      *found['acceleration'], *found['jerk']]
-            yield [name, str(feed), mode, *map(figures.number, values), str(len(program)),
-                   *map(figures.number, (1e3 * run['motion'], 100 * run['processor'], run['memory'] / 1e6))]
+            yield row(name, feed, 'LinuxCNC, ' + mode, points[1], found, len(program),
+                      (1e3 * run['motion'], 100 * run['processor'], run['memory'] / 1e6))
+
+
+def origin(load):
+    """Where the table is from, in a line."""
+    version = subprocess.run(['dpkg-query', '-W', 'linuxcnc-uspace'], check=True, stdout=subprocess.PIPE,
+                             universal_newlines=True).stdout.split()[1]
+    run = bench_all.origin()
+    return 'Commit %s of %s, linuxcnc-uspace %s, %s, %d cores, %s, load %.2f at the start.' % (
+        run['commit'], run['date'], version, run['cpu'], run['cores'], run['kernel'], load)
 
 
 def main():
-    version = subprocess.run(['dpkg-query', '-W', 'linuxcnc-uspace'], check=True, stdout=subprocess.PIPE,
-                             universal_newlines=True).stdout.split()[1]
-    print('linuxcnc-uspace %s, %s, %d cores, load %.2f' % (version, platform.release(), os.cpu_count(), os.getloadavg()[0]))
+    parser = argparse.ArgumentParser(prog='scripts/bench_peers', description=__doc__)
+    parser.add_argument('--docs', action='store_true', help='write the table into docs/comparison.md')
+    arguments = parser.parse_args()
+    head, of_axes = origin(os.getloadavg()[0]), numpy.array(limits())
     try:
-        print(figures.aligned([HEADER, *measure(CUTTERS, FEEDS)]))
-    except RuntimeError as error:
+        found = [*measure_own(CUTTERS, FEEDS, of_axes), *measure_linuxcnc(CUTTERS, FEEDS, of_axes)]
+    except (RuntimeError, subprocess.CalledProcessError) as error:
         sys.exit(str(error))
+    table = [HEADER] + [found_row for name in CUTTERS for feed in FEEDS
+                        for found_row in found if found_row[:2] == [name, str(feed)]]
+    if arguments.docs:
+        lines = figures.markdown(table, ['---', '---:', '---'] + ['---:'] * 10)
+        PAGE.write_text(figures.with_lines(PAGE.read_text(), 'scripts/bench_peers', [head, '', *lines]))
+    print(head + '\n\n' + figures.aligned(table))
 
 
 if __name__ == '__main__':

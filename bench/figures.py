@@ -12,8 +12,7 @@ import statistics
 
 FACTORS = {'s': 1, 'ms': 1e3, 'us': 1e6, 'ns': 1e9}
 MACHINE = ('cpu', 'cores', 'kernel', 'realtime')
-BEGIN = '<!-- begin: scripts/bench -->'
-END = '<!-- end: scripts/bench -->'
+MARKS = ('<!-- begin: %s -->', '<!-- end: %s -->')
 
 
 def percentile(samples, fraction):
@@ -119,12 +118,23 @@ def text(run, before=None):
     return '\n'.join(lines) + '\n\n' + aligned(rows_of_both(before, run))
 
 
-def with_table(page, run):
-    """A page of the documentation with a run's table between the marks. @raise ValueError without the marks."""
-    head, begin, rest = page.partition(BEGIN)
-    _, end, tail = rest.partition(END)
+def with_lines(page, program, lines):
+    """A page of the documentation with what a program has measured between its marks. @raise ValueError without the marks."""
+    first, last = (mark % program for mark in MARKS)
+    head, begin, rest = page.partition(first)
+    _, end, tail = rest.partition(last)
     if not begin or not end:
-        raise ValueError('a page without the lines %s and %s' % (BEGIN, END))
-    first, *others = rows(run)
-    lines = ['| %s |' % ' | '.join(row) for row in [first, ['---'] * 2 + ['---:'] * 3 + ['---', '---:']] + others]
-    return head + '\n'.join([begin, 'Commit ' + origin(run) + '.', ''] + lines + [end]) + tail
+        raise ValueError('a page without the lines %s and %s' % (first, last))
+    return head + '\n'.join([begin, *lines, end]) + tail
+
+
+def markdown(table, aligns):
+    """Lines of a table, whose first row is its head. @param aligns of the columns, as '---' or '---:'."""
+    first, *others = table
+    return ['| %s |' % ' | '.join(row) for row in [first, aligns, *others]]
+
+
+def with_table(page, run):
+    """A page of the documentation with a run's table."""
+    table = markdown(rows(run), ['---'] * 2 + ['---:'] * 3 + ['---', '---:'])
+    return with_lines(page, 'scripts/bench', ['Commit ' + origin(run) + '.', '', *table])

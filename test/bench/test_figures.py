@@ -11,6 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'bench'))
 import figures  # noqa: E402
 
+BEGIN, END = (mark % 'scripts/bench' for mark in figures.MARKS)
+
 RUN = {
     'commit': 'abc1234', 'date': '2020-01-02 03:04 UTC', 'cpu': 'Some CPU', 'cores': 4, 'kernel': '6.1', 'realtime': True,
     'figures': {
@@ -107,22 +109,22 @@ class FiguresTest(unittest.TestCase):
         self.assertIn('not the same realtime: False, then True', figures.text(RUN, other))
 
     def test_page_gets_the_table_between_its_marks(self):
-        page = 'above\n\n%s\nold\n%s\n\nbelow\n' % (figures.BEGIN, figures.END)
+        page = 'above\n\n%s\nold\n%s\n\nbelow\n' % (BEGIN, END)
         written = figures.with_table(page, RUN)
-        self.assertTrue(written.startswith('above\n\n' + figures.BEGIN + '\n'))
-        self.assertTrue(written.endswith('\n' + figures.END + '\n\nbelow\n'))
+        self.assertTrue(written.startswith('above\n\n' + BEGIN + '\n'))
+        self.assertTrue(written.endswith('\n' + END + '\n\nbelow\n'))
         self.assertNotIn('old', written)
         self.assertIn('\n| goal to motion | ms | 2.00 | 3.25 | 100 | wake-up | 40.0 |\n', written)
         self.assertEqual(figures.with_table(written, RUN), written)
 
     def test_page_without_marks_is_refused(self):
-        for page in '', figures.BEGIN, figures.END + figures.BEGIN:
+        for page in '', BEGIN, END + BEGIN:
             with self.assertRaises(ValueError):
                 figures.with_table(page, RUN)
 
     def test_documentation_has_a_table_of_all_columns(self):
         page = (ROOT / 'docs/performance.md').read_text()
-        table = page.partition(figures.BEGIN)[2].partition(figures.END)[0]
+        table = page.partition(BEGIN)[2].partition(END)[0]
         heads = [line for line in table.splitlines() if line.startswith('|')]
         self.assertEqual(heads[0], '| %s |' % ' | '.join(next(figures.rows(RUN))))
         self.assertGreater(len(heads), 3)

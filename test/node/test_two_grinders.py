@@ -181,13 +181,13 @@ class TestFaultOfOne(unittest.TestCase):
 
 
 class TestEndOfOne(unittest.TestCase):
-    """With a launch of its own, in a namespace above."""
+    """With a launch of its own, in a namespace above: again that of the test's file."""
 
     def setUp(self):
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)
-        launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'two_grinders.launch', '__ns:=shop',
-                                   'journal:=%s/' % folder], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        launch = subprocess.Popen(['roslaunch', '--wait', gc.package_file('test/node/two_grinders.test'), '__ns:=shop'],
+                                  env=dict(os.environ, TMPDIR=folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(launch.wait, gc.PATIENCE)
         self.addCleanup(launch.send_signal, signal.SIGINT)
 

@@ -107,8 +107,9 @@ def main():
     parser = argparse.ArgumentParser(prog='scripts/bench_peers', description=__doc__)
     parser.add_argument('--docs', action='store_true', help='write the table into docs/comparison.md')
     arguments = parser.parse_args()
-    head, of_axes = origin(os.getloadavg()[0]), numpy.array(limits())
+    of_axes = numpy.array(limits())
     try:
+        head = origin(os.getloadavg()[0])
         found = [*measure_own(CUTTERS, FEEDS, of_axes), *measure_linuxcnc(CUTTERS, FEEDS, of_axes)]
     except (RuntimeError, subprocess.CalledProcessError) as error:
         sys.exit(str(error))

@@ -10,6 +10,8 @@ import subprocess
 import sys
 import time
 
+import bench_rest
+
 AXES = 'XYZA'
 PATIENCE = 600  # [s]
 PROCESSES = ('rtapi_app', 'milltask', 'io', 'linuxcncsvr')
@@ -192,5 +194,4 @@ def main():
 
 
 if __name__ == '__main__':
-    import bench_rest
     main()

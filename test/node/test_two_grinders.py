@@ -181,7 +181,7 @@ class TestFaultOfOne(unittest.TestCase):
 
 
 class TestEndOfOne(unittest.TestCase):
-    """With a launch of its own, in a namespace above: again that of the test's file."""
+    """With the same launch once more, in a namespace above."""
 
     def setUp(self):
         folder = tempfile.mkdtemp()

@@ -7,7 +7,6 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
@@ -50,17 +49,6 @@ struct Entry {
   std::vector<std::string> because;
 };
 
-/// The passes of a job from a first one on, whose tooth and pass count from 1 here.
-std::size_t passesFrom(const ValidJob& job, const Json& first) {
-  const std::vector<JobPass>& passes = job.passes();
-  const auto is_first = [&](const JobPass& p) {
-    return p.place.tooth + 1 == first.at("tooth") && p.place.pass + 1 == first.at("pass");
-  };
-  const auto begin = std::find_if(passes.begin(), passes.end(), is_first);
-  if (begin == passes.end()) throw std::runtime_error("first: no pass of the job");
-  return static_cast<std::size_t>(passes.end() - begin);
-}
-
 /// Of the job in a record's summary.
 std::string operationOf(const Json& job) {
   if (!job.contains("operations")) return "";
@@ -80,12 +68,6 @@ std::string toolOf(const Json& cutter) {
   geometry.rake_angle = angle("rake_angle_deg");
   return toolText(geometry,
                   cutter.contains("teeth") ? cutter["teeth"].get<std::size_t>() : cutter.at("tooth_angles_deg").size());
-}
-
-/// The strokes that a job was to grind. Those of one that is done, and of which nothing is lost, are its passes.
-std::size_t passesIn(const std::string& path, const Json& summary) {
-  if (summary.at("outcome") == "done" && summary.at("setpoints").at("lost") == 0) return summary["complete_strokes"];
-  return passesFrom(ValidJob(jobOf(readRecord(path).at("job").at("file"))), summary.at("first"));
 }
 
 /// Which records are listed.
@@ -140,8 +122,8 @@ std::optional<Entry> readEntry(const std::string& path, const std::string& grind
   entry.duration = record["duration_s"];
   entry.verdict = std::move(verdict.verdict);
   entry.because = std::move(verdict.because);
+  entry.passes = record["passes"];
   if (!filter.takesVerdict(entry)) return std::nullopt;
-  entry.passes = passesIn(path, record);
   return entry;
 }
 

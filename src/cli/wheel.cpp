@@ -69,6 +69,7 @@ void printWheel(const WheelFile& wheel) {
   line("corner radii", millimetres(p.wheel_corner_radius_lower) + " mm lower, " +
                            millimetres(p.wheel_corner_radius_upper) + " mm upper");
   if (wheel.flange) line("flange", millimetres(*wheel.flange) + " mm from its face to the upper face");
+  line("dressed", wheel.dressed.empty() ? "not known when" : wheel.dressed);
   line("measured", !wheel.measured ? "never" : wheel.date + (wheel.by.empty() ? "" : " by " + wheel.by));
 }
 
@@ -89,6 +90,7 @@ Json toJson(const WheelFile& wheel) {
           {"corner_radius_mm", {mm(p.wheel_corner_radius_lower), mm(p.wheel_corner_radius_upper)}},
           {"points_mm", points.empty() ? Json(nullptr) : points},
           {"flange_mm", wheel.flange ? Json(mm(*wheel.flange)) : Json(nullptr)},
+          {"dressed", wheel.dressed.empty() ? Json(nullptr) : Json(wheel.dressed)},
           {"measured", wheel.measured ? Json{{"date", wheel.date}, {"by", wheel.by}} : Json(nullptr)}};
 }
 
@@ -104,8 +106,11 @@ bool isPlausible(const char* option, double measured, double before, bool force)
 
 /// Writes what a wheel has become into its file, if the file may say so.
 /// @param old the file's text, from which `before` was read.
-int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width) {
-  std::vector<JobEdit> edits{{"measured.date", now()}, {"measured.diameter_mm", millimetres(diameter)}};
+int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width,
+           bool dressed) {
+  const std::string date = now();
+  std::vector<JobEdit> edits{{"measured.date", date}, {"measured.diameter_mm", millimetres(diameter)}};
+  if (dressed) edits.insert(edits.begin(), {"dressed", date});
   const bool same_width = std::abs(width - before.process.wheel_width) <= kRounding;
   if (!same_width) edits.push_back({"measured.width_mm", millimetres(width)});
   edits.push_back({"measured.by", whoami()});
@@ -143,7 +148,7 @@ int measureWheel(const WheelOptions& options) {
   const double width = options.width_mm ? *options.width_mm * kMillimetre : wheel.process.wheel_width;
   if (!isPlausible("--diameter", diameter, wheel.diameter(), options.force)) return 1;
   if (!isPlausible("--width", width, wheel.process.wheel_width, options.force)) return 1;
-  return update(options.file, text, wheel, diameter, width);
+  return update(options.file, text, wheel, diameter, width, false);
 }
 
 int dressWheel(const WheelOptions& options) {
@@ -155,7 +160,7 @@ int dressWheel(const WheelOptions& options) {
     std::fprintf(stderr, "nothing is dressed; allowed: --radial or --face more than 0 mm, or both\n");
     return 2;
   }
-  return update(options.file, text, wheel, wheel.diameter() - 2 * radial, wheel.process.wheel_width - face);
+  return update(options.file, text, wheel, wheel.diameter() - 2 * radial, wheel.process.wheel_width - face, true);
 }
 
 }  // namespace grinder

@@ -122,7 +122,7 @@ class Records:
         self.folder = pathlib.Path(folder)
         self.file = self.folder / 'exporter.json'
         self.sums = {'jobs': {'done': 0, 'canceled': 0, 'fault': 0}, 'verdicts': {'passed': 0, 'incomplete': 0, 'failed': 0},
-                     'tools': 0, 'strokes': 0, 'setpoints': 0, 'seconds': 0, 'wheel_wear': None}
+                     'tools': 0, 'strokes': 0, 'setpoints': 0, 'seconds': 0, 'wheels': {}}
         self.counted = set()
         try:
             kept = json.loads(self.file.read_text())
@@ -169,7 +169,14 @@ class Records:
         sums['strokes'] += entry['strokes']
         sums['setpoints'] += record['setpoints']['written']
         sums['seconds'] += entry['duration_s']
-        sums['wheel_wear'] = file['process']['wheel']['wear_mm'] / 1e3
+        self.add_wheel(record['wheel'], file['process']['wheel']['wear_mm'] / 1e3, entry['outcome'] == 'done')
+
+    def add_wheel(self, wheel, wear, done):
+        wheels, name, dressed = self.sums['wheels'], wheel['name'], wheel['dressed']
+        if wheels.get(name, {}).get('dressed') != dressed:
+            wheels[name] = {'dressed': dressed, 'tools': 0}
+        wheels[name]['tools'] += done
+        wheels[name]['wear'] = wear
 
     def save(self):
         new = self.file.with_suffix('.new')
@@ -287,8 +294,11 @@ class Grinder:
         yield counter('strokes', 'Strokes ground to their end', sums['strokes'])
         yield counter('setpoints', 'Setpoints of jobs, written to the drive', sums['setpoints'])
         yield counter('job_duration_seconds', 'Duration of the jobs, holds included', sums['seconds'])
-        if sums['wheel_wear'] is not None:
-            yield gauge('wheel_wear_meters', 'Wear of the radius with which the last job began', sums['wheel_wear'])
+        wheels = sums['wheels']
+        yield gauge('wheel_wear_meters', 'Wear of the radius with which the last job began',
+                    {name: wheel['wear'] for name, wheel in wheels.items()}, 'wheel')
+        yield gauge('wheel_tools_since_dressing', 'Tools ground to their end since the wheel was dressed, or first used',
+                    {name: wheel['tools'] for name, wheel in wheels.items()}, 'wheel')
         if folder.is_dir():
             disk = os.statvfs(str(folder))
             yield gauge('records_free_bytes', 'Free on the disk of the records', disk.f_bavail * disk.f_frsize)

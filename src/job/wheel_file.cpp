@@ -19,6 +19,7 @@ constexpr const char* kDate = "measured.date";
 constexpr const char* kDiameter = "measured.diameter_mm";
 constexpr const char* kWidth = "measured.width_mm";
 constexpr const char* kBy = "measured.by";
+constexpr const char* kDressed = "dressed";
 
 /// The key of a job's number in a wheel file; empty if it is none of the wheel's, or the wear, which follows.
 std::string wheelKey(const JobField& field) {
@@ -87,6 +88,12 @@ void takeMeasuredDiameter(FlatFile& file, GrindProcess& process) {
   process.wheel_wear = wearOf(process.wheel_diameter, measured);
 }
 
+void takeDate(FlatFile& file, const std::string& key, std::string& date) {
+  const std::string forms = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
+  if (!file.take(key, forms, date) || hasForm(date, "0000-00-00") || hasForm(date, "0000-00-00T00:00:00Z")) return;
+  file.fail(file.line(key), key + " = " + date + "; allowed: " + forms);
+}
+
 /// @param process gets the wear and the width.
 void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
   for (const char* key : {kDate, kDiameter, kWidth, kBy}) wheel.measured = wheel.measured || file.mentions(key);
@@ -94,11 +101,7 @@ void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
     for (const char* key : {kDate, kDiameter, kWidth, kBy}) file.know(key);
     return;
   }
-  const std::string forms = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
-  if (file.take(kDate, forms, wheel.date) && !hasForm(wheel.date, "0000-00-00") &&
-      !hasForm(wheel.date, "0000-00-00T00:00:00Z")) {
-    file.fail(file.line(kDate), std::string(kDate) + " = " + wheel.date + "; allowed: " + forms);
-  }
+  takeDate(file, kDate, wheel.date);
   takeMeasuredDiameter(file, process);
   double width = 0;
   const JobField field = fieldOf("process.wheel_width");
@@ -160,6 +163,11 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
   wheel.new_width = job.process.wheel_width;
   GrindJob now = job;
   takeMeasurement(file, wheel, now.process);
+  if (file.has(kDressed)) {
+    takeDate(file, kDressed, wheel.dressed);
+  } else {
+    file.know(kDressed);
+  }
   file.refuseTheRest();
   file.throwErrors();
   check(file, job, false);

@@ -4,7 +4,6 @@
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
@@ -92,54 +91,6 @@ Json operationOf(const GrindJob& job) {
   return process;
 }
 
-/// @throw std::invalid_argument naming what is no name of a value.
-template <typename Enum>
-Enum namedIn(const Json& file, const std::string& key) {
-  const std::string name = file.value(pointerTo(key), std::string(toString(Enum{})));
-  const auto value = valueOf<Enum>(name);
-  if (!value) throw std::invalid_argument(key + " = " + name + "; allowed: " + namesOf<Enum>());
-  return *value;
-}
-
-template <typename Choice>
-void takeChoice(const Json& file, const std::string& key, Choice& choice) {
-  if constexpr (std::is_enum_v<Choice>)
-    choice = namedIn<Choice>(file, key);
-  else
-    choice = file.value(pointerTo(key), choice);
-}
-
-std::vector<double> radians(const Json& degrees) {
-  std::vector<double> angles;
-  for (const Json& angle : degrees) angles.push_back(angle.get<double>() * shopScale(Unit::kRadian));
-  return angles;
-}
-
-void takeTeeth(const Json& cutter, GrindJob& job) {
-  job.tooth_angles = cutter.contains("teeth") ? evenAngles(cutter["teeth"].get<std::size_t>())
-                                              : radians(cutter.at("tooth_angles_deg"));
-  if (!cutter.contains("spiral_angles_deg")) return;
-  job.spiral_angles = radians(cutter["spiral_angles_deg"]);
-  job.cutter.spiral_angle = job.spiral_angles.at(0);
-}
-
-/// The job of one operation, with the rest of the file but the other ones.
-GrindJob singleOf(const Json& file) {
-  GrindJob job;
-  visitJobFields([&](const JobField& field, auto of) {
-    of(job) = file.value(pointerTo(field.file_key), 0.0) * shopScale(field.unit);
-  });
-  visitJobChoices([&](const std::string& path, int, auto of) {
-    if (path != "process.kind") takeChoice(file, choiceKey(path), of(job));
-  });
-  job.process.kind = namedIn<OperationKind>(file, "process.relief");
-  takeTeeth(file.at("cutter"), job);
-  for (const Json& point : file.at("process").at("wheel").value("points_mm", Json::array())) {
-    job.wheel_points.push_back({point.at(0).get<double>() * kMillimetre, point.at(1).get<double>() * kMillimetre});
-  }
-  return job;
-}
-
 }  // namespace
 
 Json toJson(const Axes& value, const std::string& per_time) {
@@ -169,18 +120,6 @@ Json toJson(const GrindJob& job) {
     file["operations"].push_back(operationOf(job.ofOperation(i)));
   }
   return file;
-}
-
-GrindJob jobOf(const Json& file) {
-  GrindJob job = singleOf(file);
-  if (!file.contains("operations")) return job;
-  Json alone = file;
-  for (const Json& operation : file["operations"]) {
-    alone["process"] = operation;
-    const GrindJob single = singleOf(alone);
-    job.operations.push_back({single.process, single.wheel_points});
-  }
-  return job.ofOperation(static_cast<int>(namedIn<OperationKind>(file, "operation")));
 }
 
 std::string text(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }

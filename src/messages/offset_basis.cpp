@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/plan/job_digest.h"
 
@@ -32,9 +33,16 @@ To convertedBasis(const From& from) {
 }  // namespace
 
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation) {
-  flute_grinder::GrindGoal goal = goalFromJob(readJobFile(path, {}, operation));
+  return goalFromFile(path, readJobFile(path, {}, operation));
+}
+
+flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job) {
+  flute_grinder::GrindGoal goal = goalFromJob(job);
   goal.job_name = nameOf(path);
-  goal.wheel_name = nameOf(wheelFileOf(path, goal.operation));
+  const std::string wheel = wheelFileOf(path, job.operation);
+  if (wheel.empty()) return goal;
+  goal.wheel_name = nameOf(wheel);
+  goal.wheel_dressed = readWheelFile(wheel).dressed;
   return goal;
 }
 

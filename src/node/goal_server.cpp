@@ -124,11 +124,11 @@ void GoalServer::onGoal(GoalHandle handle) {
                   "a goal is running; allowed: wait for its end, or cancel it");
   }
   const auto goal = handle.getGoal();
-  if (!isPlainName(goal->job_name)) {
-    return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("job_name", goal->job_name));
-  }
-  if (!isPlainName(goal->wheel_name)) {
-    return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal("wheel_name", goal->wheel_name));
+  for (const auto& [key, name] : {std::pair("job_name", &goal->job_name), std::pair("wheel_name", &goal->wheel_name),
+                                  std::pair("wheel_dressed", &goal->wheel_dressed)}) {
+    if (!isPlainName(*name)) {
+      return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal(key, *name));
+    }
   }
   try {
     const ValidJob job(jobFromGoal(*goal));
@@ -249,7 +249,8 @@ void GoalServer::startJob() {
   tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number);
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, goal_->plan,
-      std::make_shared<JobRecord>(plan, asked.job_name, goal_->offsets, asked.ignore_offset_check != 0));
+      std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
+                                  asked.ignore_offset_check != 0));
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
     posted = loop_.startJob(goal_->stream.get(), false);

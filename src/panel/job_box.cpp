@@ -227,7 +227,7 @@ void JobBox::read() {
       return discardPlan();
     }
     job_ = std::make_shared<const GrindJob>(readJobFile(file, {}, operation_->chosen()));
-    wheel_ = QFileInfo(QString::fromStdString(wheelFileOf(file, job_->operation))).fileName().toStdString();
+    goal_ = goalFromFile(file, *job_);
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -263,17 +263,10 @@ void JobBox::clickContinue(bool checked) {
   Q_EMIT fileChosen();
 }
 
-flute_grinder::GrindGoal JobBox::goal() const {
-  flute_grinder::GrindGoal goal = goalFromJob(*job_);
-  goal.job_name = QFileInfo(file_).fileName().toStdString();
-  goal.wheel_name = wheel_;
-  return goal;
-}
-
 std::optional<flute_grinder::GrindGoal> JobBox::goalNow() {
   if (!job_) return std::nullopt;
   if (continue_->isChecked()) return where_left_;
-  return goal();
+  return goal_;
 }
 
 std::optional<flute_grinder::GrindGoal> JobBox::beginPlan() {
@@ -334,7 +327,7 @@ void JobBox::askForOffsets(bool discard) {
 /// Those that do not fit the chosen job.
 std::vector<OffsetMismatch> JobBox::offsetMismatches() const {
   if (!job_ || !offsets_) return {};
-  return mismatches(*offsets_, goal());
+  return mismatches(*offsets_, goal_);
 }
 
 /// A job that is continued needs those with which it began, which the grinder knows.
@@ -434,7 +427,7 @@ void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& s
   if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {
-    flute_grinder::GrindGoal left = goal();
+    flute_grinder::GrindGoal left = goal_;
     if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
   if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();

@@ -105,7 +105,6 @@ class JobBox : public QWidget {
   void showZeroPoints();
   bool asksWithReason() const;
   bool discardsSomething() const;
-  flute_grinder::GrindGoal goal() const;
   std::optional<flute_grinder::GrindGoal> goalNow();
   std::optional<flute_grinder::GrindGoal> beginPlan();
   void refreshContinue(const std::optional<flute_grinder::GrinderState>& state);
@@ -118,6 +117,7 @@ class JobBox : public QWidget {
   QString file_;
   std::string grinder_;  ///< name of its node
   std::shared_ptr<const GrindJob> job_;
+  flute_grinder::GrindGoal goal_;                       ///< of that job, from its start
   std::optional<flute_grinder::GrindGoal> planned_;     ///< without violations
   std::optional<flute_grinder::GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
   flute_grinder::JobProgress progress_;                 ///< as last received from the grinder
@@ -129,7 +129,6 @@ class JobBox : public QWidget {
   std::string sought_;                                 ///< the job and the chosen file for which that was sought
   Swivel swivel_;                                      ///< as last received from the grinder
   std::optional<WorkOffsets> offsets_;                 ///< as last received from the grinder
-  std::string wheel_;                                  ///< name of the file's wheel file; empty if it has none
   bool discard_ = false;                               ///< the unfinished job, by the start that waits for an answer
   bool ignore_offset_check_ = false;                   ///< said for that start
   QLabel* name_;

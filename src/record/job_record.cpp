@@ -28,11 +28,11 @@ Json plannedJson(const PathStatistics& planned) {
           {"feed_limits", toJson(planned.feed_limits)}};
 }
 
-JobRecord::JobRecord(const PlannedJob& plan, std::string name, const WorkOffsets& offsets, bool said_right)
+JobRecord::JobRecord(const PlannedJob& plan, JobNames names, const WorkOffsets& offsets, bool said_right)
     : program_(plan.program),
       planned_(plan.statistics),
       digest_(plan.digest),
-      name_(std::move(name)),
+      names_(std::move(names)),
       offsets_(offsets),
       offsets_said_right_(said_right),
       pass_(plan.program->run().first),
@@ -62,7 +62,7 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleSample& sample)
 
 Json JobRecord::jobJson() const {
   const GrindJob& job = *program_->job();
-  return {{"name", name_}, {"digest", digest_}, {"file", grinder::toJson(job)}};
+  return {{"name", names_.job}, {"digest", digest_}, {"file", grinder::toJson(job)}};
 }
 
 Json JobRecord::zeroPointsJson() const {
@@ -86,6 +86,9 @@ Json JobRecord::strokesJson() const {
 Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) const {
   const std::uint64_t written = std::max(conclusion_.setpoints_written, setpoints_ + lost_);
   const ToothPass& first = program_->run().first;
+  const std::vector<Move>& moves = program_->moves();
+  const auto passes =
+      std::count_if(moves.begin(), moves.end(), [](const Move& move) { return move.kind == MoveKind::kStroke; });
   Json record{{"record", 1},
               {"grinder", grinder},
               {"machine", toJson(machine)},
@@ -94,7 +97,9 @@ Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) con
               {"ended", utcText(ended_)},
               {"outcome", conclusion_.outcome},
               {"reason", conclusion_.reason},
+              {"wheel", {{"name", names_.wheel}, {"dressed", names_.wheel_dressed}}},
               {"first", {{"tooth", first.tooth + 1}, {"pass", first.pass + 1}}},
+              {"passes", passes},
               {"work_offsets", grinder::toJson(program_->run().offset, "")},
               {"zero_points", zeroPointsJson()},
               {"planned", plannedJson(planned_)},

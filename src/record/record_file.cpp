@@ -41,8 +41,8 @@ Json recordIn(const std::string& path, Json (*parse)(const std::string&)) {
   }
   if (!record.is_object() || record.value("record", Json()) != 1)
     throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
-  for (const char* key :
-       {"machine", "job", "started", "ended", "outcome", "setpoints", "late_cycles", "strokes", "holds", "overrides"}) {
+  for (const char* key : {"machine", "job", "wheel", "passes", "started", "ended", "outcome", "setpoints",
+                          "late_cycles", "strokes", "holds", "overrides"}) {
     if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
   }
   return record;

@@ -59,7 +59,7 @@ class TestShow(WheelTest):
         reported, _ = self.json(0, 'wheel', 'show', WORN)
         self.assertEqual(reported, {'profile': 'straight', 'diameter_mm': 124.76, 'set_diameter_mm': 125, 'wear_mm': 0.12,
                                 'width_mm': 2, 'new_width_mm': 2, 'angle_deg': None, 'side': None,
-                                'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5,
+                                'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5, 'dressed': None,
                                 'measured': {'date': '2026-11-20', 'by': 'tool room'}})
         reported, _ = self.json(0, 'wheel', 'show', ANGLED)
         self.assertAlmostEqual(reported.pop('angle_deg'), 20, delta=1e-12)
@@ -80,6 +80,7 @@ class TestMeasure(WheelTest):
         self.assertIn('set X and Z anew', printed)
         measured = self.wheel(path)['measured']
         self.assertEqual((measured['diameter_mm'], measured['width_mm']), (124.7, 1.95))
+        self.assertNotIn('dressed', self.wheel(path))
         self.check_stamp(measured)
 
     def test_all_else_stays(self):
@@ -124,6 +125,7 @@ class TestDress(WheelTest):
         self.grind(0, 'wheel', 'dress', path, '--radial', '0.02', '--face', '0.1')
         measured = self.wheel(path)['measured']
         self.assertEqual((measured['diameter_mm'], measured['width_mm']), (124.72, 1.9))
+        self.assertEqual(self.wheel(path)['dressed'], measured['date'])
         self.check_stamp(measured)
         self.grind(0, 'wheel', 'dress', path, '--radial', '0.02')
         measured = self.wheel(path)['measured']

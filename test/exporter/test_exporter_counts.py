@@ -45,12 +45,12 @@ class Folder(unittest.TestCase):
     def value(self, name, **labels):
         return self.registry.get_sample_value('flute_grinder_' + name, labels)
 
-    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None):
+    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None, **wheel):
         """A record of a job that started at a minute."""
         file = file or job_of('test/jobs/paper.yaml')
         file['process']['wheel']['wear_mm'] = wear
         record = record_of(file, '2026-11-22T17:%02d:00.000Z' % minute, '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds), outcome,
-                           [True] * complete + [False] * broken_off, setpoints)
+                           [True] * complete + [False] * broken_off, setpoints, **wheel)
         with open(os.path.join(self.folder, NAME % minute), 'w') as text:
             json.dump(record, text)
 
@@ -78,7 +78,7 @@ class TestRecords(Folder):
         # A job that was broken off has failed; a record says nothing of the ground tool, so that none has passed.
         self.assertGreaterEqual(self.value('verdicts_total', verdict='failed'), 2)
         self.assertEqual(self.value('verdicts_total', verdict='passed'), 0)
-        self.assertEqual(self.value('wheel_wear_meters'), 0.5e-3)
+        self.assertEqual(self.value('wheel_wear_meters', wheel='wheel.yaml'), 0.5e-3)
 
     def test_still_count_when_they_are_removed(self):
         self.write_three()
@@ -129,6 +129,14 @@ class TestRecords(Folder):
             self.assertEqual((self.value('jobs_total', outcome='done'), self.value('tools_total')), (operation + 1, tools))
         self.write(5, 'canceled', file=job_of(reamer, 2))
         self.assertEqual(self.value('tools_total'), 1)
+
+    def test_tools_of_a_wheel_count_since_it_was_dressed(self):
+        for minute, (outcome, wheel, dressed, tools) in enumerate((
+                ('done', 'a.yaml', '', 1), ('done', 'a.yaml', '', 2), ('done', 'b.yaml', '2026-11-20', 1),
+                ('canceled', 'a.yaml', '', 2), ('done', 'a.yaml', '2026-11-22', 1), ('done', 'b.yaml', '2026-11-20', 2))):
+            self.write(minute, outcome, wheel=wheel, dressed=dressed)
+            self.start()  # kept over restarts
+            self.assertEqual(self.value('wheel_tools_since_dressing', wheel=wheel), tools)
 
     def test_have_the_tool_that_a_state_has(self):
         self.write(1, file=job_of('jobs/unequal_d12_t4.yaml'))

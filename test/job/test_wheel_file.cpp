@@ -283,12 +283,14 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mistake{"UnknownMeasure", "  by:", "  from:",
                 "12: measured.from is not a key of a wheel file; allowed: measured.date, measured.diameter_mm, "
-                "measured.width_mm, measured.by"},
+                "measured.width_mm, measured.by, dressed"},
         Mistake{
             "Wear", "angle_deg: 20\n", "angle_deg: 20\nwear_mm: 0.1\n",
             "6: wear_mm is not a key of a wheel file; allowed: diameter_mm, width_mm, angle_deg, corner_radius_mm[0], "
             "corner_radius_mm[1], profile, side, flange_mm, measured.date, measured.diameter_mm, "
-            "measured.width_mm, measured.by"},
+            "measured.width_mm, measured.by, dressed"},
+        Mistake{"DressedWhen", "angle_deg: 20\n", "angle_deg: 20\ndressed: yesterday\n",
+                "6: dressed = yesterday; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},
         Mistake{"Duplicate", "width_mm: 8\n", "width_mm: 8\nwidth_mm: 8\n", "5: width_mm appears twice"},
         Mistake{"HalfACorner", "[0.1, 0.2]", "[0.1]", "1: corner_radius_mm[1] is missing; allowed: 0 to 50 mm"},
         Mistake{"NoAngle", "angle_deg: 20", "angle_deg: 0",

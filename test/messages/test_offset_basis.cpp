@@ -3,9 +3,12 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/plan/job_digest.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 
 /// @file
@@ -26,6 +29,17 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   EXPECT_EQ(basis.wheel_width, 0.003);
   EXPECT_TRUE(basis.hasJob());
   EXPECT_EQ(goalFromFile("test/jobs/paper.yaml").wheel_name, "");
+}
+
+TEST(GoalFromFile, HasWhenTheWheelWasDressed) {
+  const test_support::TempFolder folder;
+  for (const std::string& file : {kJob, std::string("wheels/straight_d100_w3.yaml")}) {
+    std::filesystem::create_directory((folder.path() / file).parent_path());
+    std::filesystem::copy_file(file, folder.path() / file);
+  }
+  EXPECT_EQ(goalFromFile(folder.path() / kJob).wheel_dressed, "");
+  std::ofstream(folder.path() / "wheels/straight_d100_w3.yaml", std::ios::app) << "dressed: 2026-11-20T08:15:30Z\n";
+  EXPECT_EQ(goalFromFile(folder.path() / kJob).wheel_dressed, "2026-11-20T08:15:30Z");
 }
 
 /// The job that asks for nothing but what its wheel is.

@@ -89,7 +89,7 @@ class JobRecordTest : public ::testing::Test {
     offsets.axes[kX].basis.method = OffsetMethod::kProbe;
     offsets.axes[kX].basis.wheel_digest = "a";
     offsets.axes[kX].basis.swivel = units::kPi / 6;
-    return std::make_shared<JobRecord>(plan_, "short.yaml", offsets, true);
+    return std::make_shared<JobRecord>(plan_, JobNames{"short.yaml", "wheel.yaml", "2026-11-20"}, offsets, true);
   }
 
   /// A hold of some cycles, which retracts as may be. @return the number of its cycles.
@@ -120,7 +120,7 @@ class JobRecordTest : public ::testing::Test {
   }
 
   Json recorded() {
-    JobRecord record(plan_, "short.yaml", {}, false);
+    JobRecord record(plan_, JobNames{"short.yaml", "wheel.yaml", "2026-11-20"}, {}, false);
     for (const Cycle& c : cycles_) {
       record.addCycle(c.sample);
       if (c.has_setpoint) record.addSetpoint(c.setpoint, c.sample);
@@ -271,6 +271,8 @@ TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
   EXPECT_NEAR(record["machine"]["max_following_error"]["a_deg"], 12 * 180 / units::kPi, 1e-9);
   EXPECT_EQ(record["job"]["name"], "short.yaml");
   EXPECT_EQ(record["job"]["digest"], jobDigest(job_));
+  EXPECT_EQ(record["wheel"], Json({{"name", "wheel.yaml"}, {"dressed", "2026-11-20"}}));
+  EXPECT_EQ(record["passes"], 4);
   EXPECT_EQ(jobDigest(parseJob(record["job"]["file"].dump(), "reported")), jobDigest(job_));
   EXPECT_EQ(record["planned"]["setpoints"], 4321);
   EXPECT_EQ(record["planned"]["duration_s"], 4.32);
@@ -282,7 +284,7 @@ TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
 }
 
 TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {
-  JobRecord record(plan_, "", {}, false);
+  JobRecord record(plan_, {}, {}, false);
   for (int i = 0; i < 10004; ++i) {
     override_ = i % 2 == 0 ? 0.5 : 1;
     record.addCycle(cycle(MachineState::kRunning).sample);

@@ -28,6 +28,7 @@ Json document() {
       "process": {"feed_mm_min": 100, "wheel": {"wear_mm": 0}}, "operation": "secondary", "operations": [{}, {}],
       "interpolation": {"tolerance_um": 2}}},
     "started": "2026-11-22T17:04:13.123Z", "ended": "2026-11-22T17:04:23.123Z", "outcome": "done", "reason": "",
+    "wheel": {"name": "", "dressed": ""}, "passes": 4,
     "planned": {"feed_limits": []}, "setpoints": {"written": 1000, "lost": 0},
     "late_cycles": {"count": 0, "longest_ms": 1.25}, "strokes": [], "holds": [{"reason": "]"}, {}], "overrides": []})");
 }

@@ -20,8 +20,9 @@ struct WheelFile {
   double new_width = 0;              ///< the width before any measurement [m]
   std::optional<double> flange;  ///< from the flange's face down to the wheel's upper face, if the file states it [m]
   bool measured = false;
-  std::string date;  ///< of the measurement: YYYY-MM-DD, or YYYY-MM-DDThh:mm:ssZ
-  std::string by;    ///< who measured; may be empty
+  std::string date;     ///< of the measurement: YYYY-MM-DD, or YYYY-MM-DDThh:mm:ssZ
+  std::string by;       ///< who measured; may be empty
+  std::string dressed;  ///< when last, as `date`; empty if that is not known
 
   /// The maximum diameter, as the wheel is now [m].
   double diameter() const noexcept { return process.wheel_diameter - 2 * process.wheel_wear; }

@@ -30,10 +30,6 @@ Json toJson(const std::vector<FeedLimit>& limits);
 /// the job has come from a file. A wheel that has a file of its own is written inline.
 Json toJson(const GrindJob& job);
 
-/// The job of which toJson() made this, to the last bit; of anything else, one that validate() need not accept.
-/// @throw std::exception if the cutter, its teeth or the wheel are missing, or something has another type.
-GrindJob jobOf(const Json& file);
-
 /// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.
 std::string text(const Json& json, int indent = 2);
 

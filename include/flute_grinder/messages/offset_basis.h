@@ -13,8 +13,10 @@
 /// Which figures of a goal its zero points depend on, and whether work offsets were set for them.
 namespace grinder {
 
-/// The goal of a job file, with the names of the file and its wheel file. @throw JobFileError
+/// The goal of a job file, with the name of the file and what is said of its wheel file. @throw JobFileError
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation = "");
+/// @param job that was read from the file.
+flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job);
 
 /// What a work offset is set for that is set for a goal.
 OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method);

@@ -15,6 +15,13 @@
 
 namespace grinder {
 
+/// What a goal says of its files.
+struct JobNames {
+  std::string job;            ///< may be empty
+  std::string wheel;          ///< may be empty
+  std::string wheel_dressed;  ///< when; empty if that is not known
+};
+
 /// How a job ended.
 struct JobConclusion {
   const char* outcome = "fault";        ///< "done", "canceled" or "fault"
@@ -27,9 +34,8 @@ struct JobConclusion {
 class JobRecord {
  public:
   /// @param plan of the job, which is good.
-  /// @param name of the job as its goal gives it.
   /// @param offsets with which it was planned. @param said_right the goal says that they are right.
-  JobRecord(const PlannedJob& plan, std::string name, const WorkOffsets& offsets, bool said_right);
+  JobRecord(const PlannedJob& plan, JobNames names, const WorkOffsets& offsets, bool said_right);
 
   /// Adds a cycle. To be called for every cycle from the job's start to its end, in order.
   void addCycle(const CycleSample& sample);
@@ -57,7 +63,7 @@ class JobRecord {
   std::shared_ptr<const GrindProgram> program_;
   PathStatistics planned_;
   std::string digest_;
-  std::string name_;
+  JobNames names_;
   WorkOffsets offsets_;
   bool offsets_said_right_;
 

@@ -1,17 +1,12 @@
 #pragma once
 
-#include <fstream>
-#include <sstream>
+#include "temp_folder.h"
+
 #include <string>
 
 namespace grinder {
 
-inline std::string shippedUrdf() {
-  std::ifstream file("urdf/grinder.urdf");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
+inline std::string shippedUrdf() { return test_support::readFile("urdf/grinder.urdf"); }
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);

@@ -19,8 +19,6 @@ const double kB = 2 * kTanCone / 0.010;
 const double kK = 2 * std::tan(30 * kDegree) / 0.010;
 const double kClearanceHeight = 0.037 * kTanCone + 0.005;
 const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0016;  // from its deepest point
-const double kFeed = 0.010;
-const double kEdgePerTravel = std::sqrt(1 + std::pow(kTanCone, 2) + std::pow(std::tan(30 * kDegree), 2));
 const double kStrokeTo = 0.037;
 
 inline SetpointStream paperFromPark() {

@@ -29,89 +29,51 @@ struct FaultCase {
 std::ostream& operator<<(std::ostream& out, const FaultCase& c) { return out << c.name; }
 
 std::vector<FaultCase> faultCases() {
-  std::vector<FaultCase> cases{
-      {"EmergencyStop",
-       [](FakeDrive& d) { d.status.emergency_stop = true; },
-       1,
-       FaultKind::kEmergencyStop,
-       0,
-       {"emergency stop"}},
-      {"DriveFault",
-       [](FakeDrive& d) { d.status.fault = true; },
-       1,
-       FaultKind::kDriveFault,
-       0,
-       {"the drive reports a fault"}},
-      {"DriveFaultInItsWords",
-       [](FakeDrive& d) {
-         d.status.fault = true;
-         d.status.fault_text = "overcurrent in X (code 12)";
-       },
-       1,
-       FaultKind::kDriveFault,
-       0,
-       {"the drive reports a fault: overcurrent in X (code 12)"}},
-      {"ReadThrows",
-       [](FakeDrive&) { throw Thrown("no answer"); },
-       1,
-       FaultKind::kDriveFault,
-       0,
-       {"the drive reports a fault: no answer (thrown by its read())"}},
-      {"ReadThrowsAnything",
-       [](FakeDrive&) { throw 7; },
-       1,
-       FaultKind::kDriveFault,
-       0,
-       {"the drive reports a fault: an exception that is no std::exception (thrown by its read())"}},
-      {"PowerLost",
-       [](FakeDrive& d) { d.status.enabled = false; },
-       1,
-       FaultKind::kPowerLost,
-       0,
-       {"switched its power off"}},
-      // Fresh positions may be missing for 2.5 periods.
-      {"StaleFeedback",
-       [](FakeDrive& d) { --d.status.feedback_count; },
-       3,
-       FaultKind::kStaleFeedback,
-       0,
-       {"no fresh positions", "for 0.003 s", "allowed 0.0025 s"}},
-      {"FullTurn",
-       [](FakeDrive& d) { d.position[kA] += 2 * std::acos(-1.0); },
-       1,
-       FaultKind::kFollowingError,
-       kA,
-       {"axis A following error 360", " deg", "limit 2.86479 deg"}},
-      {"FullTurnBack",
-       [](FakeDrive& d) { d.position[kA] -= 2 * std::acos(-1.0); },
-       1,
-       FaultKind::kFollowingError,
-       kA,
-       {"axis A following error 360", " deg", "limit 2.86479 deg"}},
+  std::vector<FaultCase> cases;
+  const auto add = [&](const std::string& name, FaultKind kind, const std::vector<std::string>& words,
+                       const std::function<void(FakeDrive&)>& spoil, int axis = 0, int cycles = 1) {
+    cases.push_back({name, spoil, cycles, kind, axis, words});
   };
+  add("EmergencyStop", FaultKind::kEmergencyStop, {"emergency stop"},
+      [](FakeDrive& d) { d.status.emergency_stop = true; });
+  add("DriveFault", FaultKind::kDriveFault, {"the drive reports a fault"}, [](FakeDrive& d) { d.status.fault = true; });
+  add("DriveFaultInItsWords", FaultKind::kDriveFault, {"the drive reports a fault: overcurrent in X (code 12)"},
+      [](FakeDrive& d) {
+        d.status.fault = true;
+        d.status.fault_text = "overcurrent in X (code 12)";
+      });
+  add("ReadThrows", FaultKind::kDriveFault, {"the drive reports a fault: no answer (thrown by its read())"},
+      [](FakeDrive&) { throw Thrown("no answer"); });
+  add("ReadThrowsAnything", FaultKind::kDriveFault,
+      {"the drive reports a fault: an exception that is no std::exception (thrown by its read())"},
+      [](FakeDrive&) { throw 7; });
+  add("PowerLost", FaultKind::kPowerLost, {"switched its power off"}, [](FakeDrive& d) { d.status.enabled = false; });
+  // Fresh positions may be missing for 2.5 periods.
+  add(
+      "StaleFeedback", FaultKind::kStaleFeedback, {"no fresh positions", "for 0.003 s", "allowed 0.0025 s"},
+      [](FakeDrive& d) { --d.status.feedback_count; }, 0, 3);
+  for (const double turn : {2 * std::acos(-1.0), -2 * std::acos(-1.0)}) {
+    add(
+        turn > 0 ? "FullTurn" : "FullTurnBack", FaultKind::kFollowingError,
+        {"axis A following error 360", " deg", "limit 2.86479 deg"}, [=](FakeDrive& d) { d.position[kA] += turn; }, kA);
+  }
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string letter(1, "XYZA"[axis]);
     const std::string name = "axis " + letter;
     const auto n = static_cast<std::size_t>(axis);
-    cases.push_back({"Nan" + letter,
-                     [=](FakeDrive& d) { d.position[n] = kNan; },
-                     1,
-                     FaultKind::kInvalidFeedback,
-                     axis,
-                     {name + " position", "nan"}});
-    cases.push_back({"Infinite" + letter,
-                     [=](FakeDrive& d) { d.position[n] = -HUGE_VAL; },
-                     1,
-                     FaultKind::kInvalidFeedback,
-                     axis,
-                     {name + " position", "-inf"}});
+    add(
+        "Nan" + letter, FaultKind::kInvalidFeedback, {name + " position", "nan"},
+        [=](FakeDrive& d) { d.position[n] = kNan; }, axis);
+    add(
+        "Infinite" + letter, FaultKind::kInvalidFeedback, {name + " position", "-inf"},
+        [=](FakeDrive& d) { d.position[n] = -HUGE_VAL; }, axis);
     const double limit = axis == kA ? 0.05 : 0.001;
     const std::vector<std::string> words{name + " following error", axis == kA ? "2.87" : "1.002 mm",
                                          axis == kA ? "limit 2.86479 deg" : "limit 1 mm"};
     for (const double side : {1.0, -1.0}) {
-      cases.push_back({"Following" + letter + (side > 0 ? "Ahead" : "Behind"),
-                       [=](FakeDrive& d) { d.position[n] += side * limit * 1.002; }, 1, FaultKind::kFollowingError,
-                       axis, words});
+      add(
+          "Following" + letter + (side > 0 ? "Ahead" : "Behind"), FaultKind::kFollowingError, words,
+          [=](FakeDrive& d) { d.position[n] += side * limit * 1.002; }, axis);
     }
   }
   return cases;
@@ -153,26 +115,6 @@ TEST_P(FaultWhileRunning, EndsTheJobInItsCycleAndStays) {
     rig_.cycle();
   }
   EXPECT_EQ(rig_.jobsEnded(), 1);
-}
-
-TEST_P(FaultWhileRunning, AfterResetAndEnableTheAxesStandAndANewJobRuns) {
-  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = d.status.fault = false; };
-  // Someone has pushed the axes meanwhile.
-  const Axes pushed(-0.04, 0.04, 0.001, 0.3);
-  rig_.drive.place(pushed);
-  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig_.enable());
-  rig_.run(20);
-  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), pushed));
-  EXPECT_TRUE(sameBits(rig_.last().position, pushed));
-  const std::size_t before = rig_.setpoints().size();
-  SetpointStream stream = rig_.paperStream();
-  const std::vector<Setpoint> planned = allSetpoints(stream);
-  ASSERT_TRUE(rig_.askToStart(stream).accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_EQ(rig_.setpoints().size() - before, planned.size());
-  EXPECT_EQ(rig_.jobsEnded(), 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(, FaultWhileRunning, testing::ValuesIn(faultCases()),
@@ -294,51 +236,29 @@ TEST(ControlLoopReset, IsCommandedForOneCycle) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Following error, to the last bit. The limit is a power of two and the axes stand at zero: no rounding is in the way.
 
-class FollowingErrorLimit : public testing::TestWithParam<int> {
- protected:
-  FollowingErrorLimit() : rig_(atZero()) {
-    rig_.cycle();
-    rig_.enable();
+TEST(FollowingErrorLimit, IsAllowedItselfAndTheNextNumberIsAFault) {
+  constexpr double kLimit = 0x1p-10;
+  LoopConfig config = machineConfig();
+  config.machine.park = Axes::Zero();
+  config.following_error.setConstant(kLimit);
+  const auto stateAt = [&](int axis, double error) {
+    Rig<FakeDrive> rig(config);
+    rig.cycle();
+    rig.enable();
+    rig.drive.on_read = [=](FakeDrive& d) { d.position[static_cast<std::size_t>(axis)] = error; };
+    return rig.run(3).state;
+  };
+  for (const int axis : {kX, kY, kZ, kA}) {
+    SCOPED_TRACE(axis);
+    for (const double side : {1.0, -1.0}) {
+      EXPECT_EQ(stateAt(axis, side * kLimit), S::kReady);
+      EXPECT_EQ(stateAt(axis, side * std::nextafter(kLimit, 1.0)), S::kFault);
+    }
+    config.following_error[axis] = 2 * kLimit;
+    EXPECT_EQ(stateAt(axis, 2 * kLimit), S::kReady) << "its own limit counts";
+    config.following_error[axis] = kLimit;
   }
-
-  static LoopConfig atZero() {
-    LoopConfig config = machineConfig();
-    config.machine.park = Axes::Zero();
-    config.following_error.setConstant(0x1p-10);
-    return config;
-  }
-
-  S stateAt(double error) {
-    rig_.drive.on_read = [=](FakeDrive& d) { d.position[static_cast<std::size_t>(GetParam())] = error; };
-    return rig_.run(3).state;
-  }
-
-  Rig<FakeDrive> rig_;
-};
-
-TEST_P(FollowingErrorLimit, IsAllowedItself) {
-  EXPECT_EQ(stateAt(0x1p-10), S::kReady);
-  EXPECT_EQ(stateAt(-0x1p-10), S::kReady);
 }
-
-TEST_P(FollowingErrorLimit, NextNumberAboveIsAFault) { EXPECT_EQ(stateAt(std::nextafter(0x1p-10, 1.0)), S::kFault); }
-
-TEST_P(FollowingErrorLimit, NextNumberBelowItsNegativeIsAFault) {
-  EXPECT_EQ(stateAt(std::nextafter(-0x1p-10, -1.0)), S::kFault);
-}
-
-TEST_P(FollowingErrorLimit, IsTheAxisOwn) {
-  LoopConfig config = atZero();
-  config.following_error[GetParam()] = 0x1p-5;
-  Rig<FakeDrive> rig(config);
-  rig.cycle();
-  rig.enable();
-  rig.drive.on_read = [&](FakeDrive& d) { d.position[static_cast<std::size_t>(GetParam())] = 0x1p-6; };
-  EXPECT_EQ(rig.run(3).state, S::kReady);
-}
-
-INSTANTIATE_TEST_SUITE_P(Axis, FollowingErrorLimit, testing::Values(kX, kY, kZ, kA),
-                         [](const testing::TestParamInfo<int>& info) { return std::string(1, "XYZA"[info.param]); });
 
 TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
   Rig<FakeDrive> rig;
@@ -372,14 +292,8 @@ class FaultIn : public testing::TestWithParam<S> {
   std::size_t before_ = 0;  ///< last sample before the fault
 };
 
-TEST_P(FaultIn, EndsTheJobIfThereIsOne) {
+TEST_P(FaultIn, EndsTheJobAndNothingMovesUntilResetEnableAndStart) {
   EXPECT_EQ(rig_.last().job_ended, hadJob());
-  rig_.stream.reset();  // it may go now
-  rig_.run(100);
-  EXPECT_EQ(rig_.jobsEnded(), hadJob() ? 1 : 0);
-}
-
-TEST_P(FaultIn, NothingMovesUntilResetEnableAndStart) {
   const std::size_t standing = before_;
   const auto expectStanding = [&] {
     rig_.run(50);

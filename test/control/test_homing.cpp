@@ -55,19 +55,15 @@ class Incremental : public testing::Test {
   const Axes home_;
 };
 
-TEST_F(Incremental, ReadsZeroAndIsNotHomedAtFirst) {
+TEST_F(Incremental, ReadsZeroAndStartsNoJobAtFirst) {
   EXPECT_FALSE(rig_.last().drive.homed);
   EXPECT_TRUE((rig_.last().position == 0).all()) << rig_.last().position.transpose();
+  rig_.stream.emplace(rig_.paperStream());
+  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the axes are not homed");
   EXPECT_EQ(rig_.last().state, S::kReady) << "power needs no reference";
 }
 
-TEST_F(Incremental, AStartIsRefusedUntilItIsHomed) {
-  rig_.stream.emplace(rig_.paperStream());
-  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the axes are not homed");
-  EXPECT_EQ(rig_.last().state, S::kReady);
-}
-
-TEST_F(Incremental, HomingLeadsToTheHomePosition) {
+TEST_F(Incremental, HomingLeadsToTheHomePositionWhereTheAxesThenStand) {
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   EXPECT_EQ(rig_.last().state, S::kHoming);
   int cycles = 0;
@@ -79,20 +75,15 @@ TEST_F(Incremental, HomingLeadsToTheHomePosition) {
   EXPECT_TRUE(rig_.last().drive.homed);
   EXPECT_FALSE(rig_.last().drive.homing);
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-  EXPECT_TRUE((rig_.last().position == home_).all()) << rig_.last().position.transpose();
-}
-
-TEST_F(Incremental, AxesStandAfterHoming) {
-  ASSERT_NO_FATAL_FAILURE(home());
   const std::size_t homed = rig_.log.size() - 1;
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE((rig_.last().position == home_).all());
   EXPECT_TRUE(atRestFrom(rig_.log, homed));
+  EXPECT_TRUE((rig_.last().position == home_).all()) << rig_.last().position.transpose();
   EXPECT_TRUE((rig_.last().command == home_).all());
 }
 
-TEST_F(Incremental, DisableEndsHomingAtOnce) {
+TEST_F(Incremental, DisableEndsHomingAtOnceAndTheAxesStandUntilTheyAreHomedAnew) {
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
   rig_.run(20);
   ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
@@ -104,15 +95,7 @@ TEST_F(Incremental, DisableEndsHomingAtOnce) {
   EXPECT_FALSE(rig_.last().drive.homing);
   EXPECT_FALSE(rig_.last().drive.homed);
   EXPECT_FALSE(rig_.last().drive.enabled);
-}
-
-TEST_F(Incremental, AfterADisableTheAxesStandUntilTheyAreHomedAnew) {
-  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  rig_.run(20);
-  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
-  rig_.run(5);
   ASSERT_NO_FATAL_FAILURE(rig_.enable());
-  const Axes stopped = rig_.last().position;
   rig_.run(50);
   EXPECT_TRUE(sameBits(rig_.last().position, stopped)) << "power on goes on with homing";
   rig_.stream.emplace(rig_.paperStream());
@@ -236,21 +219,19 @@ TEST_F(HomingFake, CommandsFollowThePositionsHoweverTheyJump) {
   EXPECT_TRUE(sameBits(toAxes(rig_.drive.written), homed));
 }
 
-TEST_F(HomingFake, ThatNeverEndsFaultsAfterTheTimeout) {
-  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  // 50.5 periods, and the cycle of the request counts.
-  for (int i = 2; i <= 50; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming) << "in cycle " << i;
-  rig_.cycle();
-  expectFaultFor("0.051");
-}
-
-TEST_F(HomingFake, ThatNeverBeginsFaultsAfterTheTimeout) {
-  // It reports that it is homed, as before.
-  changeHoming([](FakeDrive& d, int) { d.status.homing = false; });
-  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  for (int i = 2; i <= 50; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming) << "in cycle " << i;
-  rig_.cycle();
-  expectFaultFor("0.051");
+TEST_F(HomingFake, ThatNeverEndsOrNeverBeginsFaultsAfterTheTimeout) {
+  for (const bool begins : {true, false}) {
+    SCOPED_TRACE(begins);
+    // Throughout it reports that it is homed, as before.
+    changeHoming([=](FakeDrive& d, int) { d.status.homing = begins; });
+    ASSERT_TRUE(rig_.ask(E::kHome).accepted);
+    // 50.5 periods, and the cycle of the request counts.
+    for (int i = 2; i <= 50; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming) << "in cycle " << i;
+    rig_.cycle();
+    expectFaultFor("0.051");
+    ASSERT_TRUE(rig_.ask(E::kReset).accepted);
+    rig_.enable();
+  }
 }
 
 TEST_F(HomingFake, ThatEndsWithoutTheReferenceFaultsAtOnce) {

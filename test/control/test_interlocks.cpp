@@ -37,7 +37,7 @@ class WaitsFor : public testing::TestWithParam<Part> {
   Rig<FakeDrive> rig_;
 };
 
-TEST_P(WaitsFor, AsksForSpindleAndCoolantAndStreamsNothing) {
+TEST_P(WaitsFor, WithSpindleAndCoolantAndStreamsTheWholeJobOnceItIsThere) {
   const std::size_t from = rig_.log.size() - 1;
   for (int i = 0; i < 15; ++i) {
     rig_.cycle();
@@ -46,10 +46,6 @@ TEST_P(WaitsFor, AsksForSpindleAndCoolantAndStreamsNothing) {
     ASSERT_TRUE(rig_.drive.written_drive.coolant);
   }
   EXPECT_TRUE(atRestFrom(rig_.log, from));
-}
-
-TEST_P(WaitsFor, StreamsTheWholeJobOnceItIsThere) {
-  rig_.run(15);
   rig_.drive.on_read = restoreParts;
   EXPECT_EQ(rig_.cycle().state, S::kRunning);
   EXPECT_TRUE(rig_.last().has_setpoint);
@@ -59,7 +55,8 @@ TEST_P(WaitsFor, StreamsTheWholeJobOnceItIsThere) {
   EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
 
-TEST_P(WaitsFor, GivesUpAfterTheTimeout) {
+TEST_P(WaitsFor, GivesUpAfterTheTimeoutReadyWithEverythingOffForANewJob) {
+  const Axes before = rig_.last().command;
   // 20.5 periods, and the cycle of the start counts.
   for (int i = 2; i <= 20; ++i) {
     rig_.cycle();
@@ -73,11 +70,6 @@ TEST_P(WaitsFor, GivesUpAfterTheTimeout) {
   EXPECT_EQ(rig_.last().fault.interlock, GetParam().interlock);
   EXPECT_EQ(rig_.last().fault.text(),
             std::string(GetParam().words) + " 0.021 s after the job was started, allowed 0.0205 s");
-}
-
-TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
-  const Axes before = rig_.last().command;
-  rig_.runUntil(S::kReady);
   EXPECT_FALSE(rig_.drive.written_drive.spindle);
   EXPECT_FALSE(rig_.drive.written_drive.coolant);
   EXPECT_TRUE(rig_.drive.written_drive.enable);
@@ -89,19 +81,11 @@ TEST_P(WaitsFor, AfterGivingUpTheMachineIsReadyWithEverythingOff) {
   EXPECT_TRUE(rig_.setpoints().empty());
   EXPECT_TRUE(sameBits(rig_.last().command, before));
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
-}
-
-TEST_P(WaitsFor, AfterGivingUpANewJobRuns) {
-  rig_.runUntil(S::kReady);
-  rig_.drive.on_read = restoreParts;
-  rig_.log.erase(rig_.log.begin(), rig_.log.end() - 1);
-  rig_.log.front().job_ended = false;
-  rig_.cycle();
   rig_.stream.emplace(rig_.paperStream());
   ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
   rig_.runToEnd();
-  expectCompleted(rig_);
+  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
 
 TEST_P(WaitsFor, CancelEndsTheWait) {
@@ -144,7 +128,7 @@ class WaitsForJournal : public testing::Test {
   Rig<FakeDrive> rig_;
 };
 
-TEST_F(WaitsForJournal, SpindleRunsAndNothingMoves) {
+TEST_F(WaitsForJournal, WithTheSpindleAndStreamsTheWholeJobOnceItIsThere) {
   rig_.loop->confirmJournal(rig_.loop->status().jobs_started - 1);  // of the job before
   for (int i = 0; i < 15; ++i) {
     rig_.cycle();
@@ -153,10 +137,6 @@ TEST_F(WaitsForJournal, SpindleRunsAndNothingMoves) {
     ASSERT_TRUE(rig_.drive.written_drive.coolant);
   }
   EXPECT_TRUE(rig_.setpoints().empty());
-}
-
-TEST_F(WaitsForJournal, StreamsTheWholeJobOnceItIsThere) {
-  rig_.run(15);
   rig_.loop->confirmJournal(rig_.loop->status().jobs_started);
   EXPECT_EQ(rig_.cycle().state, S::kRunning);
   rig_.runToEnd();

@@ -1,7 +1,6 @@
 #include "control/rig.h"
 
 #include <cmath>
-#include <random>
 
 // Late cycles.
 namespace grinder::test_support {
@@ -115,28 +114,6 @@ TEST(LateCycle, JustBelowTwoPeriodsIsNotLate) {
   rig.run(10);
   punctual.run(10);
   EXPECT_TRUE(sameBits(rig.last().command, punctual.last().command));
-}
-
-// The loop's own limit check continues, and takes every late cycle into account.
-TEST(LateCycle, AtAnyMomentsTheJobIsGroundToItsEnd) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    std::mt19937 random(seed);
-    const double probability = std::uniform_real_distribution<>(0.001, 0.05)(random);
-    std::uniform_real_distribution<> chance(0, 1), periods(2, 10);
-    Rig<FakeDrive> rig(patient());
-    rig.cycle();
-    rig.startPaper();
-    Axes last = rig.last().command;
-    for (int i = 0; i < 1000000 && !rig.last().job_ended; ++i) {
-      rig.cycle(chance(random) < probability ? periods(random) : 1);
-      // Every setpoint is new: missed cycles are never made up for.
-      const Axes moved = (rig.last().command - last).abs();
-      ASSERT_TRUE((moved <= machineConfig().machine.limits.max_velocity * 0.001 * (1 + 1e-9)).all());
-      last = rig.last().command;
-    }
-    ASSERT_EQ(rig.loop->status().end, JobEnd::kDone) << "seed " << seed << ": " << rig.last().fault.text();
-    ASSERT_TRUE((rig.last().command == machineConfig().machine.park).all());
-  }
 }
 
 class LateWithoutTheJob : public testing::TestWithParam<S> {};

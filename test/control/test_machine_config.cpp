@@ -15,9 +15,6 @@
 namespace grinder {
 namespace test_machine_config {
 
-using ::testing::TestParamInfo;
-using ::testing::TestWithParam;
-using ::testing::ValuesIn;
 using XmlRpc::XmlRpcValue;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -274,98 +271,83 @@ TEST(MachineConfig, NamesTheFirstParameterOfAGroupThatIsMissing) {
 // ---------------------------------------------------------------------------------------------------------------------
 // Refused robot descriptions
 
-struct BadDescription {
-  const char* name;
-  std::function<std::string()> urdf;
-  std::vector<std::string> words;
-};
-std::ostream& operator<<(std::ostream& out, const BadDescription& bad) { return out << bad.name; }
-
-std::vector<BadDescription> badDescriptions() {
-  const auto with = [](std::string Description::*which, const std::string& text) {
-    return [=] {
-      Description description;
-      description.*which = text;
-      return description.urdf();
-    };
-  };
-  const std::string good = limitOf("-1", "1", "1");
-  return {
-      {"NotXml", [] { return std::string("this is no XML"); }, {"robot_description is not a URDF"}},
-      {"Empty", [] { return std::string(); }, {"robot_description is not a URDF"}},
-      {"CutShort", [] { return Description().urdf().substr(0, 200); }, {"robot_description is not a URDF"}},
-      {"NoX", with(&Description::x, ""), {"robot_description has no joint axis_x"}},
-      {"NoY", with(&Description::y, ""), {"robot_description has no joint axis_y"}},
-      {"NoZ", with(&Description::z, ""), {"robot_description has no joint axis_z"}},
-      {"NoA", with(&Description::a, ""), {"robot_description has no joint axis_a"}},
-      {"NoSwivel", with(&Description::swivel, ""), {"robot_description has no joint wheel_swivel"}},
-      {"ContinuousSwivel",
-       with(&Description::swivel, joint("wheel_swivel", "continuous", "")),
-       {"wheel_swivel", "revolute, with limits"}},
-      {"SwivelWithoutLimits",
-       with(&Description::swivel, joint("wheel_swivel", "revolute", "")),
-       {"robot_description is not a URDF"}},
-      {"SwivelReversed",
-       with(&Description::swivel, joint("wheel_swivel", "revolute", limitOf("0.5", "-0.5", "0"))),
-       {"wheel_swivel", "0.5 to -0.5 rad", "the lower below the upper"}},
-      {"SwivelTooFar",
-       with(&Description::swivel, joint("wheel_swivel", "revolute", limitOf("-1.6", "1", "0"))),
-       {"wheel_swivel", "-1.6 to 1 rad", "within -pi/2 to pi/2"}},
-      {"RevoluteX", with(&Description::x, joint("axis_x", "revolute", good)), {"axis_x", "prismatic"}},
-      {"FixedY", with(&Description::y, joint("axis_y", "fixed", "")), {"axis_y", "prismatic"}},
-      {"ContinuousA",
-       with(&Description::a, joint("axis_a", "continuous", "")),
-       {"axis_a", "revolute", "several turns"}},
-      {"PrismaticA", with(&Description::a, joint("axis_a", "prismatic", good)), {"axis_a", "revolute"}},
-      {"LowerAboveUpper",
-       with(&Description::z, joint("axis_z", "prismatic", limitOf("0.3", "0.1", "1"))),
-       {"axis_z", "robot_description): 0.3 to 0.1", "allowed: the lower below the upper"}},
-      {"NoPositions",
-       with(&Description::a, joint("axis_a", "revolute", "<limit velocity=\"1\" effort=\"1\"/>")),
-       {"axis_a", "robot_description): 0 to 0"}},
-      {"VelocityZero",
-       with(&Description::x, joint("axis_x", "prismatic", limitOf("-1", "1", "0"))),
-       {"/grinder/joint_limits/axis_x/has_velocity_limits is missing", "robot_description", "with max_velocity"}},
-      {"VelocityNegative",
-       with(&Description::x, joint("axis_x", "prismatic", limitOf("-1", "1", "-2"))),
-       {"/grinder/joint_limits/axis_x/has_velocity_limits is missing", "robot_description", "with max_velocity"}},
-  };
+void expectRefused(const std::string& what, const std::string& urdf, const std::vector<std::string>& words) {
+  const std::string error = errorOf(urdf, parameters());
+  ASSERT_FALSE(error.empty()) << what << " was taken";
+  for (const std::string& word : words) {
+    EXPECT_NE(error.find(word), std::string::npos) << what << ": " << error << "\n" << word;
+  }
 }
 
-class RefusedDescription : public TestWithParam<BadDescription> {};
-
-TEST_P(RefusedDescription, IsNamedWithWhatIsAllowed) {
-  const std::string error = errorOf(GetParam().urdf(), parameters());
-  ASSERT_FALSE(error.empty()) << "taken";
-  for (const std::string& word : GetParam().words)
-    EXPECT_NE(error.find(word), std::string::npos) << error << "\n" << word;
+TEST(MachineConfig, RefusesABadDescriptionWithWhatIsAllowed) {
+  const std::string no_urdf = "robot_description is not a URDF";
+  for (const std::string& text : {std::string("this is no XML"), std::string(), Description().urdf().substr(0, 200)}) {
+    expectRefused(text, text, {no_urdf});
+  }
+  const std::string any = limitOf("-1", "1", "1"), no_velocity = "/grinder/joint_limits/axis_x/has_velocity_limits";
+  const struct {
+    std::string Description::*which;
+    const char* name;
+    const char* type;
+    std::string limit;
+    std::vector<std::string> words;
+  } rows[]{{&Description::swivel, "wheel_swivel", "continuous", "", {"wheel_swivel", "revolute, with limits"}},
+           {&Description::swivel, "wheel_swivel", "revolute", "", {no_urdf}},
+           {&Description::swivel,
+            "wheel_swivel",
+            "revolute",
+            limitOf("0.5", "-0.5", "0"),
+            {"wheel_swivel", "0.5 to -0.5 rad", "the lower below the upper"}},
+           {&Description::swivel,
+            "wheel_swivel",
+            "revolute",
+            limitOf("-1.6", "1", "0"),
+            {"wheel_swivel", "-1.6 to 1 rad", "within -pi/2 to pi/2"}},
+           {&Description::x, "axis_x", "revolute", any, {"axis_x", "prismatic"}},
+           {&Description::y, "axis_y", "fixed", "", {"axis_y", "prismatic"}},
+           {&Description::a, "axis_a", "continuous", "", {"axis_a", "revolute", "several turns"}},
+           {&Description::a, "axis_a", "prismatic", any, {"axis_a", "revolute"}},
+           {&Description::z,
+            "axis_z",
+            "prismatic",
+            limitOf("0.3", "0.1", "1"),
+            {"axis_z", "robot_description): 0.3 to 0.1", "allowed: the lower below the upper"}},
+           {&Description::a,
+            "axis_a",
+            "revolute",
+            "<limit velocity=\"1\" effort=\"1\"/>",
+            {"axis_a", "robot_description): 0 to 0"}},
+           {&Description::x,
+            "axis_x",
+            "prismatic",
+            limitOf("-1", "1", "0"),
+            {no_velocity + " is missing", "robot_description", "with max_velocity"}},
+           {&Description::x,
+            "axis_x",
+            "prismatic",
+            limitOf("-1", "1", "-2"),
+            {no_velocity + " is missing", "robot_description", "with max_velocity"}}};
+  for (const auto& row : rows) {
+    Description description;
+    description.*row.which = joint(row.name, row.type, row.limit);
+    expectRefused(std::string(row.name) + " " + row.type + " " + row.limit, description.urdf(), row.words);
+    description.*row.which = "";
+    expectRefused("none", description.urdf(), {std::string("robot_description has no joint ") + row.name});
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(, RefusedDescription, ValuesIn(badDescriptions()),
-                         [](const TestParamInfo<BadDescription>& info) { return std::string(info.param.name); });
 
 // Whether or not the URDF reader accepts such a number, the machine must not get it as a limit.
-class NotFiniteInTheUrdf : public TestWithParam<const char*> {};
-
-TEST_P(NotFiniteInTheUrdf, IsNoPositionLimit) {
-  Description description;
-  description.x = joint("axis_x", "prismatic", limitOf("-1", GetParam(), "1"));
-  EXPECT_NE(errorOf(description.urdf(), parameters()), "") << "upper";
-  description.x = joint("axis_x", "prismatic", limitOf(GetParam(), "1", "1"));
-  EXPECT_NE(errorOf(description.urdf(), parameters()), "") << "lower";
+TEST(MachineConfig, TakesFiniteLimitsOfTheUrdfOnly) {
+  for (const std::string number : {"nan", "inf", "-inf", "1e999"}) {
+    SCOPED_TRACE(number);
+    for (const std::string& limit :
+         {limitOf("-1", number, "1"), limitOf(number, "1", "1"), limitOf("-1", "1", number)}) {
+      Description description;
+      description.x = joint("axis_x", "prismatic", limit);
+      EXPECT_NE(errorOf(description.urdf(), parameters()), "") << limit;
+    }
+  }
 }
-
-TEST_P(NotFiniteInTheUrdf, IsNoVelocityLimit) {
-  Description description;
-  description.x = joint("axis_x", "prismatic", limitOf("-1", "1", GetParam()));
-  EXPECT_NE(errorOf(description.urdf(), parameters()), "");
-}
-
-INSTANTIATE_TEST_SUITE_P(, NotFiniteInTheUrdf, ::testing::Values("nan", "inf", "-inf", "1e999"),
-                         [](const TestParamInfo<const char*>& info) {
-                           const std::string text = info.param;
-                           return text[0] == '-' ? "minus_inf" : text;
-                         });
 
 // ---------------------------------------------------------------------------------------------------------------------
 // The reader

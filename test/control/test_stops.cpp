@@ -21,17 +21,10 @@ class HoldWhileStarting : public testing::Test {
 
   void spindleComes() { rig_.drive.on_read = nullptr; }
 
-  /// Expects that no axis was commanded to move.
-  void expectStanding() const {
-    for (const CycleSample& sample : rig_.log) {
-      ASSERT_TRUE(sameBits(sample.command, machineConfig().machine.park)) << toString(sample.state);
-    }
-  }
-
   Rig<FakeDrive> rig_;
 };
 
-TEST_F(HoldWhileStarting, LetsSpindleAndCoolantRunUpAndIsHeldThen) {
+TEST_F(HoldWhileStarting, LetsSpindleAndCoolantRunUpIsHeldThenAndResumedGrindsTheWholeJob) {
   rig_.run(5);
   EXPECT_EQ(rig_.last().state, S::kStarting);
   EXPECT_TRUE(rig_.drive.written_drive.spindle);
@@ -41,15 +34,11 @@ TEST_F(HoldWhileStarting, LetsSpindleAndCoolantRunUpAndIsHeldThen) {
   rig_.run(500);
   EXPECT_EQ(rig_.last().state, S::kHeld);
   EXPECT_TRUE(rig_.drive.written_drive.spindle);
-  for (const CycleSample& sample : rig_.log) EXPECT_NE(sample.state, S::kRunning);
-  expectStanding();
-}
-
-TEST_F(HoldWhileStarting, ResumeOnceItIsHeldGrindsTheWholeJob) {
-  spindleComes();
-  rig_.runUntil(S::kHeld);
-  rig_.run(10);
-  expectStanding();
+  // No axis was commanded to move.
+  for (const CycleSample& sample : rig_.log) {
+    EXPECT_NE(sample.state, S::kRunning);
+    ASSERT_TRUE(sameBits(sample.command, machineConfig().machine.park)) << toString(sample.state);
+  }
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   rig_.runToEnd();
   EXPECT_TRUE(sameSetpoints(rig_.setpoints(), allSetpoints(SetpointStream(rig_.stream->program()))));
@@ -82,7 +71,7 @@ class DisableIn : public testing::TestWithParam<S> {
   Rig<FakeDrive> rig_;
 };
 
-TEST_P(DisableIn, StopsOnThePathLiftsTheWheelAndSwitchesOffOnceItIsUp) {
+TEST_P(DisableIn, StopsOnThePathLiftsTheWheelSwitchesOffOnceItIsUpAndIsDoneWithTheNextEnable) {
   ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
   for (int i = 0; i < 5000 && rig_.last().state == S::kCanceling; ++i) {
     ASSERT_TRUE(rig_.drive.written_drive.enable) << "power off before the axes rest";
@@ -100,11 +89,7 @@ TEST_P(DisableIn, StopsOnThePathLiftsTheWheelAndSwitchesOffOnceItIsUp) {
   rig_.run(50);
   EXPECT_TRUE(atRestFrom(rig_.log, off));
   EXPECT_EQ(rig_.last().state, S::kDisabled);
-}
 
-TEST_P(DisableIn, IsDoneWithTheNextEnable) {
-  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
-  if (rig_.last().state != S::kDisabled) rig_.runUntil(S::kDisabled);
   rig_.drive.on_read = nullptr;
   ASSERT_NO_FATAL_FAILURE(rig_.startPaper());
   rig_.run(300);

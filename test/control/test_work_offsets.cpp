@@ -209,23 +209,13 @@ class InAShiftedStroke : public testing::Test {
   Rig<FakeDrive> rig_;
 };
 
-TEST_F(InAShiftedStroke, RetractAndResume) {
+TEST_F(InAShiftedStroke, RetractJogAndResume) {
   ASSERT_NO_FATAL_FAILURE(rig_.hold());
   const double x = rig_.last().setpoint.position[kX];
   EXPECT_EQ(rig_.loop->status().place.x, x) << "the job's";
   ASSERT_NO_FATAL_FAILURE(rig_.retract());
   EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(rig_.last().wheel_in_work);
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
-  EXPECT_TRUE(commandsAreShifted(rig_.log, kOffset));
-  EXPECT_TRUE(smooth(inWork(rig_.log, kOffset)));
-}
-
-TEST_F(InAShiftedStroke, AJogWhileRetracted) {
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
-  ASSERT_NO_FATAL_FAILURE(rig_.retract());
   Axes at = rig_.last().command;
   for (const auto& [axis, distance] : {std::pair(kX, -0.02), std::pair(kY, 0.005), std::pair(kA, -2.0)}) {
     ASSERT_TRUE(rig_.jog({axis, false, distance, axis == kA ? 0.5 : 0.01}).accepted);

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace grinder {
 namespace test_conical_cutter {
@@ -37,16 +38,6 @@ TEST(ConicalCutter, IsThePapers) {
   EXPECT_NEAR(cutter.y(30e-3), 2.62466e-3, 5e-9);
   EXPECT_NEAR(cutter.z(30e-3), 0.365282e-3, 5e-9);       // times sin 8 deg = 0.139173
   EXPECT_NEAR(cutter.edgePerTravel(), 1.1580102, 5e-8);  // sqrt(1 + 1/3 + 0.0076543)
-}
-
-TEST(ConicalCutter, KeepsItsFigures) {
-  const CutterGeometry g = paperCutter();
-  const ConicalCutter cutter(g);
-  EXPECT_EQ(cutter.geometry().end_diameter, g.end_diameter);
-  EXPECT_EQ(cutter.geometry().cone_angle, g.cone_angle);
-  EXPECT_EQ(cutter.geometry().spiral_angle, g.spiral_angle);
-  EXPECT_EQ(cutter.geometry().rake_angle, g.rake_angle);
-  EXPECT_EQ(cutter.geometry().flute_length, g.flute_length);
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
@@ -90,48 +81,29 @@ RC_GTEST_PROP(ConicalCutterProperty, HelixStandsToTheGeneratrixAtItsAngle, ()) {
   RC_ASSERT(std::abs(ConicalCutter(g).cosHelixToGeneratrix() - std::cos(angle)) <= 8 * kEps);
 }
 
-/// A figure of a cutter.
-struct Figure {
-  const char* name;
-  double& (*at)(CutterGeometry&);
-};
-
-class ConicalCutterFigure : public ::testing::TestWithParam<Figure> {
- protected:
-  void expectRefused(double bad) const {
-    CutterGeometry g = paperCutter();
-    GetParam().at(g) = bad;
-    const std::string error = errorOf(g);
-    EXPECT_NE(error.find(std::string("cutter.") + GetParam().name + " = "), std::string::npos) << bad << ": " << error;
-    EXPECT_NE(error.find("allowed: "), std::string::npos) << error;
+TEST(ConicalCutter, TakesFinitePositiveLengthsAndAnglesBelowARightAngle) {
+  constexpr double kRight = 90 * units::kDegree;
+  const std::vector<double> no_lengths{kNan, kInf, -kInf, 0, -0.0, -1e-3};
+  const std::vector<double> no_angles{kNan, kInf, -kInf, kRight, -kRight, 2, -2, 100};
+  const struct {
+    const char* name;
+    double CutterGeometry::*figure;
+    const std::vector<double>& bad;
+  } rows[]{{"end_diameter", &CutterGeometry::end_diameter, no_lengths},
+           {"flute_length", &CutterGeometry::flute_length, no_lengths},
+           {"cone_angle", &CutterGeometry::cone_angle, no_angles},
+           {"spiral_angle", &CutterGeometry::spiral_angle, no_angles},
+           {"rake_angle", &CutterGeometry::rake_angle, no_angles}};
+  for (const auto& row : rows) {
+    for (const double bad : row.bad) {
+      CutterGeometry g = paperCutter();
+      g.*row.figure = bad;
+      const std::string error = errorOf(g);
+      EXPECT_NE(error.find(std::string("cutter.") + row.name + " = "), std::string::npos) << bad << ": " << error;
+      EXPECT_NE(error.find("allowed: "), std::string::npos) << error;
+    }
   }
-};
-
-class ConicalCutterLength : public ConicalCutterFigure {};
-
-TEST_P(ConicalCutterLength, IsFiniteAndPositive) {
-  for (const double bad : {kNan, kInf, -kInf, 0.0, -0.0, -1e-3}) expectRefused(bad);
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, ConicalCutterLength,
-    ::testing::Values(Figure{"end_diameter", [](CutterGeometry& g) -> double& { return g.end_diameter; }},
-                      Figure{"flute_length", [](CutterGeometry& g) -> double& { return g.flute_length; }}),
-    [](const auto& info) { return std::string(info.param.name); });
-
-class ConicalCutterAngles : public ConicalCutterFigure {};
-
-TEST_P(ConicalCutterAngles, IsBelowARightAngle) {
-  for (const double bad : {kNan, kInf, -kInf, 90 * units::kDegree, -90 * units::kDegree, 2.0, -2.0, 100.0})
-    expectRefused(bad);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    All, ConicalCutterAngles,
-    ::testing::Values(Figure{"cone_angle", [](CutterGeometry& g) -> double& { return g.cone_angle; }},
-                      Figure{"spiral_angle", [](CutterGeometry& g) -> double& { return g.spiral_angle; }},
-                      Figure{"rake_angle", [](CutterGeometry& g) -> double& { return g.rake_angle; }}),
-    [](const auto& info) { return std::string(info.param.name); });
 
 TEST(ConicalCutter, StaysOpenUpToTheFlutesEnd) {
   // D1 2 mm at -3 deg closes at X = 19.08 mm.
@@ -140,12 +112,6 @@ TEST(ConicalCutter, StaysOpenUpToTheFlutesEnd) {
   g.flute_length = 19.09e-3;
   EXPECT_NE(errorOf(g).find("cutter.cone_angle"), std::string::npos) << errorOf(g);
   EXPECT_NE(errorOf(g).find("close"), std::string::npos) << errorOf(g);
-}
-
-TEST(ConicalCutter, TakesACylinderAStraightFluteAndALeftHand) {
-  EXPECT_EQ(errorOf({10e-3, 0, 0.5, 0, 30e-3}), "");
-  EXPECT_EQ(errorOf({10e-3, 0.1, 0, 0, 30e-3}), "");
-  EXPECT_EQ(errorOf({10e-3, 0.1, -0.5, 0, 30e-3}), "");
 }
 
 }  // namespace test_conical_cutter

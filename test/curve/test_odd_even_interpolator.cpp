@@ -66,35 +66,16 @@ TEST(OddEvenInterpolator, PublishedFailsOnASteepCutterWhereThirdOrderDoesNot) {
   EXPECT_NEAR(third_order.even, 2.4e-5, 0.05e-5);
 }
 
-TEST(OddEvenInterpolator, PublishedEvenErrorFallsWithTheSquareOfTheStep) {
+TEST(OddEvenInterpolator, TheEvenErrorFallsWithTheSquareOrTheCubeOfTheStep) {
   for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
     SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    const double coarse = maxErrors(cutter, EvenStepRule::kPublished, 0.01 * kMm, 20 * kMm).even;
-    const double fine = maxErrors(cutter, EvenStepRule::kPublished, 0.005 * kMm, 20 * kMm).even;
-    EXPECT_NEAR(coarse / fine, 4, 0.2);
+    const auto even = [&](EvenStepRule rule, double step) {
+      return maxErrors(cutter, rule, step * kMm, 20 * kMm).even;
+    };
+    EXPECT_NEAR(even(EvenStepRule::kPublished, 0.01) / even(EvenStepRule::kPublished, 0.005), 4, 0.2);
+    EXPECT_NEAR(even(EvenStepRule::kThirdOrder, 0.04) / even(EvenStepRule::kThirdOrder, 0.02), 8, 0.4);
+    EXPECT_LE(even(EvenStepRule::kExact, 0.2), 2e-15);
   }
-}
-
-TEST(OddEvenInterpolator, ThirdOrderEvenErrorFallsWithTheCubeOfTheStep) {
-  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
-    SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    const double coarse = maxErrors(cutter, EvenStepRule::kThirdOrder, 0.04 * kMm, 20 * kMm).even;
-    const double fine = maxErrors(cutter, EvenStepRule::kThirdOrder, 0.02 * kMm, 20 * kMm).even;
-    EXPECT_NEAR(coarse / fine, 8, 0.4);
-  }
-}
-
-TEST(OddEvenInterpolator, ExactStaysOnTheCurveToRounding) {
-  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
-    SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
-    EXPECT_LE(maxErrors(cutter, EvenStepRule::kExact, 0.2 * kMm, 20 * kMm).even, 2e-15);
-  }
-}
-
-TEST(OddEvenInterpolator, NamesItsRulesAsJobFilesDo) {
-  EXPECT_STREQ(toString(EvenStepRule::kPublished), "published");
-  EXPECT_STREQ(toString(EvenStepRule::kThirdOrder), "third_order");
-  EXPECT_STREQ(toString(EvenStepRule::kExact), "exact");
 }
 
 /// How far to go in X for the radius to grow or shrink by `growth` of itself. [m]
@@ -130,7 +111,14 @@ struct Place {
   }
 };
 
-void expectSame(const Place& place, EvenStepRule rule, double step) {
+EvenStepRule drawRule() {
+  return *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
+}
+
+RC_GTEST_PROP(OddEvenInterpolatorProperty, APairIsThatOfTheRulesFormulas, ()) {
+  const Place place = Place::draw();
+  const EvenStepRule rule = drawRule();
+  const double step = place.drawStep(0.1);
   OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
   const CurvePoint start = interpolator.position();
   const OddEvenPair pair = interpolator.next(step);
@@ -140,25 +128,6 @@ void expectSame(const Place& place, EvenStepRule rule, double step) {
   RC_ASSERT(std::abs(Real(pair.even.x) - place.x - expected.x2) <= x_tolerance);
   RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
   RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, PublishedIsThePapersPrintedFormulas, ()) {
-  const Place place = Place::draw();
-  expectSame(place, EvenStepRule::kPublished, place.drawStep(0.1));
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, ThirdOrderIsItsExpansion, ()) {
-  const Place place = Place::draw();
-  expectSame(place, EvenStepRule::kThirdOrder, place.drawStep(0.1));
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, ExactIsTheCirclesIntersectionWithTheCurve, ()) {
-  const Place place = Place::draw();
-  expectSame(place, EvenStepRule::kExact, place.drawStep(0.1));
-}
-
-EvenStepRule drawRule() {
-  return *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, WholePathsFollowTheFormulasWithStepsThatChange, ()) {
@@ -184,15 +153,16 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, WholePathsFollowTheFormulasWithStepsT
   }
 }
 
-RC_GTEST_PROP(OddEvenInterpolatorProperty, StartsOnTheCurve, ()) {
+RC_GTEST_PROP(OddEvenInterpolatorProperty, StartsOnTheCurveAndNeedsNoStepToStayThere, ()) {
   const Place place = Place::draw();
   const OddEvenInterpolator interpolator(place.curve, place.scale, drawRule(), place.x);
   RC_ASSERT(interpolator.position().x == place.x);
   RC_ASSERT(std::abs(errorOf(place.reference, interpolator.position())) <=
             8 * kEps * (1 + std::abs(interpolator.position().a)));
+  RC_ASSERT(interpolator.stepLengthForAdvance(0) == 0);
 }
 
-RC_GTEST_PROP(OddEvenInterpolatorProperty, BothStepsOfExactHaveTheGivenLength, ()) {
+RC_GTEST_PROP(OddEvenInterpolatorProperty, BothStepsOfExactHaveTheGivenLengthAndTheSecondEndsOnTheCurve, ()) {
   const Place place = Place::draw();
   const double step = place.drawStep(0.1);
   OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
@@ -203,12 +173,6 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, BothStepsOfExactHaveTheGivenLength, (
   const double even = std::hypot(pair.even.x - pair.odd.x, place.scale * (pair.even.a - pair.odd.a));
   RC_ASSERT(std::abs(odd - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
   RC_ASSERT(std::abs(even - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, ExactEvenPointsAreOnTheCurve, ()) {
-  const Place place = Place::draw();
-  OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
-  const OddEvenPair pair = interpolator.next(place.drawStep(0.1));
   RC_ASSERT(std::abs(errorOf(place.reference, pair.even)) <= 8 * kEps * (1 + std::abs(pair.even.a)));
 }
 
@@ -249,12 +213,6 @@ RC_GTEST_PROP(OddEvenInterpolatorProperty, StepLengthForAdvanceAdvancesByThat, (
   const OddEvenPair pair = interpolator.next(interpolator.stepLengthForAdvance(dx));
   const Real advance = Real(pair.even.x) - place.x;
   RC_ASSERT(std::abs(advance - dx) <= kEps * (16 * std::abs(dx) + 4 * std::abs(place.x)));
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, NoAdvanceNeedsNoStep, ()) {
-  const Place place = Place::draw();
-  const OddEvenInterpolator interpolator(place.curve, place.scale, drawRule(), place.x);
-  RC_ASSERT(interpolator.stepLengthForAdvance(0) == 0);
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, LargestStepLengthUsesUpTheErrorAllowed, ()) {

@@ -67,16 +67,8 @@ TEST(StepTable, GivesThePapersTable1ToThePrintedDigit) {
     EXPECT_NEAR(printed(row.error() * 1e4), printed_row.error_e4, 1e-9);
     EXPECT_NEAR(row.theory, static_cast<double>(curve.a(row.point.x)), 1e-15);
   }
-}
-
-TEST(StepTable, NeedsThePapers152PointsTo30Mm) {
-  const StepTable table = papersTable(0.2 * kMm);
   EXPECT_TRUE(table.complete);
   EXPECT_EQ(table.rows.size() - 1, 152u);
-}
-
-TEST(StepTable, HasThePapersMaxErrors) {
-  const StepTable table = papersTable(0.2 * kMm);
   EXPECT_NEAR(table.max_odd_error, 3.9785e-5, 0.00005e-5);
   EXPECT_NEAR(table.max_even_error, 3.5000e-7, 0.00005e-7);
   EXPECT_EQ(table.maxError(), table.max_odd_error);

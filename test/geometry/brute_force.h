@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_solver.h"
 
 #include <algorithm>
@@ -11,6 +12,26 @@
 /// The walls of a groove by trying: the wheel is tried at many places of the stroke and of its profile. Shares no code
 /// with the sweep but the wheel's profile and the path.
 namespace grinder::brute {
+
+/// A cutter of one tooth and a straight wheel, in the shop's units.
+struct Shop {
+  double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
+  CutDirection cut = CutDirection::kRightHand;
+
+  SetupRequest request() const {
+    constexpr double kMm = units::kMillimetre, kDegree = units::kDegree;
+    SetupRequest r;
+    r.cutter = {diameter * kMm, cone * kDegree, spiral * kDegree, rake * kDegree, length * kMm, cut};
+    r.rake = rake * kDegree;
+    r.tooth_angles = {0};
+    r.wheel = WheelProfile::straight(wheel * kMm, width * kMm);
+    r.nominal_radius = wheel / 2 * kMm;
+    r.depth = depth * kMm;
+    r.min_swivel = -60 * kDegree;
+    r.max_swivel = 60 * kDegree;
+    return r;
+  }
+};
 
 /// A set-up of a wheel that grinds a request's cutter.
 struct Bench {

@@ -25,23 +25,11 @@ using units::kMillimetre;
 
 constexpr int kParts = 25;  ///< of the flute, between the sections measured; the correction is made for others
 
-/// A cutter, a straight wheel, and what it is asked, in the shop's units.
-struct Shop {
-  double diameter = 5, cone = 10, spiral = 20, rake = 14, length = 15, depth = 0.7, wheel = 75, width = 1.5;
-  CutDirection cut = CutDirection::kRightHand;
-};
+using brute::Shop;
+const Shop kSteep{5, 10, 20, 14, 15, 0.7, 75, 1.5};
 
 SetupRequest requestFor(const Shop& s) {
-  SetupRequest r;
-  r.cutter = {s.diameter * kMillimetre, s.cone * kDegree,       s.spiral * kDegree,
-              s.rake * kDegree,         s.length * kMillimetre, s.cut};
-  r.rake = s.rake * kDegree;
-  r.tooth_angles = {0};
-  r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
-  r.nominal_radius = s.wheel / 2 * kMillimetre;
-  r.depth = s.depth * kMillimetre;
-  r.min_swivel = -60 * kDegree;
-  r.max_swivel = 60 * kDegree;
+  SetupRequest r = s.request();
   r.z_law = ZLaw::kConstantRake;
   return r;
 }
@@ -68,7 +56,7 @@ std::optional<GrindJob> jobFor(const Shop& s) {
   return job;
 }
 
-GrindJob steepJob() { return jobFor({}).value(); }
+GrindJob steepJob() { return jobFor(kSteep).value(); }
 
 /// The maximum error of the rake over the flute [deg]; infinite where there is none.
 double rakeError(const GroundCutter& cutter, const GrindJob& job) {
@@ -132,9 +120,8 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
 }
 
 TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
-  const Shop shop;
-  const SetupRequest request = requestFor(shop);
-  GrindJob job = jobFor(shop).value();
+  const SetupRequest request = requestFor(kSteep);
+  GrindJob job = steepJob();
   for (const double lead : {-1e-3, 1e-3}) {
     SCOPED_TRACE(lead);
     job.process.setup_lead = lead;
@@ -149,7 +136,7 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
                              with_law.zCorrectionOf(0),
                              lead};
     for (const double part : {0.1, 0.9}) {
-      EXPECT_NEAR(bench.rake(part * job.cutter.flute_length) / kDegree, shop.rake, 0.005) << part;
+      EXPECT_NEAR(bench.rake(part * job.cutter.flute_length) / kDegree, kSteep.rake, 0.005) << part;
     }
   }
 }

@@ -194,15 +194,6 @@ TEST(JobSetup, EdgeAndCoresBeyondTheirTolerancesAreRefusedAndFound) {
   for (const char* key : {"process.setup.lead_mm", "process.depth_mm", "process.depth_end_mm"}) EXPECT_TRUE(wrote(key));
 }
 
-TEST(JobSetup, ACylindersCoreIsGroundToAMicrometre) {
-  GrindJob job = shipped("roughing_d10_t4");
-  job.cutter.core_diameter = job.cutter.core_diameter_end = 6.7 * kMillimetre;
-  const JobSetup setup = solved(job);
-  EXPECT_NEAR(groundCutterOf(ValidJob(setup.job)).section(0).core_radius * 2, job.cutter.core_diameter, 1e-6);
-  EXPECT_NEAR(setup.check.figures.core_diameter[0], job.cutter.core_diameter, 1e-6);
-  EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.015);
-}
-
 TEST(JobSetup, AWornWheelIsTakenAsItIs) {
   GrindJob job = paper();
   job.process.wheel_wear = 20 * kMillimetre;

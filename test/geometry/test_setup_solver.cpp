@@ -29,21 +29,12 @@ std::vector<double> equalTeeth(int n) {
   return angles;
 }
 
-/// A cutter of two teeth and a straight wheel, in the shop's units.
-struct Shop {
-  double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
-};
+using brute::Shop;
 
+/// With two teeth.
 SetupRequest requestFor(const Shop& s) {
-  SetupRequest r;
-  r.cutter = {s.diameter * kMillimetre, s.cone * kDegree, s.spiral * kDegree, s.rake * kDegree, s.length * kMillimetre};
-  r.rake = s.rake * kDegree;
+  SetupRequest r = s.request();
   r.tooth_angles = equalTeeth(2);
-  r.wheel = WheelProfile::straight(s.wheel * kMillimetre, s.width * kMillimetre);
-  r.nominal_radius = s.wheel / 2 * kMillimetre;
-  r.depth = s.depth * kMillimetre;
-  r.min_swivel = -60 * kDegree;
-  r.max_swivel = 60 * kDegree;
   return r;
 }
 

@@ -3,12 +3,12 @@
 #include "flute_grinder/geometry/stl.h"
 
 #include "geometry/solid_cases.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <regex>
@@ -43,22 +43,14 @@ class Admesh {
   std::string text_;
 };
 
-std::string written(const CutterSolid& solid) {
-  const char* folder = std::getenv("TMPDIR");
-  std::string path = std::string(folder ? folder : "/tmp") + "/cutter_XXXXXX";
-  const int file = mkstemp(path.data());
-  EXPECT_GE(file, 0);
+void expectSound(const CutterSolid& solid) {
+  const test_support::TempFolder folder;
+  const std::string path = folder.path() / "cutter.stl";
   std::ofstream out(path, std::ios::binary);
   writeStl(out, solid);
   out.close();
   EXPECT_TRUE(out.good());
-  return path;
-}
-
-void expectSound(const CutterSolid& solid) {
-  const std::string path = written(solid);
   const Admesh admesh(path);
-  std::remove(path.c_str());
   for (const char* wrong : {"Total disconnected facets", "Degenerate facets", "Edges fixed", "Facets removed",
                             "Facets added", "Facets reversed", "Backwards edges", "Normals fixed"}) {
     EXPECT_EQ(admesh.figure(wrong), 0) << admesh.text();

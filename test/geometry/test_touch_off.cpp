@@ -137,8 +137,8 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
   struct Case {
     double angle, lower, upper;
   };
-  for (const Case c :
-       {Case{45, 0.5, 0.5}, Case{20, 0.1, 0.1}, Case{30, 0, 0.8}, Case{30, 0.8, 0}, Case{60, 0.3, 0.2}}) {
+  for (const Case c : {Case{45, 0.5, 0.5}, Case{20, 0.1, 0.1}, Case{30, 0, 0.8}, Case{30, 0.8, 0}, Case{60, 0.3, 0.2},
+                       Case{0, 0.5, 0.3}}) {
     for (const WheelFace side : {WheelFace::kUpper, WheelFace::kLower}) {
       for (const WheelShape shape : {WheelShape::kAngled, WheelShape::kCup}) {
         GrindJob job = worn();

@@ -36,34 +36,6 @@ TEST(WheelProfile, AFullRadiusIsASemicircle) {
   EXPECT_NEAR(wheel.maxRadius(), 0.05, 1e-15);
 }
 
-TEST(WheelProfile, ACornerIsACircleThatTouchesFaceAndProfile) {
-  for (const double angle : {-40.0, -10.0, 0.0, 25.0}) {
-    const double size = 0.0008;
-    const auto wheel = WheelProfile::angled(0.08, 0.005, angle * kDegree, {size, size});
-    // The corner of the larger face lies outside the circle that rounds it.
-    const double a = std::abs(angle) * kDegree;
-    const double outside = size * (std::tan(a) + 1 / std::cos(a) - 1);
-    const auto sharp = WheelProfile::angled(0.08 + 2 * outside, 0.005, angle * kDegree);
-    EXPECT_NEAR(wheel.maxRadius(), 0.04, 1e-15) << angle;
-    const double centre_w = wheel.upperFace() - size;
-    const double centre_r = wheel.radius(wheel.upperFace());
-    const double touch = centre_w - size * std::sin(angle * kDegree);
-    for (const double part : {0.01, 0.3, 0.9}) {
-      const double w = touch + part * (wheel.upperFace() - touch);
-      EXPECT_NEAR(std::hypot(w - centre_w, wheel.radius(w) - centre_r), size, 1e-9) << angle;
-      EXPECT_LE(wheel.radius(w), sharp.radius(w)) << angle;
-    }
-    EXPECT_NEAR(wheel.radius(0), sharp.radius(0), 1e-15) << angle;
-    // Smooth: no step in slope where the circle meets the profile.
-    double last = wheel.radius(0), slope = wheel.radius(1e-6) - last;
-    for (double w = 1e-6; w < centre_w + 0.5 * size; w += 1e-6) {
-      const double next = wheel.radius(w + 1e-6) - wheel.radius(w);
-      EXPECT_LT(std::abs(next - slope), 1e-8) << angle;
-      slope = next;
-    }
-  }
-}
-
 TEST(WheelProfile, TheSlopeIsThatOfTheRadius) {
   for (const auto& wheel :
        {WheelProfile::straight(0.1, 0.006), WheelProfile::angled(0.08, 0.005, 25 * kDegree, {8e-4, 3e-4}),

@@ -44,12 +44,6 @@ TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
   }
 }
 
-TEST(JobPlan, RefusesABadMachine) {
-  Machine machine = plainMachine();
-  machine.period = 0;
-  EXPECT_EQ(planOf(paperJob(), machine).fault, PlanFault::kInvalidJob);
-}
-
 TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   // 64 teeth in 300 passes of 5 mm + 32 mm sqrt(1 + tan^2 5 + tan^2 30) at 0.1 mm/min: 42 mm each, 25,200 s.
   GrindJob job = paperJob();

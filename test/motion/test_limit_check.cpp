@@ -68,50 +68,41 @@ std::vector<double> withMiddles(const std::vector<double>& ends) {
   return positions;
 }
 
-class LimitCheckAxis : public ::testing::TestWithParam<int> {};
-
-TEST_P(LimitCheckAxis, LetsPassWhatIsAtTheEndsOfItsRange) {
-  const int axis = GetParam();
-  const AxisLimits l = plainLimits();
-  EXPECT_FALSE(Feeder(axis).feed(l.max_position[axis]));
-  EXPECT_FALSE(Feeder(axis).feed(l.min_position[axis]));
+void expectViolation(const std::optional<LimitViolation>& found, int axis, LimitedQuantity quantity, double value,
+                     double limit, double noise = 0) {
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->axis, axis);
+  EXPECT_EQ(found->quantity, quantity);
+  EXPECT_NEAR(found->value, value, noise);
+  EXPECT_EQ(found->limit, limit);
 }
 
-TEST_P(LimitCheckAxis, CatchesAPositionBeyondItsRange) {
+class LimitCheckAxis : public ::testing::TestWithParam<int> {};
+
+TEST_P(LimitCheckAxis, LetsPassTheEndsOfItsRangeAndCatchesWhatIsBeyond) {
   const int axis = GetParam();
   const AxisLimits l = plainLimits();
-  const double above = l.max_position[axis] * (1 + 1e-12);
-  const double below = l.min_position[axis] * (1 + 1e-12);
-  const auto high = Feeder(axis).feed(above);
-  ASSERT_TRUE(high);
-  EXPECT_EQ(high->axis, axis);
-  EXPECT_EQ(high->quantity, LimitedQuantity::kPosition);
-  EXPECT_EQ(high->value, above);
-  EXPECT_EQ(high->limit, l.max_position[axis]);
-  const auto low = Feeder(axis).feed(below);
-  ASSERT_TRUE(low);
-  EXPECT_EQ(low->axis, axis);
-  EXPECT_EQ(low->quantity, LimitedQuantity::kPosition);
-  EXPECT_EQ(low->value, below);
-  EXPECT_EQ(low->limit, l.min_position[axis]);
+  for (const double end : {l.max_position[axis], l.min_position[axis]}) {
+    EXPECT_FALSE(Feeder(axis).feed(end));
+    const double beyond = end * (1 + 1e-12);
+    expectViolation(Feeder(axis).feed(beyond), axis, LimitedQuantity::kPosition, beyond, end);
+  }
 }
 
 TEST_P(LimitCheckAxis, CatchesWhatIsNotFinite) {
   const int axis = GetParam();
   for (const double bad : {kNan, kInf, -kInf}) {
     SCOPED_TRACE(bad);
-    const auto first = Feeder(axis).feed(bad);
-    ASSERT_TRUE(first);
-    EXPECT_EQ(first->axis, axis);
-    EXPECT_EQ(first->quantity, LimitedQuantity::kNotFinite);
-    EXPECT_NE(text(reasonOf(*first)).find("is not a finite number"), std::string::npos);
-    Feeder later(axis);
-    EXPECT_FALSE(later.feedAll({0, 0, 0}));
-    const auto violation = later.feed(bad);
-    ASSERT_TRUE(violation);
-    EXPECT_EQ(violation->axis, axis);
-    EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
-    EXPECT_EQ(violation->cycle, 3u);
+    for (const std::vector<double>& before : {std::vector<double>{}, {0, 0, 0}}) {
+      Feeder feeder(axis);
+      EXPECT_FALSE(feeder.feedAll(before));
+      const auto violation = feeder.feed(bad);
+      ASSERT_TRUE(violation);
+      EXPECT_EQ(violation->axis, axis);
+      EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
+      EXPECT_EQ(violation->cycle, before.size());
+      EXPECT_NE(text(reasonOf(*violation)).find("is not a finite number"), std::string::npos);
+    }
   }
 }
 
@@ -144,11 +135,7 @@ TEST_P(LimitCheckAxis, LetsPassAndCatchesSpeed) {
   EXPECT_FALSE(Feeder(axis, l).feedAll({0, v * kPeriod, 2 * v * kPeriod, v * kPeriod, 0}));
   const double faster = v * (1 + 1e-6);
   const auto violation = Feeder(axis, l).feedAll({0, 0, 0, -faster * kPeriod});
-  ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->axis, axis);
-  EXPECT_EQ(violation->quantity, LimitedQuantity::kVelocity);
-  EXPECT_NEAR(violation->value, -faster, 1e-12);
-  EXPECT_EQ(violation->limit, v);
+  expectViolation(violation, axis, LimitedQuantity::kVelocity, -faster, v, 1e-12);
   EXPECT_EQ(violation->cycle, 3u);
 }
 
@@ -168,11 +155,7 @@ TEST_P(LimitCheckAxis, LetsPassAndCatchesAccelerationOfPairEnds) {
   EXPECT_FALSE(Feeder(axis, l).feedAll(course(a)));
   EXPECT_FALSE(Feeder(axis, l).feedAll(course(-a)));
   const auto violation = Feeder(axis, l).feedAll(course(-a * (1 + 1e-6)));
-  ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->axis, axis);
-  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
-  EXPECT_NEAR(violation->value, -a * (1 + 1e-6), 1e-9 * a);
-  EXPECT_EQ(violation->limit, a);
+  expectViolation(violation, axis, LimitedQuantity::kAcceleration, -a * (1 + 1e-6), a, 1e-9 * a);
   EXPECT_EQ(violation->cycle % 2, 0u);
 }
 
@@ -191,12 +174,8 @@ TEST_P(LimitCheckAxis, LetsPassAndCatchesJerkOfPairEnds) {
   };
   EXPECT_FALSE(Feeder(axis, l).feedAll(course(j)));
   EXPECT_FALSE(Feeder(axis, l).feedAll(course(-j)));
-  const auto violation = Feeder(axis, l).feedAll(course(j * (1 + 1e-6)));
-  ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->axis, axis);
-  EXPECT_EQ(violation->quantity, LimitedQuantity::kJerk);
-  EXPECT_NEAR(violation->value, j * (1 + 1e-6), 1e-9 * j);
-  EXPECT_EQ(violation->limit, j);
+  expectViolation(Feeder(axis, l).feedAll(course(j * (1 + 1e-6))), axis, LimitedQuantity::kJerk, j * (1 + 1e-6), j,
+                  1e-9 * j);
 }
 
 TEST_P(LimitCheckAxis, LetsPassARampWithinAllLimits) {
@@ -225,17 +204,11 @@ TEST(LimitCheck, TakesTheFirstSetpointAsPrecededByRest) {
   EXPECT_TRUE((feeder.check().velocity() == 0).all());
   EXPECT_TRUE((feeder.check().acceleration() == 0).all());
   EXPECT_TRUE((feeder.check().jerk() == 0).all());
-}
-
-TEST(LimitCheck, StartsFromRest) {
   // A first pair at a speed that is allowed asks for v / pair, far above the acceleration.
-  Feeder feeder(kX);
   const double way = 0.1 * kPeriod;
-  const auto violation = feeder.feedAll({0, way, 2 * way});
-  ASSERT_TRUE(violation);
-  EXPECT_EQ(violation->quantity, LimitedQuantity::kAcceleration);
+  const auto violation = feeder.feedAll({0.4 + way, 0.4 + 2 * way});
+  expectViolation(violation, kX, LimitedQuantity::kAcceleration, 0.1 / (2 * kPeriod), 1, 1e-9);
   EXPECT_EQ(violation->cycle, 2u);
-  EXPECT_NEAR(violation->value, 0.1 / (2 * kPeriod), 1e-9);
 }
 
 TEST(LimitCheck, ForgetsThePastAtARestart) {
@@ -301,16 +274,13 @@ std::vector<std::string> allOf(const LimitCheck& check) {
   return all;
 }
 
-TEST(LimitCheck, HasNoneOfASetpointThatIsGood) {
-  LimitCheck check(plainLimits(), kPeriod);
-  EXPECT_EQ(check.begin(), check.end());
-  EXPECT_FALSE(check.check(Setpoint{}));
-  EXPECT_EQ(check.begin(), check.end());
-}
-
 TEST(LimitCheck, HasAllOfASetpointOfWhichTheFirstIsReported) {
   LimitCheck check(plainLimits(), kPeriod);
+  EXPECT_EQ(check.begin(), check.end());
   Setpoint p;
+  EXPECT_FALSE(check.check(p));
+  EXPECT_EQ(check.begin(), check.end());
+  check.restart();
   p.position[kX] = 1;
   p.position[kA] = -17;
   const auto first = check.check(p);

@@ -107,10 +107,11 @@ TEST(JobPlan, ReportsTheStatisticsOfManyTeethAndPasses) {
   expectSame(job, plainMachine());
 }
 
-/// Checks move_ends against the setpoints' own moves.
-void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& start, bool rc = false) {
+/// Whether move_ends are the setpoints' own.
+void checkMoveEnds(const Work& work) {
   std::vector<Setpoint> visited;
-  const JobPlan plan = planJob(ValidJob(job), machine, start, [&](const Setpoint& p) { visited.push_back(p); });
+  const JobPlan plan =
+      planJob(work.valid(), work.machine, work.start, [&](const Setpoint& p) { visited.push_back(p); });
   std::vector<std::uint64_t> expected;
   std::size_t i = 0;
   for (const Move& move : plan.program->moves()) {
@@ -121,25 +122,17 @@ void expectMoveEnds(const GrindJob& job, const Machine& machine, const Axes& sta
     }
     expected.push_back(visited[i].cycle);
   }
-  if (rc) {
-    RC_ASSERT(plan.move_ends == expected);
-    RC_ASSERT(plan.move_ends.back() + 1 == plan.statistics.setpoints);
-  } else {
-    EXPECT_EQ(plan.move_ends, expected);
-    EXPECT_EQ(plan.move_ends.back() + 1, plan.statistics.setpoints);
-  }
-}
-
-TEST(JobPlan, ReportsWhereMovesOfNoLengthEnd) {
-  GrindJob job = paperJob();
-  job.cutter.spiral_angle = 0;  // A never turns
-  job.process.spark_out = 2;
-  expectMoveEnds(job, plainMachine(), plainMachine().park);
+  RC_ASSERT(plan.move_ends == expected);
+  RC_ASSERT(plan.move_ends.back() + 1 == plan.statistics.setpoints);
 }
 
 RC_GTEST_PROP(JobPlanProperty, ReportsWhereEveryMoveEnds, ()) {
-  const Work work = *test_support::toothedWork(500);
-  expectMoveEnds(work.job, work.machine, work.start, true);
+  Work work = *test_support::toothedWork(500);
+  checkMoveEnds(work);
+  work.job.cutter.spiral_angle = 0;  // A never turns: there are moves of no length
+  work.job.tooth_angles = {0};
+  work.job.process.spark_out = 2;
+  checkMoveEnds(work);
 }
 
 }  // namespace test_path_statistics

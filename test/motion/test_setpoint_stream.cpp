@@ -31,17 +31,6 @@ TEST(SetpointStream, StartsAtRestWhereTheAxesStand) {
   EXPECT_FALSE(p.at_feed);
 }
 
-TEST(SetpointStream, LeavesTheSetpointAsItWasAtTheEnd) {
-  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
-  Setpoint p;
-  while (stream.next(p)) {
-  }
-  const Setpoint last = p;
-  EXPECT_FALSE(stream.next(p));
-  EXPECT_EQ(p.cycle, last.cycle);
-  EXPECT_TRUE((p.position == last.position).all());
-}
-
 TEST(SetpointStream, KeepsThePapersCutterWithinAMicroradianAt60MillimetresPerMinute) {
   GrindJob job = paperJob();
   job.process.feed = 60 * units::kMillimetrePerMinute;
@@ -144,10 +133,12 @@ RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndReportsTheMeanVe
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, ReportsTheoryMinusCommandedAsPathError, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstructionAndReportTheoryMinusCommanded, ()) {
   const Work work = *test_support::work(kCycles);
-  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const auto setpoints = all(work);
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 37) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");  // odd points leave the curve by the tangent's error only
+  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const Axes noise = roundingOf(setpoints);
   for (const Setpoint& p : setpoints) {
     if (p.step == StepKind::kNone) continue;
@@ -156,16 +147,12 @@ RC_GTEST_PROP(SetpointStreamProperty, ReportsTheoryMinusCommandedAsPathError, ()
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstruction, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, AStreamThatSharesItsProgramGivesTheSameBitsAsOneThatOwnsIt, ()) {
   const Work work = *test_support::work(kCycles);
-  const auto setpoints = all(work);
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 37) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");  // odd points leave the curve by the tangent's error only
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {
-  const Work work = *test_support::work(kCycles);
-  const auto one = all(work);
+  const auto program = std::make_shared<const GrindProgram>(work.program());
+  SetpointStream shared(program);
+  RC_ASSERT(&shared.program() == program.get());
+  const auto one = all(shared);
   const auto other = all(work);
   RC_ASSERT(one.size() == other.size());
   for (std::size_t i = 0; i < one.size(); ++i) {
@@ -176,15 +163,18 @@ RC_GTEST_PROP(SetpointStreamProperty, TwoStreamsGiveTheSameBits, ()) {
   }
 }
 
-TEST(SetpointStream, IsFinishedAtItsEndOnly) {
+TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
   SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   Setpoint p;
   EXPECT_FALSE(stream.finished());
   while (stream.next(p))
     EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
   EXPECT_TRUE(stream.finished());
+  const Setpoint last = p;
   stream.resume();
   EXPECT_FALSE(stream.next(p));
+  EXPECT_EQ(p.cycle, last.cycle);
+  EXPECT_TRUE((p.position == last.position).all());
 }
 
 TEST(SetpointStream, ReportsMoveAndProgress) {
@@ -214,20 +204,6 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
-}
-
-TEST(SetpointStream, SharesItsProgram) {
-  const Machine machine = plainMachine();
-  const auto program = std::make_shared<const GrindProgram>(ValidJob(paperJob()), machine, machine.park);
-  SetpointStream shared(program);
-  SetpointStream owned(*program);
-  EXPECT_EQ(&shared.program(), program.get());
-  Setpoint p, q;
-  while (shared.next(p)) {
-    ASSERT_TRUE(owned.next(q));
-    ASSERT_TRUE((p.position == q.position).all());
-  }
-  EXPECT_FALSE(owned.next(q));
 }
 
 }  // namespace test_setpoint_stream

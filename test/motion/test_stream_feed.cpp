@@ -21,23 +21,27 @@ namespace test_stream_feed {
 
 using namespace test_support;
 
-RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeed, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeedAsOverridden, ()) {
   const Work work = *test_support::work(kCycles);
-  const GrindProgram program = work.program();
+  SetpointStream stream(work.program());
+  const FeedSchedule& schedule = stream.program().schedule();
   const double edge = edgePerTravel(work.job.cutter);
-  const double speed = program.schedule().feedSpeed();
-  if (program.schedule().feedLimits().empty()) {
-    RC_ASSERT(std::abs(speed * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
+  if (schedule.feedLimits().empty()) {
+    RC_ASSERT(std::abs(schedule.feedSpeed() * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
   }
-  const auto setpoints = all(work);
+  const double fraction = *rc::gen::oneOf(rc::gen::just(1.0), uniform(0.1, 1.2));
+  stream.setFeedOverride(fraction);
+  const double speed = std::min(fraction * schedule.feedSpeed(), schedule.limits().velocity);
+  const double pair = 2 * speed * work.machine.period;
+  const auto setpoints = all(stream);
   const double rounding = roundingOf(setpoints)[kX];
   for (const SeenPair& s : pairsOf(setpoints)) {
     RC_ASSERT(s.odd.at_feed == s.even.at_feed);
     if (!s.odd.at_feed) continue;
-    const double pair = 2 * speed * work.machine.period;
     RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.start.position[kX]) - pair) <= 1e-6 * pair + 2 * rounding);
     RC_ASSERT(std::abs(s.even.feed - speed * edge) <= 1e-9 * speed * edge);
   }
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathOnly, ()) {
@@ -246,24 +250,6 @@ RC_GTEST_PROP(SetpointStreamProperty, RapidsKeepTheirSpeedWhateverTheFeed, ()) {
   SetpointStream stream(work.program());
   stream.setFeedOverride(*uniform(0.1, 1.2));
   RC_ASSERT(rapidsOf(all(stream)) == rapidsOf(all(work)));
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, AtAnotherFeedEveryPairGoesAtThatFeed, ()) {
-  const Work work = *test_support::work(kCycles);
-  SetpointStream stream(work.program());
-  const double fraction = *uniform(0.1, 1.2);
-  stream.setFeedOverride(fraction);
-  const FeedSchedule& schedule = stream.program().schedule();
-  const double most = schedule.limits().velocity;
-  const double speed = std::min(fraction * schedule.feedSpeed(), most);
-  const auto setpoints = all(stream);
-  const double rounding = roundingOf(setpoints)[kX];
-  for (const SeenPair& s : pairsOf(setpoints)) {
-    if (!s.odd.at_feed) continue;
-    const double pair = 2 * speed * work.machine.period;
-    RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.start.position[kX]) - pair) <= 1e-6 * pair + 2 * rounding);
-  }
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAskedFor, ()) {

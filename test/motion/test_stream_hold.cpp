@@ -27,28 +27,6 @@ TEST(SetpointStream, HeldBeforeItBeginsDoesNotMove) {
   EXPECT_TRUE((setpoints[0].position == plainMachine().park).all());
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, HeldItStopsOnThePathUnderTheLimits, ()) {
-  const Work work = *test_support::work(kCycles);
-  const auto undisturbed = all(work);
-  SetpointStream stream(work.program());
-  std::vector<Setpoint> setpoints;
-  Setpoint p;
-  const auto hold_at = static_cast<std::size_t>(static_cast<double>(undisturbed.size()) * *uniform(0, 1));
-  for (std::size_t i = 0; i < hold_at && stream.next(p); ++i) setpoints.push_back(p);
-  stream.hold();
-  while (stream.next(p)) {
-    setpoints.push_back(p);
-    RC_ASSERT(setpoints.size() <= undisturbed.size() + 2);  // a stop is never longer than the way to the end
-  }
-  if (setpoints.empty()) return;
-  RC_ASSERT(!stream.next(p));
-  RC_ASSERT(setpoints.back().cycle % 2 == 0u);
-  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
-}
-
 RC_GTEST_PROP(SetpointStreamProperty, HeldInTheStrokeItStaysInTheStroke, ()) {
   const Work work = *test_support::work(kCycles);
   const GrindProgram program = work.program();
@@ -98,7 +76,8 @@ TEST(SetpointStream, HeldItRestsAsSoonAsTheLimitsAllow) {
   EXPECT_EQ(ride.last().cycle - cycle, 2 * std::ceil(2 * std::sqrt(speed / limits.jerk) / 2e-3));
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWholeAndKeepAllLimitsAndThePapersConstruction,
+              ()) {
   const Work work = *toothedWork(kCycles / 3);
   const auto undisturbed = all(work);
   const auto moments = momentsInStrokes(undisturbed, 3);
@@ -110,6 +89,10 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWhole, ())
   checkStrokes(setpoints, work);
   RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
   RC_ASSERT((setpoints.back().position == work.machine.park).all());
+  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");             // and none needs a rest to be gone on from
+  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
@@ -124,17 +107,6 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightToler
   const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(undisturbed, 3));
   RC_ASSERT(maxDeviation(ride.setpoints(), work.job) <= allowed);
   RC_ASSERT(maxDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesKeepAllLimitsAndThePapersConstruction, ()) {
-  const Work work = *test_support::work(kCycles);
-  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 4));
-  RC_ASSERT(ride.requests_in_strokes >= 4);
-  const auto setpoints = ride.setpoints();
-  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");             // and none needs a rest to be gone on from
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
 /// Slowed down at random moments, held and brought up again now and then.

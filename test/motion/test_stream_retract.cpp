@@ -1,7 +1,5 @@
 // A stream whose wheel is retracted from wherever it rests, and comes back.
 
-#include "flute_grinder/curve/relief_path.h"
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/axis_move.h"
 #include "flute_grinder/motion/setpoint_stream.h"
@@ -81,25 +79,8 @@ void checkDetours(const Ride& ride, const Work& work) {
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveTheWorkRadiallyAndComeBackAheadOfThePlaceWithinTheLimits, ()) {
-  const Work work = *toothedWork(kCycles / 3);
-  const auto undisturbed = all(work);
-  const Ride ride = rideWithRetracts(work, undisturbed, 6);
-  checkDetours(ride, work);
-  const auto setpoints = ride.setpoints();
-  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
-  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
-  checkStrokes(setpoints, work);
-  RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
-  RC_ASSERT((setpoints.back().position == work.machine.park).all());
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveOutNoMove, ()) {
-  const Work work = *toothedWork(kCycles / 3);
-  const GrindProgram program = work.program();
-  const auto undisturbed = all(work);
-  const Ride ride = rideWithRetracts(work, undisturbed, 6);
+/// Whether every move was made, to its end.
+void checkMoves(const Ride& ride, const GrindProgram& program, const std::vector<Setpoint>& undisturbed) {
   std::vector<Setpoint> on_path;
   for (const Ride::Given& g : ride.given) {
     if (g.on_path) on_path.push_back(g.p);
@@ -113,6 +94,21 @@ RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveOutNoMove, ()) {
     RC_ASSERT(((p.position - to).abs().head<3>() <= 1e-12).all());
     if (p.move != MoveKind::kStroke) RC_ASSERT(std::abs(p.position[kA] - to[kA]) <= 1e-12);
   }
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, RetractsLeaveTheWorkRadiallyAndLeaveOutNothingWithinTheLimits, ()) {
+  const Work work = *toothedWork(kCycles / 3);
+  const auto undisturbed = all(work);
+  const Ride ride = rideWithRetracts(work, undisturbed, 6);
+  checkDetours(ride, work);
+  checkMoves(ride, work.program(), undisturbed);
+  const auto setpoints = ride.setpoints();
+  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
+  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
+  checkStrokes(setpoints, work);
+  RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, BackInTheStrokeItIsAtFeedFromThePlaceOnWhereItWasLeft, ()) {
@@ -163,7 +159,10 @@ RC_GTEST_PROP(SetpointStreamProperty, ARetractWhileItMovesIsNotTaken, ()) {
   RC_ASSERT(i == undisturbed.size());
 }
 
-TEST(SetpointStream, LiftsToTheClearanceAboveTheHighestOfTheWork) {
+/// Y at which the wheel is clear of all of the paper's work.
+const double kPaperClearance = 31e-3 * std::tan(5 * units::kDegree) + 5e-3;
+
+TEST(SetpointStream, LiftsToTheClearanceAndComesBackAboveTheWorkThenDownAtFeedThenAlong) {
   PaperStroke ride(10e-3);
   ride.stream().hold();
   ride.runToRest();
@@ -176,17 +175,9 @@ TEST(SetpointStream, LiftsToTheClearanceAboveTheHighestOfTheWork) {
   EXPECT_FALSE(ride.stream().finished());
   EXPECT_EQ(ride.last().move, MoveKind::kLift);
   EXPECT_EQ(ride.last().move_index, held.move_index);
-  EXPECT_NEAR(ride.last().position[kY], 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-15);
+  EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15);
   for (const int axis : {kX, kZ, kA}) EXPECT_EQ(ride.last().position[axis], held.position[axis]);
-}
 
-TEST(SetpointStream, ComesBackAboveTheWorkThenDownAtFeedThenAlong) {
-  PaperStroke ride(10e-3);
-  ride.stream().hold();
-  ride.runToRest();
-  const double left = ride.last().position[kX];
-  ride.stream().retract();
-  ride.runToRest();
   ride.stream().resume();
   std::vector<MoveKind> kinds;
   double fastest_plunge = 0;
@@ -204,77 +195,8 @@ TEST(SetpointStream, ComesBackAboveTheWorkThenDownAtFeedThenAlong) {
   EXPECT_NEAR(fastest_plunge, 0.01, 1e-12);
   // 600 mm/min along the edge are v = 8.637 mm/s in X. A's jerk, 5000 rad/s^3, leaves X some 40 m/s^3 on this cone: the
   // feed is reached in 2 sqrt(v/j) = 29 ms, over v sqrt(v/j) = 0.13 mm.
-  EXPECT_NEAR(left - entry, 0.13e-3, 0.02e-3);
+  EXPECT_NEAR(held.position[kX] - entry, 0.13e-3, 0.02e-3);
   EXPECT_TRUE(ride.stream().finished());
-}
-
-/// The primary relief of the reamer in one pass, on edges that are as asked. Its strokes go toward the small end.
-ValidJob relief() {
-  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
-  job.operations[1].process.infeed = 1e-3;
-  job.operations[1].process.finish_infeed = 0;
-  job = job.ofOperation(1);
-  return ValidJob(job).withEdges(ValidJob(job.ofOperation(0)), std::vector<double>(job.tooth_angles.size()));
-}
-
-/// How far a setpoint of a stroke is off the relief's closed form: in Y, Z, and in A at the cutter's surface [m].
-double offTheRelief(const ValidJob& job, const Setpoint& p) {
-  const ReliefPath& path = *job.relief(p.tooth);
-  const ConicalCutter cutter(job->cutter);
-  const double x = p.position[kX];
-  const double a = job->tooth_angles[p.tooth] + path.a() + LogCurve(cutter, path.lead()).a(x);
-  return std::max({std::abs(p.position[kY] - path.y() - x * (cutter.tanCone() + path.taper())),
-                   std::abs(p.position[kZ] - x * cutter.tanCone() * path.cutter().zPerY()),
-                   std::abs(p.position[kA] - a) * cutter.radius(x)});
-}
-
-// Y alone leads off a relief and back, and the stroke goes on along its surface, without a gap.
-TEST(SetpointStream, AReliefIsLeftInYAndGoneOnWith) {
-  const ValidJob job = relief();
-  const Machine machine = roomyMachine();
-  SetpointStream stream(GrindProgram(job, machine, machine.park));
-  const double to = stream.program().strokeTo();
-  ASSERT_LT(to, stream.program().strokeFrom());
-  Setpoint p;
-  const auto run_to_rest = [&](const auto& visit) {
-    while (stream.next(p)) visit(p);
-  };
-  while (p.move != MoveKind::kStroke || p.tooth != 1 || p.move_fraction < 0.5) ASSERT_TRUE(stream.next(p));
-  stream.hold();
-  run_to_rest([&](const Setpoint& s) { ASSERT_LT(offTheRelief(job, s), 1e-6); });
-  const Axes left = p.position;
-  ASSERT_EQ(p.move, MoveKind::kStroke);
-  ASSERT_GT(left[kX], to);
-
-  stream.retract();
-  run_to_rest([&](const Setpoint& s) {
-    for (const int axis : {kX, kZ, kA}) ASSERT_EQ(s.position[axis], left[axis]);
-  });
-  const double highest = stream.program().strokeFrom() * std::tan(2 * units::kDegree);
-  EXPECT_NEAR(p.position[kY], highest + job->process.clearance, 1e-12);
-
-  stream.resume();
-  std::vector<MoveKind> kinds;
-  Axes entry = p.position;
-  bool back = false;
-  std::map<std::uint16_t, double> reached;
-  run_to_rest([&](const Setpoint& s) {
-    if (!back && (kinds.empty() || kinds.back() != s.move)) kinds.push_back(s.move);
-    if (!back && s.move == MoveKind::kPosition) entry = s.position;
-    if (s.move == MoveKind::kInfeed && !back) {
-      for (const int axis : {kX, kZ, kA}) ASSERT_EQ(s.position[axis], entry[axis]);
-    }
-    if (s.move != MoveKind::kStroke) return;
-    back = true;
-    reached[s.tooth] = s.position[kX];
-    ASSERT_LT(offTheRelief(job, s), 1e-6);
-  });
-  EXPECT_EQ(kinds, (std::vector<MoveKind>{MoveKind::kPosition, MoveKind::kInfeed, MoveKind::kStroke}));
-  EXPECT_GT(entry[kX], left[kX]);
-  EXPECT_TRUE(stream.finished());
-  EXPECT_TRUE((p.position == machine.park).all());
-  EXPECT_EQ(reached.size(), 5u);  // the second tooth and all behind it, each to the stroke's end
-  for (const auto& [tooth, x] : reached) EXPECT_NEAR(x, to, 1e-12) << tooth;
 }
 
 TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
@@ -288,7 +210,7 @@ TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
   EXPECT_FALSE(ride.stream().onPath());
   EXPECT_EQ(ride.last().move, MoveKind::kPosition);
   EXPECT_LT(ride.last().position[kX], left);
-  EXPECT_NEAR(ride.last().position[kY], 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-15);
+  EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15);
   ride.stream().setFeedOverride(1);
   ride.runToRest();
   EXPECT_TRUE(ride.stream().finished());
@@ -311,7 +233,7 @@ TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
     while (stream.next(p)) {
     }
     EXPECT_EQ(p.position[kX], held.position[kX]);
-    EXPECT_GE(p.position[kY], 31e-3 * std::tan(5 * units::kDegree) + 5e-3 - 1e-15);
+    EXPECT_GE(p.position[kY], kPaperClearance - 1e-15);
     stream.resume();
     ASSERT_TRUE(stream.next(p));
     EXPECT_TRUE(stream.onPath());
@@ -461,10 +383,7 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
 TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
   PaperStroke ride(10e-3);
   SetpointStream& stream = ride.stream();
-  stream.hold();
-  ride.runToRest();
-  stream.retract();
-  ride.runToRest();
+  ride.holdAndRetract();
   const Axes lifted = ride.last().position;
   for (int cycles = 50; cycles < 400; cycles += 50) {
     Setpoint last = ride.last();
@@ -498,7 +417,7 @@ TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
   EXPECT_TRUE((p.position == start).all());
   while (stream.next(p)) {
   }
-  EXPECT_NEAR(p.position[kY], 31e-3 * std::tan(5 * units::kDegree) + 5e-3, 1e-15);
+  EXPECT_NEAR(p.position[kY], kPaperClearance, 1e-15);
   stream.resume();
   while (stream.next(p)) {
   }

@@ -2,7 +2,7 @@
 
 #include "flute_grinder/motion/job_plan.h"
 
-#include "stream_rides.h"
+#include "stream_checks.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -71,11 +71,13 @@ RC_GTEST_PROP(ZCorrectionProperty, ItsDerivativesKeepWithinTheirBounds, ()) {
   if (c.pieces > 1) RC_ASSERT(second > bounds.second / 50);
 }
 
-RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrection, ()) {
+RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrectionWithinAllLimits, ()) {
   const Work work = *correctedWork(kCycles / 3);
   const auto setpoints = all(work);
   checkStrokes(setpoints, work);
   RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
+  RC_ASSERT((setpoints.back().position == work.machine.park).all());
   // The moves to a stroke's start, and from its end.
   const GrindProgram program = work.program();
   for (const Move& move : program.moves()) {
@@ -84,36 +86,6 @@ RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrection, ()) {
     const double x = to_end ? program.strokeTo() : program.strokeFrom();
     const double rounding = 1e-14 * maxCoefficient(work.z_correction) + roundingOf(setpoints)[kZ];
     RC_ASSERT(std::abs(move.to[kZ] - zOf(work, x)) <= rounding);
-  }
-}
-
-RC_GTEST_PROP(ZLawProperty, AllLimitsOfAllAxesAreKept, ()) {
-  const Work work = *correctedWork(kCycles / 3);
-  const auto setpoints = all(work);
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
-  RC_ASSERT((setpoints.back().position == work.machine.park).all());
-}
-
-RC_GTEST_PROP(ZLawProperty, HeldAndAtOtherFeedsItIsTheSameCurveWithinTheLimits, ()) {
-  const Work work = *correctedWork(kCycles / 3);
-  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(all(work), 3));
-  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
-  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");
-  checkStrokes(ride.setpoints(), work);
-}
-
-RC_GTEST_PROP(ZLawProperty, AfterARetractItIsTheSameCurveWithinTheLimits, ()) {
-  const Work work = *correctedWork(kCycles / 3);
-  const Ride ride = rideWithRetracts(work, all(work), 4);
-  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");
-  RC_ASSERT(beyondLimits(ride.setpoints(), work.machine) == "");
-  checkStrokes(ride.setpoints(), work);
-  // The plunge back ends on the curve too, and the move to above it.
-  for (std::size_t i = 1; i < ride.given.size(); ++i) {
-    const Setpoint &p = ride.given[i].p, &before = ride.given[i - 1].p;
-    if (p.step == StepKind::kNone || before.step != StepKind::kNone || ride.given[i - 1].on_path) continue;
-    const double rounding = 4 * roundingOf(ride.setpoints())[kZ];
-    RC_ASSERT(std::abs(before.position[kZ] - zOf(work, before.position[kX])) <= rounding);
   }
 }
 

@@ -90,6 +90,20 @@ class RideDrive : public Drive {
   bool lost_ = false;
 };
 
+/// Whether nothing may move, but homing axes.
+bool isAtRest(S state) {
+  switch (state) {
+    case S::kDisabled:
+    case S::kReady:
+    case S::kHoming:
+    case S::kStarting:
+    case S::kHeld:
+    case S::kRetracted:
+    case S::kFault: return true;
+    default: return false;
+  }
+}
+
 LoopConfig configOf(const Machine& machine) {
   LoopConfig config;
   config.machine = machine;
@@ -164,6 +178,9 @@ class Ride {
     row.in_stroke = sample_.setpoint.step != StepKind::kNone;
     std::copy(sample_.setpoint.position.data(), sample_.setpoint.position.data() + kAxisCount, row.work.begin());
     if (sample_.state == S::kFault && drive_.isCommandedOn()) throw second_opinion::Violation("the power stays on");
+    if (isAtRest(sample_.state) && row.moves) throw second_opinion::Violation("it moves");
+    // No job is planned beyond a limit of its machine: what the loop refuses is the stream's fault, or the jog's.
+    if (sample_.fault.kind == FaultKind::kLimit) throw second_opinion::Violation(sample_.fault.text());
     if (row.of_job) ++result_.setpoints;
     watch_.see(row);
   }

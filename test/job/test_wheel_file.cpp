@@ -283,7 +283,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Mistake{"UnknownMeasure", "  by:", "  from:",
                 "12: measured.from is not a key of a wheel file; allowed: measured.date, measured.diameter_mm, "
-                "measured.width_mm, measured.by, dressed"},
+                "measured.width_mm, measured.by"},
         Mistake{
             "Wear", "angle_deg: 20\n", "angle_deg: 20\nwear_mm: 0.1\n",
             "6: wear_mm is not a key of a wheel file; allowed: diameter_mm, width_mm, angle_deg, corner_radius_mm[0], "

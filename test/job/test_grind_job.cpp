@@ -42,8 +42,6 @@ std::vector<Refusal> refusals(const GrindJob& job) {
   return all;
 }
 
-TEST(GrindJob, ThePapersJobIsGood) { EXPECT_TRUE(validate(paperJob()).empty()); }
-
 TEST(GrindJob, TakesTheEndsOfAnglesHoweverTheyWereComputed) {
   for (const double spiral : {60 * kPi / 180, 60 * kDeg, kPi / 3, -60 * kPi / 180, -60 * kDeg, -kPi / 3}) {
     GrindJob job = paperJob();
@@ -55,14 +53,6 @@ TEST(GrindJob, TakesTheEndsOfAnglesHoweverTheyWereComputed) {
     job.cutter.cone_angle = cone;
     EXPECT_TRUE(validate(job).empty()) << cone;
   }
-}
-
-TEST(GrindJob, ReportsEveryBadFigure) {
-  GrindJob job = paperJob();
-  job.cutter.end_diameter = kNan;
-  job.process.feed = 0;
-  job.process.spark_out = -1;
-  EXPECT_EQ(validate(job).size(), 3u);
 }
 
 /// A contradiction between the figures of a job, and the field its one error names.
@@ -141,12 +131,19 @@ INSTANTIATE_TEST_SUITE_P(
                       },
                       "process.infeed_mm", "0.001607717042 mm", "312 passes per tooth, 20000 of all teeth"},
         Contradiction{"NoTeeth", [](GrindJob& j) { j.tooth_angles.clear(); }, "cutter.teeth", "0", "1 to 64"},
+        Contradiction{"TooManyTeeth",
+                      [](GrindJob& j) {
+                        for (int i = 1; i < 65; ++i) j.tooth_angles.push_back(i * 0.09);
+                      },
+                      "cutter.teeth", "65", "1 to 64"},
         Contradiction{"OrderOutOfRange", [](GrindJob& j) { j.process.order = static_cast<GrindOrder>(2); },
                       "process.order", "2", "0 to 1"},
         Contradiction{"NegativeOrder", [](GrindJob& j) { j.process.order = static_cast<GrindOrder>(-1); },
                       "process.order", "-1", "0 to 1"},
         Contradiction{"DirectionOutOfRange", [](GrindJob& j) { j.process.direction = static_cast<StrokeDirection>(2); },
                       "process.direction", "2", "0 to 1"},
+        Contradiction{"LawOutOfRange", [](GrindJob& j) { j.process.z_law = static_cast<ZLaw>(2); }, "process.z_law",
+                      "2", "0 to 1"},
         Contradiction{"RuleOutOfRange", [](GrindJob& j) { j.interpolation.even_step = static_cast<EvenStepRule>(3); },
                       "interpolation.even_step", "3", "0 to 2"}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -192,18 +189,6 @@ TEST(GrindJob, RefusesAChordThatIsLongerThanTheFluteIsDeep) {
   EXPECT_TRUE(validate(job).empty());
 }
 
-TEST(GrindJob, RefusesTooManyTeeth) {
-  GrindJob job = paperJob();
-  job.tooth_angles.clear();
-  for (int i = 0; i < 65; ++i) job.tooth_angles.push_back(i * 0.09);
-  const auto errors = refusals(job);
-  ASSERT_EQ(errors.size(), 1u);
-  EXPECT_EQ(errors[0].field, "cutter.teeth");
-  EXPECT_EQ(errors[0].value, "65");
-  job.tooth_angles.pop_back();
-  EXPECT_TRUE(validate(job).empty());
-}
-
 TEST(GrindJob, RefusesTeethOutOfOrder) {
   const struct {
     const char* name;
@@ -230,13 +215,6 @@ TEST(GrindJob, TakesUnequalTeeth) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 88 * kDeg, 180 * kDeg, 268 * kDeg, 359.999 * kDeg};
   EXPECT_TRUE(validate(job).empty());
-}
-
-TEST(GrindJob, NamesItsChoicesAsJobFilesDo) {
-  EXPECT_STREQ(toString(GrindOrder::kToothMajor), "tooth_major");
-  EXPECT_STREQ(toString(GrindOrder::kPassMajor), "pass_major");
-  EXPECT_STREQ(toString(StrokeDirection::kFromEnd), "from_end");
-  EXPECT_STREQ(toString(StrokeDirection::kToEnd), "to_end");
 }
 
 /// Depths in mm by hand.

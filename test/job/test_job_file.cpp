@@ -86,29 +86,21 @@ std::ptrdiff_t linesOf(const std::string& text) {
   return text.empty() ? 0 : 1 + std::count(text.begin(), text.end(), '\n');
 }
 
-/// @return whether one line of `text` has all of `parts`.
-bool hasLineWith(const std::string& text, const std::vector<std::string>& parts) {
-  std::size_t from = 0;
-  while (from <= text.size()) {
-    const std::size_t end = std::min(text.find('\n', from), text.size());
-    const std::string line = text.substr(from, end - from);
-    if (std::all_of(parts.begin(), parts.end(), [&](const auto& p) { return line.find(p) != std::string::npos; }))
-      return true;
-    from = end + 1;
+/// @return whether a line of `text` has all parts of `wanted`, in their order: "job.yaml:3 ... cutter.teeth ... 1 to
+/// 64".
+bool hasLine(const std::string& text, const std::string& wanted) {
+  const std::string gap = " ... ";
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::size_t at = 0;
+    for (std::size_t from = 0; from < wanted.size() && at != std::string::npos;) {
+      const std::size_t to = std::min(wanted.find(gap, from), wanted.size());
+      at = line.find(wanted.substr(from, to - from), at);
+      from = to + gap.size();
+    }
+    if (at != std::string::npos) return true;
   }
   return false;
-}
-
-TEST(JobFile, ReadsThePapersJob) {
-  const GrindJob job = readJobFile("test/jobs/paper.yaml");
-  EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.01);
-  EXPECT_DOUBLE_EQ(job.cutter.cone_angle, kPi / 36);
-  EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, kPi / 6);
-  EXPECT_DOUBLE_EQ(job.cutter.rake_angle, kPi / 22.5);
-  EXPECT_DOUBLE_EQ(job.cutter.flute_length, 0.03);
-  EXPECT_EQ(job.tooth_angles, std::vector<double>{0});
-  EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.001);
-  EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kPublished);
 }
 
 TEST(JobFile, TurnsEveryFigureIntoSi) {
@@ -202,26 +194,20 @@ TEST(JobFile, ReadsAWheelOfPoints) {
   EXPECT_DOUBLE_EQ(job.wheel_points[2].radius, 0.0485);
 }
 
-TEST(JobFile, SpacesCountedTeethEvenly) {
-  const GrindJob job = parseJob(kGood, "job.yaml");
-  ASSERT_EQ(job.tooth_angles.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(job.tooth_angles[i], static_cast<double>(i) * kPi / 2);
-}
-
-TEST(JobFile, TakesEveryAllowedCountOfTeeth) {
+TEST(JobFile, SpacesEveryAllowedCountOfTeethEvenly) {
   for (int teeth = 1; teeth <= kMaxTeeth; ++teeth) {
     const GrindJob job = parseJob(with("teeth: 4", "teeth: " + std::to_string(teeth)), "job.yaml");
-    EXPECT_EQ(job.tooth_angles.size(), static_cast<std::size_t>(teeth));
+    ASSERT_EQ(job.tooth_angles.size(), static_cast<std::size_t>(teeth));
+    for (int i = 0; i < teeth; ++i)
+      EXPECT_NEAR(job.tooth_angles[static_cast<std::size_t>(i)], 2 * kPi * i / teeth, 1e-14);
   }
 }
 
 TEST(JobFile, ReadsUnequalTeeth) {
   const GrindJob job = parseJob(with("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]"), "job.yaml");
+  const std::vector<double> degrees{0, 88, 180, 268};
   ASSERT_EQ(job.tooth_angles.size(), 4u);
-  EXPECT_EQ(job.tooth_angles[0], 0);
-  EXPECT_DOUBLE_EQ(job.tooth_angles[1], 88 * kPi / 180);
-  EXPECT_DOUBLE_EQ(job.tooth_angles[2], kPi);
-  EXPECT_DOUBLE_EQ(job.tooth_angles[3], 268 * kPi / 180);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(job.tooth_angles[i], degrees[i] * kPi / 180);
 }
 
 TEST(JobFile, ReadsTheWearPerPassWhereItIsGiven) {
@@ -243,157 +229,99 @@ struct Mistake {
   const char* name;
   const char* piece;
   const char* replacement;
-  std::vector<std::string> message;
+  const char* message;  ///< as for hasLine()
 };
 
 std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.name; }
 
 class JobFileMistake : public ::testing::TestWithParam<Mistake> {};
 
-TEST_P(JobFileMistake, IsReportedWithFileLineKeyAndWhatIsAllowed) {
+TEST_P(JobFileMistake, IsReportedOnceWithFileLineKeyAndWhatIsAllowed) {
   const Mistake& mistake = GetParam();
   const std::string error = errorOf(with(mistake.piece, mistake.replacement));
-  EXPECT_TRUE(hasLineWith(error, mistake.message)) << "got: " << error;
-}
-
-TEST_P(JobFileMistake, IsReportedOnce) {
-  const std::string error = errorOf(with(GetParam().piece, GetParam().replacement));
+  EXPECT_TRUE(hasLine(error, mistake.message)) << "got: " << error;
   EXPECT_EQ(linesOf(error), 1) << error;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     All, JobFileMistake,
     ::testing::Values(
-        Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", {"job.yaml:35", "paint"}},
-        Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", {"job.yaml:8", "cutter.colour"}},
-        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", {"job.yaml:23", "process.overtravel_mm[2]"}},
-        Mistake{"MissingKey", "  depth_mm: 1.5\n", "", {"job.yaml", "process.depth_mm", "missing", "0.001 to 50 mm"}},
-        Mistake{"DuplicateKey",
-                "  depth_mm: 1.5\n",
-                "  depth_mm: 1.5\n  depth_mm: 1.6\n",
-                {"job.yaml:19", "process.depth_mm", "appears twice"}},
-        Mistake{"DuplicateKeySameValue",
-                "  depth_mm: 1.5\n",
-                "  depth_mm: 1.5\n  depth_mm: 1.5\n",
-                {"job.yaml:19", "process.depth_mm", "appears twice"}},
-        Mistake{"NumberWithUnit",
-                "feed_mm_min: 200",
-                "feed_mm_min: 200mm/min",
-                {"job.yaml:17", "process.feed_mm_min = 200mm/min is not a number", "0.1 to 10000 mm/min"}},
-        Mistake{"NoValue",
-                "feed_mm_min: 200",
-                "feed_mm_min:",
-                {"job.yaml:17", "process.feed_mm_min", "(nothing)", "0.1 to 10000 mm/min"}},
-        Mistake{"BrokenTeeth",
-                "teeth: 4",
-                "teeth: 4.5",
-                {"job.yaml:7", "cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"}},
-        Mistake{"DecimalComma",
-                "spiral_angle_deg: -45",
-                "spiral_angle_deg: 30,5",
-                {"job.yaml:4", "cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"}},
-        Mistake{"DegreeSign",
-                "spiral_angle_deg: -45",
-                "spiral_angle_deg: 30\u00b0",
-                {"job.yaml:4", "cutter.spiral_angle_deg = 30\u00b0 is not a number; allowed: -60 to 60 deg"}},
-        Mistake{"OctalTeeth", "teeth: 4", "teeth: 010", {"job.yaml:7", "cutter.teeth = 010", "octal", "1 to 64"}},
-        Mistake{"OctalZeroTeeth", "teeth: 4", "teeth: +04", {"job.yaml:7", "cutter.teeth = +04", "octal", "1 to 64"}},
-        Mistake{"OctalTeethOfYaml12", "teeth: 4", "teeth: 0o10", {"job.yaml:7", "cutter.teeth = 0o10", "octal"}},
-        Mistake{"HexadecimalTeeth", "teeth: 4", "teeth: 0x10", {"job.yaml:7", "cutter.teeth = 0x10", "hexadecimal"}},
-        Mistake{"TooManyTeethToCount",
-                "teeth: 4",
-                "teeth: 99999999999",
-                {"job.yaml:7", "cutter.teeth = 99999999999 is out of range", "1 to 64"}},
-        Mistake{"HexadecimalFigure",
-                "depth_mm: 1.5",
-                "depth_mm: 0x1",
-                {"job.yaml:18", "process.depth_mm = 0x1", "0.001 to 50 mm"}},
-        Mistake{"SecondDocument",
-                "interpolation:",
-                "---\ninterpolation:",
-                {"job.yaml:35", "a second document begins here", "allowed: one"}},
-        Mistake{"EmptySecondDocument",
-                "rotary_scale_mm_per_rad: 1.5\n",
-                "rotary_scale_mm_per_rad: 1.5\n---\n",
-                {"job.yaml:39", "a second document begins here"}},
-        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", {"job.yaml:18", "anchor", "allowed: none"}},
-        Mistake{"AnchorOfASection", "cutter:", "cutter: &cutter", {"job.yaml:", "anchor", "allowed: none"}},
-        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", {"job.yaml:18", "anchor"}},
-        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", {"job.yaml:24", "process.order = pass?major"}},
-        Mistake{"NotANumber",
-                "depth_mm: 1.5",
-                "depth_mm: .nan",
-                {"job.yaml:18", "process.depth_mm", "nan", "0.001 to 50 mm"}},
-        Mistake{"TooLargeForANumber",
-                "depth_mm: 1.5",
-                "depth_mm: 1e999",
-                {"job.yaml:18", "process.depth_mm", "0.001 to 50 mm"}},
-        Mistake{"TwoWaysOfTeeth",
-                "  teeth: 4\n",
-                "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
-                {"job.yaml:7", "cutter.teeth", "cutter.tooth_angles_deg", "one of the two"}},
-        Mistake{
-            "EmptyTeethBesideTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n", {"job.yaml:", "cutter.t"}},
-        Mistake{"ToothOfAWord",
-                "teeth: 4",
-                "tooth_angles_deg: [0, half]",
-                {"job.yaml:7", "cutter.tooth_angles_deg[1]", "half", "ascending"}},
-        Mistake{"SideOfAStraightWheel",
-                "    profile: angled\n    angle_deg: 20\n",
-                "    profile: straight\n",
-                {"job.yaml:31", "process.wheel.side", "not a key"}},
-        Mistake{"AngleOfAStraightWheel",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+        Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", "job.yaml:8 ... cutter.colour"},
+        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", "job.yaml:35 ... paint"},
+        Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", "job.yaml:8 ... cutter.colour"},
+        Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", "job.yaml:8 ... cutter.colour"},
+        Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", "job.yaml:8 ... cutter.colour"},
+        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", "job.yaml:23 ... process.overtravel_mm[2]"},
+        Mistake{"MissingKey", "  depth_mm: 1.5\n", "", "job.yaml ... process.depth_mm ... missing ... 0.001 to 50 mm"},
+        Mistake{"DuplicateKey", "  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.6\n",
+                "job.yaml:19 ... process.depth_mm ... appears twice"},
+        Mistake{"DuplicateKeySameValue", "  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.5\n",
+                "job.yaml:19 ... process.depth_mm ... appears twice"},
+        Mistake{"NoValue", "feed_mm_min: 200",
+                "feed_mm_min:", "job.yaml:17 ... process.feed_mm_min ... (nothing) ... 0.1 to 10000 mm/min"},
+        Mistake{"BrokenTeeth", "teeth: 4", "teeth: 4.5",
+                "job.yaml:7 ... cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"},
+        Mistake{"DecimalComma", "spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
+                "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
+        Mistake{"OctalTeeth", "teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
+        Mistake{"OctalZeroTeeth", "teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
+        Mistake{"OctalTeethOfYaml12", "teeth: 4", "teeth: 0o10", "job.yaml:7 ... cutter.teeth = 0o10 ... octal"},
+        Mistake{"HexadecimalTeeth", "teeth: 4", "teeth: 0x10", "job.yaml:7 ... cutter.teeth = 0x10 ... hexadecimal"},
+        Mistake{"TooManyTeethToCount", "teeth: 4", "teeth: 99999999999",
+                "job.yaml:7 ... cutter.teeth = 99999999999 is out of range ... 1 to 64"},
+        Mistake{"HexadecimalFigure", "depth_mm: 1.5", "depth_mm: 0x1",
+                "job.yaml:18 ... process.depth_mm = 0x1 ... 0.001 to 50 mm"},
+        Mistake{"SecondDocument", "interpolation:", "---\ninterpolation:",
+                "job.yaml:35 ... a second document begins here ... allowed: one"},
+        Mistake{"EmptySecondDocument", "rotary_scale_mm_per_rad: 1.5\n", "rotary_scale_mm_per_rad: 1.5\n---\n",
+                "job.yaml:39 ... a second document begins here"},
+        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", "job.yaml:18 ... anchor ... allowed: none"},
+        Mistake{"AnchorOfASection", "cutter:", "cutter: &cutter", "job.yaml: ... anchor ... allowed: none"},
+        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", "job.yaml:18 ... anchor"},
+        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass?major"},
+        Mistake{"NotANumber", "depth_mm: 1.5", "depth_mm: .nan",
+                "job.yaml:18 ... process.depth_mm ... nan ... 0.001 to 50 mm"},
+        Mistake{"TooLargeForANumber", "depth_mm: 1.5", "depth_mm: 1e999",
+                "job.yaml:18 ... process.depth_mm ... 0.001 to 50 mm"},
+        Mistake{"TwoWaysOfTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
+                "job.yaml:7 ... cutter.teeth ... cutter.tooth_angles_deg ... one of the two"},
+        Mistake{"EmptyTeethBesideTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n",
+                "job.yaml: ... cutter.t"},
+        Mistake{"ToothOfAWord", "teeth: 4", "tooth_angles_deg: [0, half]",
+                "job.yaml:7 ... cutter.tooth_angles_deg[1] ... half ... ascending"},
+        Mistake{"SideOfAStraightWheel", "    profile: angled\n    angle_deg: 20\n", "    profile: straight\n",
+                "job.yaml:31 ... process.wheel.side ... not a key"},
+        Mistake{"AngleOfAStraightWheel", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: straight\n    angle_deg: 20\n",
-                {"job.yaml:31", "process.wheel.angle_deg", "20 deg", "0 for this profile"}},
-        Mistake{"AngledWithoutAnAngle",
-                "    angle_deg: 20\n",
-                "",
-                {"job.yaml", "process.wheel.angle_deg", "0 deg", "more than 0 for this profile"}},
-        Mistake{"CornersWiderThanTheWheel",
-                "[0.1, 0.2]",
-                "[4, 4.5]",
-                {"job.yaml:33", "process.wheel.corner_radius_mm[0]", "8.5 mm", "wheel's width", "8 mm"}},
-        Mistake{"CornerOfARoundedWheel",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "job.yaml:31 ... process.wheel.angle_deg ... 20 deg ... 0 for this profile"},
+        Mistake{"AngledWithoutAnAngle", "    angle_deg: 20\n", "",
+                "job.yaml ... process.wheel.angle_deg ... 0 deg ... more than 0 for this profile"},
+        Mistake{"CornersWiderThanTheWheel", "[0.1, 0.2]", "[4, 4.5]",
+                "job.yaml:33 ... process.wheel.corner_radius_mm[0] ... 8.5 mm ... wheel's width ... 8 mm"},
+        Mistake{"CornerOfARoundedWheel", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: full_radius\n",
-                {"job.yaml:31", "process.wheel.corner_radius_mm[0]", "0.3 mm", "allowed: 0 for this profile"}},
-        Mistake{"OneCorner", "[0.1, 0.2]", "[0.1]", {"job.yaml", "process.wheel.corner_radius_mm[1]", "missing"}},
-        Mistake{"PointsWithoutPoints",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: points\n",
-                {"job.yaml", "process.wheel.points_mm", "[w, radius]"}},
-        Mistake{"PointsOfAnotherWidth",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "job.yaml:31 ... process.wheel.corner_radius_mm[0] ... 0.3 mm ... allowed: 0 for this profile"},
+        Mistake{"OneCorner", "[0.1, 0.2]", "[0.1]", "job.yaml ... process.wheel.corner_radius_mm[1] ... missing"},
+        Mistake{"PointsWithoutPoints", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "    profile: points\n", "job.yaml ... process.wheel.points_mm ... [w, radius]"},
+        Mistake{"PointsOfAnotherWidth", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-3, 50], [3, 49]]\n",
-                {"job.yaml:28", "process.wheel.width_mm", "8 mm", "its points", "6 mm"}},
-        Mistake{"PointsNotAscending",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "job.yaml:28 ... process.wheel.width_mm ... 8 mm ... its points ... 6 mm"},
+        Mistake{"PointsNotAscending", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-4, 50], [-4, 49], [4, 50]]\n",
-                {"job.yaml:31", "process.wheel.points_mm", "-4 mm", "ascending"}},
-        Mistake{"HalfAPoint",
-                "    profile: angled\n    angle_deg: 20\n    side: lower\n",
+                "job.yaml:31 ... process.wheel.points_mm ... -4 mm ... ascending"},
+        Mistake{"HalfAPoint", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
                 "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
-                {"job.yaml:31", "process.wheel.points_mm[1]", "not a pair"}},
-        Mistake{"TwoWaysOfSpirals",
-                "  spiral_angle_deg: -45\n",
+                "job.yaml:31 ... process.wheel.points_mm[1] ... not a pair"},
+        Mistake{"TwoWaysOfSpirals", "  spiral_angle_deg: -45\n",
                 "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
-                {"job.yaml:4", "cutter.spiral_angle_deg", "cutter.spiral_angles_deg", "one of the two"}},
-        Mistake{"SpiralsOfSomeTeeth",
-                "spiral_angle_deg: -45",
-                "spiral_angles_deg: [-45, -44]",
-                {"job.yaml:4", "cutter.spiral_angles_deg", "2", "as many as teeth, 4"}},
-        Mistake{"SpiralOutOfRange",
-                "spiral_angle_deg: -45",
-                "spiral_angles_deg: [-45, -44, -61, -44]",
-                {"job.yaml:4", "cutter.spiral_angles_deg", "-61 deg", "-60 to 60 deg"}},
-        Mistake{"DeeperThanTheCutter",
-                "depth_mm: 1.5",
-                "depth_mm: 2.8",
-                {"job.yaml:18", "process.depth_mm", "2.8 mm", "less than 2.56", "radius at the flute's end"}}),
+                "job.yaml:4 ... cutter.spiral_angle_deg ... cutter.spiral_angles_deg ... one of the two"},
+        Mistake{"SpiralsOfSomeTeeth", "spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44]",
+                "job.yaml:4 ... cutter.spiral_angles_deg ... 2 ... as many as teeth, 4"},
+        Mistake{"SpiralOutOfRange", "spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -61, -44]",
+                "job.yaml:4 ... cutter.spiral_angles_deg ... -61 deg ... -60 to 60 deg"},
+        Mistake{"DeeperThanTheCutter", "depth_mm: 1.5", "depth_mm: 2.8",
+                "job.yaml:18 ... process.depth_mm ... 2.8 mm ... less than 2.56 ... radius at the flute's end"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(JobFile, ReportsAllOfSeveralErrors) {
@@ -402,9 +330,9 @@ TEST(JobFile, ReportsAllOfSeveralErrors) {
   text += "extra: 1\n";
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 3) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:18", "process.depth_mm", "deep"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:24", "process.order", "any"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:39", "extra"}));
+  EXPECT_TRUE(hasLine(error, "job.yaml:18 ... process.depth_mm ... deep"));
+  EXPECT_TRUE(hasLine(error, "job.yaml:24 ... process.order ... any"));
+  EXPECT_TRUE(hasLine(error, "job.yaml:39 ... extra"));
 }
 
 TEST(JobFile, ReportsAllFiguresOutOfRange) {
@@ -412,24 +340,24 @@ TEST(JobFile, ReportsAllFiguresOutOfRange) {
   text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
   const std::string error = errorOf(text);
   EXPECT_EQ(linesOf(error), 2) << error;
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:18", "process.depth_mm", "51 mm"}));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:17", "process.feed_mm_min", "0 mm/min"}));
+  EXPECT_TRUE(hasLine(error, "job.yaml:18 ... process.depth_mm ... 51 mm"));
+  EXPECT_TRUE(hasLine(error, "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"));
 }
 
 TEST(JobFile, RefusesASectionThatStandsTwice) {
   const std::string error = errorOf(with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:22", "process"})) << "got: " << error;
+  EXPECT_TRUE(hasLine(error, "job.yaml:22 ... process")) << "got: " << error;
 }
 
 TEST(JobFile, RefusesAPathAsAKey) {
   const std::string error = errorOf(with("process:\n  feed_mm_min: 200\n", "process.feed_mm_min: 200\nprocess:\n"));
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml", "process.feed_mm_min"})) << "got: " << error;
+  EXPECT_TRUE(hasLine(error, "job.yaml ... process.feed_mm_min")) << "got: " << error;
 }
 
 TEST(JobFile, RefusesWhatIsNotAMap) {
   for (const char* text : {"3", "[1, 2]", "just words", "", "# a comment only\n", "~"}) {
     SCOPED_TRACE(text);
-    EXPECT_TRUE(hasLineWith(errorOf(text), {"job.yaml:1", "not a map"}));
+    EXPECT_TRUE(hasLine(errorOf(text), "job.yaml:1 ... not a map"));
   }
 }
 
@@ -437,24 +365,17 @@ TEST(JobFile, RefusesASectionThatIsNotAMap) {
   const std::string text =
       std::string(kGood).substr(0, std::string(kGood).find("interpolation:")) + "interpolation: exact\n";
   const std::string error = errorOf(text);
-  EXPECT_TRUE(hasLineWith(error, {"job.yaml:35", "interpolation"})) << error;
-  EXPECT_TRUE(hasLineWith(error, {"interpolation.tolerance_um", "missing"})) << error;
+  EXPECT_TRUE(hasLine(error, "job.yaml:35 ... interpolation")) << error;
+  EXPECT_TRUE(hasLine(error, "interpolation.tolerance_um ... missing")) << error;
 }
 
 TEST(JobFile, ReportsWhereYamlIsBroken) {
-  EXPECT_TRUE(hasLineWith(errorOf(with("teeth: 4", "teeth: [4")), {"job.yaml:"}));
-  EXPECT_TRUE(hasLineWith(errorOf("cutter:\n  teeth: 4\n bad: : :\n"), {"job.yaml:3"}));
+  EXPECT_TRUE(hasLine(errorOf(with("teeth: 4", "teeth: [4")), "job.yaml:"));
+  EXPECT_TRUE(hasLine(errorOf("cutter:\n  teeth: 4\n bad: : :\n"), "job.yaml:3"));
 }
 
 TEST(JobFile, RefusesAKeyThatIsNotAWord) {
-  std::string error = "accepted";
-  try {
-    parseJob(std::string(kGood) + "? [1, 2]\n: 3\n", "job.yaml");
-  } catch (const JobFileError& e) {
-    error = e.what();
-  } catch (const std::exception& e) {
-    error = std::string("not a JobFileError: ") + e.what();
-  }
+  const std::string error = errorOf(std::string(kGood) + "? [1, 2]\n: 3\n");
   EXPECT_EQ(error.find("job.yaml:39"), 0u) << error;
 }
 
@@ -483,18 +404,12 @@ class JobFileOnDisk : public ::testing::Test {
   std::string path_ = ::testing::TempDir() + "flute_grinder_job_" + std::to_string(::getpid()) + ".yaml";
 };
 
-TEST_F(JobFileOnDisk, CanBeRead) { EXPECT_EQ(fileErrorOf(path_), ""); }
-
-TEST_F(JobFileOnDisk, ThatIsMissing) {
-  std::filesystem::remove(path_);
-  EXPECT_EQ(fileErrorOf(path_), path_ + ": cannot be read: No such file or directory");
-}
-
-TEST_F(JobFileOnDisk, ThatIsAFolder) { EXPECT_EQ(fileErrorOf("jobs"), "jobs: cannot be read: Is a directory"); }
-
-TEST_F(JobFileOnDisk, ThatIsEmpty) {
+TEST_F(JobFileOnDisk, ThatIsNoneIsNamed) {
+  EXPECT_EQ(fileErrorOf("jobs"), "jobs: cannot be read: Is a directory");
   std::ofstream(path_).close();
   EXPECT_EQ(fileErrorOf(path_), path_ + ": is empty");
+  std::filesystem::remove(path_);
+  EXPECT_EQ(fileErrorOf(path_), path_ + ": cannot be read: No such file or directory");
 }
 
 TEST_F(JobFileOnDisk, ThatMayNotBeRead) {

@@ -53,11 +53,11 @@ std::function<void(Reason&)> ofAxis(int axis) {
 }
 
 std::function<void(Reason&)> setpointsOf(int axis, std::uint64_t count = 1) {
-  return [=](Reason& r) {
-    atStroke(r);
-    r.axis = axis;
-    r.count = count;
-  };
+  return [=](Reason& r) { atStroke(r), r.axis = axis, r.count = count; };
+}
+
+std::function<void(Reason&)> ofThirdTooth(double low = 0) {
+  return [=](Reason& r) { r.low = low, r.tooth = 2, r.x = 0.0123; };
 }
 
 void nothing(Reason&) {}
@@ -100,11 +100,7 @@ const Row kRows[]{
     {Kind::kGivenUp, "GivenUp", Unit::kNone, 0, 0, nothing, "given up while it was planned"},
     {Kind::kGivenUp, "GivenUpForAnother", Unit::kNone, 0, 0, [](Reason& r) { r.detail = "a goal came first"; },
      "given up: a goal came first"},
-    {Kind::kCollision, "Hit", Unit::kMetre, 0, 0.001,
-     [](Reason& r) {
-       r.detail = "wheel and collet";
-       atStroke(r);
-     },
+    {Kind::kCollision, "Hit", Unit::kMetre, 0, 0.001, [](Reason& r) { atStroke(r), r.detail = "wheel and collet"; },
      "collision_clearance = 1 mm: wheel and collet hit each other (stroke, tooth 1, pass 2, X = 12.3 mm); stick the "
      "blank out further, and set the zero of X anew"},
     {Kind::kCollision, "HitsTheShank", Unit::kMetre, 0, 0.001, field("", "wheel and shank"),
@@ -117,11 +113,7 @@ const Row kRows[]{
      "collision_clearance = 1 mm: spindle and work_head come within 0.4 mm of each other; stick the blank out further, "
      "and set the zero of X anew"},
     {Kind::kCollision, "OutsideTheCut", Unit::kMetre, 0.0001, 0.00025,
-     [](Reason& r) {
-       r.field = "process.clearance";
-       r.detail = "wheel and shank";
-       r.low = 0.0005;
-     },
+     [](Reason& r) { r.field = "process.clearance", r.detail = "wheel and shank", r.low = 0.0005; },
      "process.clearance_mm = 0.5 mm: wheel and shank come within 0.1 mm of each other outside the cut; allowed: 0.25 "
      "mm or more; raise it"},
     {Kind::kSwivel, "SwivelUnknown", Unit::kRadian, std::numeric_limits<double>::quiet_NaN(), kPi / 8, swivel(""),
@@ -180,67 +172,32 @@ const Row kRows[]{
      "the drive has not found its reference after 30.001 s, allowed 30 s"},
     {Kind::kInterlock, "Interlock", Unit::kSecond, 10.5, 10, field("", "no coolant flows"),
      "no coolant flows 10.5 s after the job was started, allowed 10 s"},
-    {Kind::kRake, "Rake", Unit::kRadian, 0.25 * kPi, kPi / 18,
-     [](Reason& r) {
-       r.low = kPi / 360;
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kRake, "Rake", Unit::kRadian, 0.25 * kPi, kPi / 18, ofThirdTooth(kPi / 360),
      "cutter.rake_angle_deg = 10 deg: tooth 3 is ground with 45 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
      "change process.setup.swivel_deg or process.setup.height_mm"},
-    {Kind::kSpiral, "Spiral", Unit::kRadian, 0.25 * kPi, kPi / 6,
-     [](Reason& r) {
-       r.low = kPi / 360;
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kSpiral, "Spiral", Unit::kRadian, 0.25 * kPi, kPi / 6, ofThirdTooth(kPi / 360),
      "cutter.spiral_angle_deg = 30 deg: the edge of tooth 3 is ground with 45 deg at X = 12.3 mm; allowed: within 0.5 "
      "deg of it; change process.setup.lead_mm"},
-    {Kind::kChordalRake, "ChordalRake", Unit::kRadian, 0.25 * kPi, kPi / 18,
-     [](Reason& r) {
-       r.low = kPi / 36;
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kChordalRake, "ChordalRake", Unit::kRadian, 0.25 * kPi, kPi / 18, ofThirdTooth(kPi / 36),
      "cutter.rake_angle_deg = 10 deg: tooth 3 has a chordal rake of 45 deg at X = 12.3 mm; allowed: within 5 deg of "
      "it; change process.wheel.diameter_mm or process.wheel.width_mm"},
-    {Kind::kClearance, "Clearance", Unit::kRadian, kPi / 20, kPi / 18,
-     [](Reason& r) {
-       r.low = kPi / 360;
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kClearance, "Clearance", Unit::kRadian, kPi / 20, kPi / 18, ofThirdTooth(kPi / 360),
      "cutter.clearance_deg = 10 deg: tooth 3 is ground with 9 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
      "change the height or the swivel of the relief's set-up"},
-    {Kind::kUndercut, "Undercut", Unit::kDeviationMetre, 5e-6, 3e-6,
-     [](Reason& r) {
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kUndercut, "Undercut", Unit::kDeviationMetre, 5e-6, 3e-6, ofThirdTooth(),
      "the relief takes 5 um of the edge of tooth 3 at X = 12.3 mm; allowed: up to 3 um; grind the flutes with an edge "
      "nearer to the asked helix"},
-    {Kind::kNextEdge, "NextEdge", Unit::kRadian, kPi / 60, 0,
-     [](Reason& r) {
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kNextEdge, "NextEdge", Unit::kRadian, kPi / 60, 0, ofThirdTooth(),
      "the relief's wheel reaches 3 deg into the tooth behind tooth 3 at X = 12.3 mm; change the height of the "
      "relief's set-up, or take a narrower wheel"},
-    {Kind::kHeel, "Heel", Unit::kMetre, 0, 0,
-     [](Reason& r) {
-       r.tooth = 2;
-       r.x = 0.0123;
-     },
+    {Kind::kHeel, "Heel", Unit::kMetre, 0, 0, ofThirdTooth(),
      "the relief of tooth 3 ends on the land at X = 12.3 mm; change the height of the relief's set-up, or take a wider "
      "wheel"},
     {Kind::kCoreSize, "CoreSize", Unit::kMetre, 0.00713, 0.0068, [](Reason& r) { r.low = 2e-5; },
      "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 7.13 mm at X = 0 mm; allowed: within 0.02 mm "
      "of 6.8 mm; change process.depth_mm or process.depth_end_mm"},
     {Kind::kCoreSize, "CoreSizeOfARelief", Unit::kMetre, 0.00663, 0.0068,
-     [](Reason& r) {
-       r.low = 2e-5;
-       r.detail = "the height";
-     },
+     [](Reason& r) { r.low = 2e-5, r.detail = "the height"; },
      "cutter.core_diameter_mm, cutter.core_diameter_end_mm: the core is 6.63 mm at X = 0 mm; allowed: within 0.02 mm "
      "of 6.8 mm; change the height"},
     {Kind::kLand, "Land", Unit::kRadian, 0.75 * kPi, 0.5 * kPi, [](Reason& r) { r.x = 0.0123; },
@@ -255,10 +212,7 @@ const Row kRows[]{
      "process.overtravel_mm[0], process.overtravel_mm[1]: the flutes are complete nowhere; allowed: over the whole "
      "flute length, 0 to 30 mm, unless process.incomplete_ok is true"},
     {Kind::kUnevenRake, "UnevenRake", Unit::kRadian, kPi / 4, kPi / 18,
-     [](Reason& r) {
-       r.low = kPi / 36;
-       r.tooth = 1;
-     },
+     [](Reason& r) { r.low = kPi / 36, r.tooth = 1; },
      "process.z_law = constant_rake: tooth 2 is ground with 5 deg to 45 deg at best, asked 10 deg; allowed: within "
      "0.005 deg of it; change process.setup.swivel_deg or process.setup.height_mm, or raise process.overtravel_mm[0] "
      "or process.overtravel_mm[1]"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/plan/sha256.h"
 #include "node/journal.h"
 
 #include "temp_folder.h"
@@ -23,6 +24,17 @@ class JournalTest : public ::testing::Test {
 
   static void fill(const std::string& path, const std::string& content) {
     std::ofstream(path, std::ios::binary) << content;
+  }
+
+  static std::string sealed(const std::string& body) {
+    return body + "checksum: " + sha256Hex(body.data(), body.size()) + "\n";
+  }
+
+  /// The body with the line of a key replaced.
+  static std::string withLine(const std::string& body, const std::string& key, const std::string& line) {
+    const std::size_t begin = body.find("\n" + key + ": ") + 1;
+    EXPECT_NE(begin, 0U) << key;
+    return body.substr(0, begin) + line + body.substr(body.find('\n', begin) + 1);
   }
 
   const TempFolder temp_;

@@ -1,11 +1,10 @@
-"""Checks of streamed setpoints: the axes' limits, the lift, and the path by an evaluation of the cutter's mathematics that is
-independent of the grinder's own."""
+"""Checks of streamed setpoints: the axes' limits and the lift; and the cutter's mathematics, independent of the grinder's own."""
 
 import math
 
 from flute_grinder.msg import Cutter
 
-from grinder_client import A, EVEN, JOINTS, LIFT, STROKE, X, Y, Z
+from grinder_client import A, JOINTS, LIFT, X, Y, Z
 
 EPSILON = 2.0 ** -52
 
@@ -37,25 +36,10 @@ class Helix:
     def z(self, x):
         return x * self.tan_cone * self.z_per_y
 
-    def tangent_bound(self, x, dx):
-        """Of theory - commanded of A at the end of a step along the tangent that starts on the curve at x, the leading order in
-        size: |k b| dX^2 / (2 u^2)."""
-        return abs(self.k * self.b) * dx ** 2 / (2 * (1 + self.b * (x - self.lead)) ** 2)
 
-
-def stroke_pairs(setpoints):
-    """The stroke's odd-even pairs as (start, odd, even) setpoints."""
-    pairs = []
-    for i, setpoint in enumerate(setpoints):
-        if setpoint.move == STROKE and setpoint.step == EVEN:
-            pairs.append(tuple(setpoints[i - 2:i + 1]))
-    return pairs
-
-
-def excesses(setpoints, limits, period, rest_after=True):
+def excesses(setpoints, limits, period):
     """What exceeds a limit by more than rounding, one text each: positions and velocities at every setpoint,
-    accelerations and jerks at the pair ends by differences over two cycles, with rest before the first and, unless
-    said otherwise, after the last."""
+    accelerations and jerks at the pair ends by differences over two cycles, with rest before the first and after the last."""
     found = []
 
     def check(name, axis, cycle, value, limit, rounding):
@@ -75,28 +59,13 @@ def excesses(setpoints, limits, period, rest_after=True):
                   noise / period)
         pair = 2 * period
         ends = positions[::2]
-        ends = [ends[0]] * 3 + ends + ([ends[-1]] * 3 if rest_after else [])
+        ends = [ends[0]] * 3 + ends + [ends[-1]] * 3
         for i in range(3, len(ends)):
             p3, p2, p1, p0 = ends[i - 3:i + 1]
             check('acceleration', axis, 2 * (i - 3), (p0 - 2 * p1 + p2) / pair ** 2, limits['max_acceleration'][axis],
                   2 * noise / pair ** 2)
             check('jerk', axis, 2 * (i - 3), (p0 - 3 * p1 + 3 * p2 - p3) / pair ** 3, limits['max_jerk'][axis],
                   4 * noise / pair ** 3)
-    return found
-
-
-def off_path(setpoints, helix, tooth_angle=0.0):
-    """What leaves the theoretical path by more than the odd-even steps may, one text each."""
-    found = []
-    for start, odd, even in stroke_pairs(setpoints):
-        error = {s.cycle: helix.a(s.position[X]) - (s.position[A] - tooth_angle) for s in (start, odd, even)}
-        dx = odd.position[X] - start.position[X]
-        bound = helix.tangent_bound(start.position[X], dx) * (1 + 1e-3) + 1e-14
-        if not abs(error[odd.cycle] - error[start.cycle]) <= bound:
-            found.append('odd error %g at cycle %d, bound %g' % (error[odd.cycle], odd.cycle, bound))
-        # One pair's even error is third order: a small part of the odd error.
-        if not abs(error[even.cycle] - error[start.cycle]) <= 0.05 * bound + 1e-14:
-            found.append('even error grew by %g at cycle %d' % (error[even.cycle] - error[start.cycle], even.cycle))
     return found
 
 

@@ -78,11 +78,8 @@ class DiagnosticsTest : public ::testing::Test {
   std::uint64_t next_cycle_ = 0;
 };
 
-TEST_F(DiagnosticsTest, LoopThatHasNotRunIsAnError) {
+TEST_F(DiagnosticsTest, LoopThatHasNotRunOrStopsIsAnError) {
   expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "not running");
-}
-
-TEST_F(DiagnosticsTest, LoopThatStopsIsAnError) {
   watch(10);
   EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::OK);
   EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::ERROR);
@@ -168,22 +165,17 @@ TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
   EXPECT_EQ(value(next, "Samples lost"), "7");
 }
 
-TEST_F(DiagnosticsTest, DriveIsOkWhenHomed) {
+TEST_F(DiagnosticsTest, DriveIsOkWhenHomedAndItsInterlocksAreClosed) {
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportDrive).message, "enabled");
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "enabled");
   sample_.drive.enabled = false;
   watch();
   const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "disabled");
   EXPECT_EQ(value(status, "Enabled"), "False");
-}
-
-TEST_F(DiagnosticsTest, DriveThatIsNotHomedIsAWarning) {
   sample_.drive.homed = false;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "not homed");
-}
-
-TEST_F(DiagnosticsTest, InterlockIsAWarning) {
+  sample_.drive.homed = true;
   sample_.interlock = Interlock::kCoolant;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "no coolant flows");
@@ -319,8 +311,7 @@ TEST_F(DiagnosticsTest, MarginOfMotionIsThatOfThePositionsWritten) {
 TEST_F(DiagnosticsTest, UseOfALimitIsAWarning) {
   write({0.1, 0.065, 0.025, 0});
   write({0.1, 0.065 + 0.00009, 0.025, 0});
-  const auto status =
-      expect(&Diagnostics::reportLimits, DiagnosticStatus::WARN, "axis_y velocity at 90 % of its limit");
+  expect(&Diagnostics::reportLimits, DiagnosticStatus::WARN, "axis_y velocity at 90 % of its limit");
 }
 
 TEST_F(DiagnosticsTest, SetpointsAfterAGapAreNotComparedWithThoseBefore) {
@@ -357,19 +348,21 @@ TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
 }
 
 TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
-  for (const double position : {0.35, kNan}) {
+  const struct {
+    LimitedQuantity quantity;
+    double position;
+    const char* message;
+  } rows[]{// 0.25 from the middle of -0.1 to 0.3, of 0.2.
+           {LimitedQuantity::kPosition, 0.35, "axis_x position at 125 % of its limit"},
+           {LimitedQuantity::kNotFinite, kNan, "axis_x position at nan % of its limit"}};
+  for (const auto& row : rows) {
     sample_.state = MachineState::kReady;
     watch();
     sample_.state = MachineState::kFault;
     sample_.fault.kind = FaultKind::kLimit;
-    const auto quantity = std::isnan(position) ? LimitedQuantity::kNotFinite : LimitedQuantity::kPosition;
-    sample_.fault.violation = {kX, quantity, position, 0.3, 8, 0, MoveKind::kStroke};
+    sample_.fault.violation = {kX, row.quantity, row.position, 0.3, 8, 0, MoveKind::kStroke};
     watch();
-    const auto status = ask(&Diagnostics::reportLimits);
-    EXPECT_EQ(status.level, DiagnosticStatus::ERROR);
-    // 0.25 from the middle of -0.1 to 0.3, of 0.2.
-    EXPECT_EQ(status.message,
-              std::isnan(position) ? "axis_x position at nan % of its limit" : "axis_x position at 125 % of its limit");
+    expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, row.message);
   }
 }
 
@@ -429,18 +422,15 @@ TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
   EXPECT_EQ(value(next, "Underruns"), "3");
 }
 
-TEST_F(DiagnosticsTest, JournalReportsWhatIsAmiss) {
+TEST_F(DiagnosticsTest, WhatIsAmissWithJournalOrHistoryIsReported) {
+  diagnostics_.setHistoryError("history /x: No space left on device");
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+  expect(&Diagnostics::reportHistory, DiagnosticStatus::WARN, "history /x: No space left on device");
+  diagnostics_.setHistoryError("");
   diagnostics_.setJournalError("journal /x: No space left on device");
+  EXPECT_EQ(ask(&Diagnostics::reportHistory).level, DiagnosticStatus::OK);
   expect(&Diagnostics::reportJournal, DiagnosticStatus::ERROR, "journal /x: No space left on device");
   diagnostics_.setJournalError("");
-  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
-}
-
-TEST_F(DiagnosticsTest, HistoryWarnsOfWhatIsAmiss) {
-  EXPECT_EQ(ask(&Diagnostics::reportHistory).level, DiagnosticStatus::OK);
-  diagnostics_.setHistoryError("history /x: No space left on device");
-  expect(&Diagnostics::reportHistory, DiagnosticStatus::WARN, "history /x: No space left on device");
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
 }
 

@@ -1,4 +1,3 @@
-#include "flute_grinder/plan/sha256.h"
 #include "node/journal.h"
 
 #include "journal_fixture.h"
@@ -37,10 +36,6 @@ class JournalFileTest : public test_support::JournalTest {
     } catch (const JournalError& error) {
       return error.what();
     }
-  }
-
-  static std::string sealed(const std::string& body) {
-    return body + "checksum: " + sha256Hex(body.data(), body.size()) + "\n";
   }
 };
 
@@ -106,22 +101,14 @@ TEST_F(JournalFileTest, WhatNoJournalWroteIsRefused) {
   EXPECT_EQ(refusalOf(std::string(1 << 20, ' ')), "journal " + path_ + ": is longer than 65536 bytes");
 }
 
-/// What the line of a key, or all of them, is replaced by, and what the refusal must say.
-struct WrongLine {
-  std::string key, replacement, refusal;
-
-  std::string in(const std::string& body) const {
-    if (key.empty()) return replacement;
-    const std::size_t begin = body.find("\n" + key + ": ") + 1;
-    return body.substr(0, begin) + replacement + body.substr(body.find('\n', begin) + 1);
-  }
-};
-
 TEST_F(JournalFileTest, WrongFiguresAreRefusedUnderARightChecksumToo) {
   const std::string good = written();
   const std::string body = good.substr(0, good.rfind("checksum: "));
   ASSERT_EQ(refusalOf(sealed(body)), "read");
-  const std::vector<WrongLine> lines = {
+  // The line of a key, or all of them; what it is replaced by, and what the refusal must say.
+  const struct {
+    std::string key, replacement, refusal;
+  } lines[]{
       {"pass", "", "pass is missing"},
       {"pass", "pass: 1.5\n", "bad conversion"},
       {"pass", "pass: 99999999999999999999\n", "bad conversion"},
@@ -147,8 +134,9 @@ TEST_F(JournalFileTest, WrongFiguresAreRefusedUnderARightChecksumToo) {
       {"", "a word\n", ""},
       {"", "", ""},
   };
-  for (const WrongLine& wrong : lines) {
-    const std::string refusal = refusalOf(sealed(wrong.in(body)));
+  for (const auto& wrong : lines) {
+    const std::string bad = wrong.key.empty() ? wrong.replacement : withLine(body, wrong.key, wrong.replacement);
+    const std::string refusal = refusalOf(sealed(bad));
     EXPECT_NE(refusal, "read") << wrong.replacement;
     EXPECT_NE(refusal.find(wrong.refusal), std::string::npos) << wrong.replacement << ": " << refusal;
   }

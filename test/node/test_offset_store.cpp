@@ -1,15 +1,9 @@
-#include "flute_grinder/plan/sha256.h"
 #include "node/offset_store.h"
 
 #include "journal_fixture.h"
 
-#include <signal.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <limits>
-#include <vector>
 
 // The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal_file.cpp.
 namespace grinder {
@@ -39,17 +33,6 @@ class OffsetStoreTest : public JournalTest {
     const bool zero = (store.offsets().values() == 0).any();
     EXPECT_FALSE(zero && !store.unknown().empty()) << "unknown, but 0";
     return store.unknown();
-  }
-
-  static std::string sealed(const std::string& body) {
-    return body + "checksum: " + sha256Hex(body.data(), body.size()) + "\n";
-  }
-
-  /// The body with the line of a key replaced.
-  static std::string with(const std::string& body, const std::string& key, const std::string& line) {
-    const std::size_t begin = body.find("\n" + key + ": ") + 1;
-    EXPECT_NE(begin, 0U) << key;
-    return body.substr(0, begin) + line + body.substr(body.find('\n', begin) + 1);
   }
 };
 
@@ -119,36 +102,19 @@ TEST_F(OffsetStoreTest, IsOnTheDiskWhenSetReturns) {
   EXPECT_NE(contentOf(path_).find("axis_x_m: -1000\n"), std::string::npos) << contentOf(path_);
 }
 
-TEST_F(OffsetStoreTest, AFlippedBitOfAnyByteMakesThemUnknown) {
-  const std::string good = written();
-  for (std::size_t byte = 0; byte < good.size(); ++byte) {
-    std::string bad = good;
-    bad[byte] = static_cast<char>(bad[byte] ^ (1 << byte % 8));
-    const std::string unknown = unknownWith(bad);
-    ASSERT_EQ(unknown.rfind("unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets " + path_ +
-                                ": its checksum is ",
-                            0),
-              0U)
-        << "byte " << byte << ": " << unknown;
-  }
-}
-
-TEST_F(OffsetStoreTest, EveryShorterAndEveryLongerFileMakesThemUnknown) {
-  const std::string good = written();
-  for (std::size_t size = 0; size < good.size(); ++size) ASSERT_NE(unknownWith(good.substr(0, size)), "") << size;
-  EXPECT_EQ(unknownWith(good), "");
-  EXPECT_NE(unknownWith(good + "x"), "");
-  EXPECT_NE(unknownWith(good + good), "");
+TEST_F(OffsetStoreTest, ADamagedFileMakesThemUnknown) {
+  EXPECT_EQ(unknownWith(written() + "x"),
+            "unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets " + path_ +
+                ": its checksum is missing; set each of them, or touch off");
 }
 
 TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumToo) {
   const std::string good = written();
   const std::string body = good.substr(0, good.rfind("checksum: "));
   ASSERT_EQ(unknownWith(sealed(body)), "");
-  struct Wrong {
+  const struct {
     std::string key, line, says;
-  };
-  const std::vector<Wrong> lines{
+  } lines[]{
       {"axis_y_m", "", "axis_y_m is missing"},
       {"axis_y_m", "axis_y_m: high\n", "bad conversion"},
       {"axis_y_m", "axis_y_m: 1000.1\n", "axis_y_m = 1000.1; allowed: -1000 to 1000"},
@@ -162,8 +128,8 @@ TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumToo) {
       {"axis_x_m", "axis_x_m: 0\naxis_x_m: 0\n", "key axis_x_m is unknown or duplicate"},
       {"axis_x_m", "axis_x_m: 0\naxis_b_m: 0\n", "key axis_b_m is unknown or duplicate"},
   };
-  for (const Wrong& wrong : lines) {
-    const std::string unknown = unknownWith(sealed(with(body, wrong.key, wrong.line)));
+  for (const auto& wrong : lines) {
+    const std::string unknown = unknownWith(sealed(withLine(body, wrong.key, wrong.line)));
     EXPECT_NE(unknown.find(wrong.says), std::string::npos) << wrong.line << ": " << unknown;
   }
 }
@@ -202,29 +168,13 @@ TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   OffsetStore store(path_, "/grinder");
   EXPECT_THROW(store.set(kY, {1000.1, "", 0}), AtomicFileError);
   EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
-  // A disk that is full after some bytes.
-  signal(SIGXFSZ, SIG_IGN);
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  rlimit full = before;
-  full.rlim_cur = 100;
-  setrlimit(RLIMIT_FSIZE, &full);
-  EXPECT_THROW(store.set(kY, kOther), AtomicFileError);
-  setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(contentOf(path_), good);
 }
 
 TEST_F(OffsetStoreTest, BelongsToOneNode) {
   const OffsetStore first(path_, "/left/grinder");
-  try {
-    const OffsetStore second(path_, "/right/grinder");
-    ADD_FAILURE() << "it has two owners";
-  } catch (const AtomicFileOwned& error) {
-    EXPECT_EQ(std::string(error.what()), "file of work offsets " + path_ +
-                                             " is in use by node /left/grinder, process " + std::to_string(getpid()) +
-                                             "; allowed: a file of work offsets of its own for every node");
-  }
+  EXPECT_THROW(OffsetStore(path_, "/right/grinder"), AtomicFileOwned);
 }
 
 }  // namespace test_offset_store

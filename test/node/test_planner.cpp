@@ -1,4 +1,3 @@
-#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 #include "node/planner.h"
 
@@ -54,6 +53,12 @@ struct Asked {
     if (answer.wait_for(kPatience) != std::future_status::ready) throw std::runtime_error("no plan");
     return answer.get();
   }
+  /// Waits until it is being planned.
+  void waitForProgress() const {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    EXPECT_GT(request.control->done, 0);
+  }
   bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
   Planner::Request request;
@@ -106,35 +111,6 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
   EXPECT_NE(withFirstPass(1), withFirstPass(0));
 }
 
-TEST(Planner, PlansAJobWithItsLawOfZ) {
-  Planner planner(machine(), kShapes);
-  GrindJob job = paper();
-  job.process.z_law = ZLaw::kConstantRake;
-  Asked asked(job);
-  ASSERT_TRUE(planner.submit(asked.request));
-  const auto plan = asked.wait();
-  ASSERT_TRUE(plan->good()) << text(plan->reasons);
-  std::vector<Axes> expected;
-  planJob(withLaws(ValidJob(job)), machine(), machine().park,
-          [&](const Setpoint& p) { expected.push_back(p.position); });
-  std::size_t i = 0;
-  SetpointStream stream(plan->program);
-  for (Setpoint p; stream.next(p); ++i) ASSERT_TRUE((p.position == expected.at(i)).all()) << i;
-  EXPECT_EQ(i, expected.size());
-}
-
-TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
-  Planner planner(machine(), kShapes);
-  GrindJob job = endless();
-  job.process.z_law = ZLaw::kConstantRake;
-  Asked asked(job);
-  asked.request.control->give_up = true;
-  ASSERT_TRUE(planner.submit(asked.request));
-  const auto plan = asked.wait();
-  EXPECT_EQ(plan->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(plan->program, nullptr);
-}
-
 TEST(Planner, ReportsWhyAJobCannotBeGround) {
   Planner planner(machine(), kShapes);
   Asked asked(paper());
@@ -150,9 +126,7 @@ TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
   Planner planner(machine(), kShapes);
   Asked first(endless()), second(paper()), third(paper());
   ASSERT_TRUE(planner.submit(first.request));
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (first.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  EXPECT_GT(first.request.control->done, 0);
+  first.waitForProgress();
   EXPECT_FALSE(planner.submit(second.request));
   EXPECT_FALSE(first.isDone());
   first.request.control->give_up = true;
@@ -173,9 +147,7 @@ TEST(Planner, AGoalGoesFirst) {
   const auto given_up = plan.wait();
   ASSERT_EQ(given_up->fault, PlanFault::kGivenUp);
   EXPECT_EQ(text(given_up->reasons), "given up: a goal came first; plan again after it");
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (goal.request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  EXPECT_GT(goal.request.control->done, 0);
+  goal.waitForProgress();
   EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
   EXPECT_FALSE(planner.submit(late.request));
   goal.request.control->give_up = true;
@@ -184,23 +156,15 @@ TEST(Planner, AGoalGoesFirst) {
   EXPECT_TRUE(next.wait()->good());
 }
 
-TEST(Planner, ItsEndGivesUpTheGoalThatWaitsToo) {
+TEST(Planner, ItsEndGivesUpAndAnswersTheGoalThatWaitsToo) {
   Planner planner(machine(), kShapes);
-  Asked plan(endless()), goal(endless());
+  Asked plan(endless()), goal(endless()), late(paper());
   goal.request.for_goal = true;
   ASSERT_TRUE(planner.submit(plan.request));
   ASSERT_TRUE(planner.submit(goal.request));
   planner.end();
   ASSERT_TRUE(plan.isDone() && goal.isDone());
-}
-
-TEST(Planner, ItsEndGivesUpAndAnswers) {
-  Planner planner(machine(), kShapes);
-  Asked asked(endless()), late(paper());
-  ASSERT_TRUE(planner.submit(asked.request));
-  planner.end();
-  ASSERT_TRUE(asked.isDone());
-  EXPECT_FALSE(asked.wait()->good());
+  EXPECT_FALSE(plan.wait()->good());
   EXPECT_FALSE(planner.submit(late.request));
 }
 

@@ -154,9 +154,6 @@ class TestTouches(ProbeTest):
             self.client.wait_for(lambda: len(cycle.touches) == 4, 'the last feedback')
             self.assertEqual(cycle.touches, [(0, 0), (0, 1), (0, 2), (0, 3)])
         self.assertEqual([figure.name for figure in result.figures], ['end face', 'stick-out'])
-        self.assertAlmostEqual(result.figures[0].value, 17 * MM, delta=TOUCH)
-        self.assertLess(result.figures[0].spread, TOUCH)
-        self.assertTrue(math.isnan(result.figures[1].spread))
         self.assertFalse(result.offset_set)
         self.assertEqual(self.offset(X)['set_by'], None)
 
@@ -226,33 +223,6 @@ class TestStop(ProbeTest):
         at = self.client.wait_rest()
         self.assertLess(at[A], before + math.pi - 0.1)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
-
-    def test_a_stop_while_it_backs_off_for_the_last_time_ends_it_too(self):
-        probing = gc.machine()['probing']
-        probing.update(slow=1.0, back_off=dict(probing['back_off'], axis_x=4 * MM),
-                       max_spread=dict(probing['max_spread'], axis_x=1.0))
-        self.start(probing=probing)
-        self.bring_ball(12 * MM, 0)
-        with self.client.probing(8 * MM) as cycle:
-            # Once after the search, and after each of the three that count.
-            self.client.wait_for(self.turns_away(4), 'the last way off the surface')
-            self.client.hold()
-            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
-            self.assertEqual(cycle.get_result().message, 'probing ended: stopped')
-
-    def turns_away(self, times):
-        """A condition: X has begun to move away from the surface so often, seen at each call."""
-        seen = {'at': self.client.joints[-1].position[X], 'away': False, 'times': 0}
-
-        def begun():
-            at = self.client.joints[-1].position[X]
-            if abs(at - seen['at']) > 5e-6:
-                seen['times'] += at < seen['at'] and not seen['away']
-                seen['away'] = at < seen['at']
-                seen['at'] = at
-            return seen['times'] == times
-
-        return begun
 
     def test_its_end_ends_it_however_it_comes(self):
         self.start()

@@ -188,6 +188,18 @@ TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
   }
 }
 
+TEST_F(ProbingCycles, AStopOnTheLastWayBackIsOneToo) {
+  start(config(), [this, touched = false, touches = 0](const FakeDrive& drive) mutable {
+    const bool leaves = touched && !beyond(drive, 0.013);
+    touched = beyond(drive, 0.013);
+    touches += leaves ? 1 : 0;
+    if (leaves && touches == 3) loop_->postStop(MachineEvent::kHold);  // the search and two that count
+    return touched;
+  });
+  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "stopped");
+  EXPECT_EQ(touches_.size(), 3U);
+}
+
 TEST_F(ProbingCycles, ToothNeedsTheOffsetOfX) {
   start(config(), [](const FakeDrive&) { return false; });
   EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::TOOTH, 0.1)),

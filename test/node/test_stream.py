@@ -133,34 +133,20 @@ class TestDryRun(unittest.TestCase):
 
 
 class TestMarkers(unittest.TestCase):
-    """What rviz is shown, as one gets it that subscribes only afterwards."""
-
-    @classmethod
-    def setUpClass(cls):
+    def test_one_that_subscribes_later_gets_what_rviz_is_shown(self):
         grinder().make_ready_at_park()
         # The one shown last may be of another test's job.
         grinder().send(gc.MOTION, dry_run=True).wait()
-        cls.path = rospy.wait_for_message('/grinder/tool_path', MarkerArray, gc.PATIENCE).markers
-        cls.error = rospy.wait_for_message('/grinder/path_error', MarkerArray, gc.PATIENCE).markers
-        cls.legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
-
-    def test_what_was_shown_before_is_deleted_first(self):
-        for markers in (self.path, self.error):
+        path, error = (rospy.wait_for_message('/grinder/' + topic, MarkerArray, gc.PATIENCE).markers
+                       for topic in ('tool_path', 'path_error'))
+        for markers in (path, error):
             self.assertEqual([m.action for m in markers], [Marker.DELETEALL] + [Marker.ADD] * (len(markers) - 1))
             self.assertGreater(len(markers), 1)
-
-    def test_no_marker_has_more_points_than_rviz_stands(self):
-        for marker in self.path + self.error:
-            self.assertLessEqual(len(marker.points), 16384)
-
-    def test_tool_path_turns_with_the_cutter(self):
-        self.assertEqual({(m.header.frame_id, m.type) for m in self.path[1:]}, {('cutter', Marker.LINE_STRIP)})
-        self.assertTrue(all(m.frame_locked for m in self.path[1:]))
-
-    def test_legend_is_that_of_the_job(self):
-        self.assertEqual(self.legend.cutter, gc.goal_of(gc.MOTION).cutter)
-        self.assertEqual(self.legend.tolerance, gc.MOTION['interpolation.tolerance'])
-        self.assertEqual(self.legend.max_error, 0)
+            self.assertLessEqual(max(len(m.points) for m in markers), 16384, 'more than rviz stands')
+        self.assertEqual({(m.header.frame_id, m.type, m.frame_locked) for m in path[1:]}, {('cutter', Marker.LINE_STRIP, True)})
+        legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
+        self.assertEqual((legend.cutter, legend.tolerance, legend.max_error),
+                         (gc.goal_of(gc.MOTION).cutter, gc.MOTION['interpolation.tolerance'], 0))
 
 
 if __name__ == '__main__':

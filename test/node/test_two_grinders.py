@@ -147,11 +147,14 @@ LONG = gc.paper(feed=900 * gc.MM_MIN)
 
 
 class TestFaultOfOne(unittest.TestCase):
-    def test_emergency_stop_of_one_does_not_touch_the_other(self):
+    def test_override_hold_and_emergency_stop_of_one_do_not_touch_the_other(self):
         left, right = clients()
         runs = [client.send(LONG) for client in (left, right)]
         for run in runs:
             run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
+        self.assertTrue(left.set_feed_override(0.5).success)
+        self.assertTrue(left.hold().success)
+        self.assertEqual(left.wait_state(GrinderState.HELD).override, 0.5)
         left.inject('emergency_stop')
         runs[0].wait()
         self.assertEqual((runs[0].status, runs[0].code), ('ABORTED', GrindResult.EMERGENCY_STOP))
@@ -163,21 +166,6 @@ class TestFaultOfOne(unittest.TestCase):
         self.assertEqual(runs[1].result.setpoints_written, runs[1].result.statistics.setpoints)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
         self.assertEqual(left.fresh_state().state, GrinderState.FAULT)
-
-    def test_override_and_hold_of_one_do_not_touch_the_other(self):
-        left, right = clients()
-        planned = right.plan(gc.goal_of(LONG)).statistics.setpoints
-        runs = [client.send(LONG) for client in (left, right)]
-        for run in runs:
-            run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
-        self.assertTrue(left.set_feed_override(0.5).success)
-        self.assertTrue(left.hold().success)
-        runs[1].wait_complete()
-        self.assertEqual(left.fresh_state().state, GrinderState.HELD)
-        self.assertEqual(left.fresh_state().override, 0.5)
-        self.assertEqual((runs[1].status, len(runs[1].setpoints)), ('SUCCEEDED', planned))
-        runs[0].cancel()
-        self.assertEqual(runs[0].wait().status, 'PREEMPTED')
 
 
 class TestEndOfOne(unittest.TestCase):

@@ -106,6 +106,12 @@ Panel::Panel(const QString& node, const QString& job)
   EXPECT_TRUE(QTest::qWaitForWindowExposed(panel_.get(), kPatience));
 }
 
+void Panel::plan() {
+  WAIT_FOR(enabled("plan"));
+  click("plan");
+  WAIT_FOR(enabled("start"));
+}
+
 void Panel::answer(const char* name) {
   EXPECT_TRUE(QTest::qWaitFor([&] { return the<QPushButton>(name).isVisible() && enabled(name); }, kPatience)) << name;
   click(name);

@@ -20,6 +20,9 @@ namespace grinder {
 /// Much longer than anything takes, even on a host that stalls [ms].
 constexpr int kPatience = 60000;
 
+/// Waits for a condition, and lets the panel live meanwhile.
+#define WAIT_FOR(condition) ASSERT_TRUE(QTest::qWaitFor([&] { return bool(condition); }, kPatience)) << #condition
+
 using Names = std::set<std::string>;
 
 /// The ten buttons that ask for a change of the machine's state.
@@ -47,6 +50,8 @@ class Panel {
     return *found;
   }
   void click(const char* name) { QTest::mouseClick(&the<QPushButton>(name), Qt::LeftButton); }
+  /// Plans the job, once it may, and waits until it may be started.
+  void plan();
   /// Answers a question, once it takes answers.
   void answer(const char* name);
   /// Clicks a button, and once more at the same place, whatever is there by then. @param pause between them, as the
@@ -59,6 +64,10 @@ class Panel {
   }
   std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
   std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
+  /// Whether a text of the panel, or a label of it, has this in it.
+  bool says(const char* name, const std::string& part) { return text(name).find(part) != std::string::npos; }
+  bool shows(const char* name, const std::string& part) { return label(name).find(part) != std::string::npos; }
+  bool isVisible(const char* name) { return the<QWidget>(name).isVisible(); }
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
   std::string state() { return label("state"); }
   /// Shows one of the tabs by a click.
@@ -75,8 +84,5 @@ class Panel {
 
   std::unique_ptr<rviz::Panel> panel_;
 };
-
-/// Waits for a condition, and lets the panel live meanwhile.
-#define WAIT_FOR(condition) ASSERT_TRUE(QTest::qWaitFor([&] { return bool(condition); }, kPatience)) << #condition
 
 }  // namespace grinder

@@ -16,6 +16,9 @@
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/WorkOffsets.h"
 
+#include "flute_grinder/machine/machine_state.h"
+#include "panel_fixture.h"
+
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
@@ -70,6 +73,16 @@ class Stage {
   void be(std::uint8_t number, const std::string& name) {
     change([&] { state.state = number, state.state_name = name; });
   }
+  /// @param name of a state.
+  void be(const std::string& name) { be(static_cast<std::uint8_t>(valueOf<MachineState>(name).value()), name); }
+  /// The same, until a panel shows it, and with it all that was changed before.
+  void be(const std::string& name, Panel& panel) {
+    be(name);
+    WAIT_FOR(QString::fromStdString(panel.state()).toLower() == QString::fromStdString(name).replace('_', ' '));
+  }
+  void standAt(const std::vector<double>& position) {
+    change([&] { joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, joints.position = position; });
+  }
   /// Changes what is public below, while it is not read.
   template <typename Change>
   void change(Change how) {
@@ -80,6 +93,12 @@ class Stage {
   auto get(Get what) {
     const std::lock_guard<std::mutex> lock(mutex_);
     return what();
+  }
+  /// A copy of a member: get(&Stage::goals).
+  template <typename Member>
+  Member get(Member Stage::*member) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return this->*member;
   }
   /// Lets a call that hangs come to its end.
   void release() {

@@ -107,7 +107,7 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   EXPECT_EQ(panel.label("job_file"), "slow.yaml");
   EXPECT_FALSE(panel.enabled("start"));
   plan();
-  EXPECT_NE(panel.text("verdict").find("Feed 300.0 mm/min; no axis limits it."), std::string::npos);
+  EXPECT_TRUE(panel.says("verdict", "Feed 300.0 mm/min; no axis limits it.")) << panel.text("verdict");
   EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
   enable();
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "home", "start"}));
@@ -136,7 +136,7 @@ TEST_F(WithGrinder, AWholeJobIsClickedThrough) {
   EXPECT_GT(position('y'), y + 4);
   panel.click("resume");
   WAIT_FOR(panel.state() == "Running" && position('x') > x + 1);
-  WAIT_FOR(panel.text("messages").find("The job is done") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "The job is done"));
   WAIT_FOR(panel.state() == "Ready" && panel.label("place") == "No job runs");
   EXPECT_EQ(panel.the<QProgressBar>("job").text(), "Job 100 %");
   EXPECT_FALSE(panel.enabled("start")) << "a plan is for one start";
@@ -149,10 +149,10 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   enable();
   panel.click("dry_run");
   WAIT_FOR(panel.enabled("start"));
-  EXPECT_NE(panel.text("messages").find("Planned and checked; nothing moved"), std::string::npos);
+  EXPECT_TRUE(panel.says("messages", "Planned and checked; nothing moved")) << panel.text("messages");
   start();
   panel.click("cancel");
-  WAIT_FOR(panel.text("messages").find("The job has ended: canceled; stopped on the path") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "The job has ended: canceled; stopped on the path"));
   WAIT_FOR(panel.state() == "Ready");
   auto& go_on = panel.the<QCheckBox>("continue");
   WAIT_FOR(go_on.isEnabled());
@@ -165,12 +165,13 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
   start();
   inject("emergency_stop");
   WAIT_FOR(panel.state() == "Fault");
-  WAIT_FOR(panel.text("messages").find("The job has ended: emergency stop") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "The job has ended: emergency stop"));
   WAIT_FOR(panel.enabledRequests() == Names{"reset"});
-  EXPECT_NE(panel.label("meaning").find("Fault: emergency stop. The emergency stop is pressed."), std::string::npos);
+  EXPECT_TRUE(panel.shows("meaning", "Fault: emergency stop. The emergency stop is pressed."))
+      << panel.label("meaning");
   panel.picture("emergency_stop");
   panel.click("reset");
-  WAIT_FOR(panel.text("messages").find("Reset refused") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Reset refused"));
   EXPECT_EQ(panel.state(), "Fault");
   inject("none");
   panel.click("reset");
@@ -188,8 +189,8 @@ TEST_F(WithGrinder, AJobThatWasCanceledIsContinuedAndEndsWithAFault) {
 TEST_F(WithGrinder, AnErrorInAJobFileIsShown) {
   WAIT_FOR(panel.state() == "Disabled");
   open(jobFile(folder, "wrong.yaml", {{"spiral_angle_deg: 30", "spiral_angle_deg: 300"}}));
-  EXPECT_NE(panel.text("verdict").find("wrong.yaml:5"), std::string::npos) << panel.text("verdict");
-  EXPECT_NE(panel.text("verdict").find("spiral_angle_deg = 300"), std::string::npos) << panel.text("verdict");
+  EXPECT_TRUE(panel.says("verdict", "wrong.yaml:5")) << panel.text("verdict");
+  EXPECT_TRUE(panel.says("verdict", "spiral_angle_deg = 300")) << panel.text("verdict");
   EXPECT_EQ(panel.text("verdict").find(folder.path().toStdString()), std::string::npos) << panel.text("verdict");
   panel.picture("wrong_job_file");
   open(folder.filePath("slow.yaml"));

@@ -23,17 +23,10 @@ const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grind
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
                      "jog_z_plus", "jog_z_minus", "jog_a_plus", "jog_a_minus"};
 
-/// Whether a state allows what a test asks for.
-struct Row {
-  std::uint8_t state;
-  const char* name;
-  bool allowed;
-};
-
 class Jogging : public ::testing::Test {
  protected:
   Jogging() {
-    stage.be(flute_grinder::GrinderState::READY, "ready");
+    stage.be("ready");
     panel.openTab("Jog");
   }
   Names enabledButtons() {
@@ -49,15 +42,9 @@ class Jogging : public ::testing::Test {
     ASSERT_GE(index, 0) << step.toStdString();
     steps.setCurrentIndex(index);
   }
-  std::vector<flute_grinder::Jog> jogs() {
-    return stage.get([&] { return stage.jogs; });
-  }
-  std::vector<flute_grinder::JogStep::Request> steps() {
-    return stage.get([&] { return stage.steps; });
-  }
-  std::vector<flute_grinder::TouchOff::Request> touches() {
-    return stage.get([&] { return stage.touches; });
-  }
+  std::vector<flute_grinder::Jog> jogs() { return stage.get(&Stage::jogs); }
+  std::vector<flute_grinder::JogStep::Request> steps() { return stage.get(&Stage::steps); }
+  std::vector<flute_grinder::TouchOff::Request> touches() { return stage.get(&Stage::touches); }
   /// Presses a button until some messages have come.
   void hold(const char* name) {
     const std::size_t before = jogs().size();
@@ -77,19 +64,19 @@ class Jogging : public ::testing::Test {
 };
 
 TEST_F(Jogging, ButtonsAreEnabledWhereAnAxisMayBeJogged) {
-  for (const Row& row : std::vector<Row>{{flute_grinder::GrinderState::READY, "ready", true},
-                                         {flute_grinder::GrinderState::HELD, "held", false},
-                                         {flute_grinder::GrinderState::RETRACTED, "retracted", true},
-                                         {flute_grinder::GrinderState::RUNNING, "running", false},
-                                         {flute_grinder::GrinderState::JOGGING, "jogging", true},
-                                         {flute_grinder::GrinderState::DISABLED, "disabled", false},
-                                         {flute_grinder::GrinderState::JOGGING_RETRACTED, "jogging_retracted", true}}) {
-    stage.be(row.state, row.name);
-    WAIT_FOR(panel.enabled("jog_x_plus") == row.allowed);
-    WAIT_FOR(enabledButtons() == (row.allowed ? kButtons : Names()));
+  for (const auto& [state, allowed] : {std::pair{"ready", true},
+                                       {"held", false},
+                                       {"retracted", true},
+                                       {"running", false},
+                                       {"jogging", true},
+                                       {"disabled", false},
+                                       {"jogging_retracted", true}}) {
+    stage.be(state);
+    WAIT_FOR(panel.enabled("jog_x_plus") == allowed);
+    WAIT_FOR(enabledButtons() == (allowed ? kButtons : Names()));
   }
   WAIT_FOR(panel.state() == "Jogging retracted");
-  stage.be(flute_grinder::GrinderState::READY, "ready");
+  stage.be("ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
@@ -112,10 +99,10 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
   EXPECT_DOUBLE_EQ(steps()[1].distance, -0.1 * M_PI / 180);
   EXPECT_DOUBLE_EQ(steps()[1].speed, 15 * M_PI / 180);
   EXPECT_TRUE(jogs().empty());
-  WAIT_FOR(panel.text("messages").find("Jog: axis A by -0.1 deg") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Jog: axis A by -0.1 deg"));
   stage.change([&] { stage.step_refusal = "jog refused: because"; });
   panel.click("jog_z_minus");
-  WAIT_FOR(panel.text("messages").find("Jog refused: because") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Jog refused: because"));
 }
 
 TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
@@ -137,10 +124,10 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   for (const flute_grinder::TouchOff::Request& touch : touches()) {
     EXPECT_NE(touch.set_by.find('@'), std::string::npos) << touch.set_by;
   }
-  WAIT_FOR(panel.text("messages").find("Touch-off: the work offset of axis A is set") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Touch-off: the work offset of axis A is set"));
   stage.change([&] { stage.touch_refusal = "the axes are not homed"; });
   panel.click("touch_off");
-  WAIT_FOR(panel.text("messages").find("Touch-off: the axes are not homed") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Touch-off: the axes are not homed"));
 }
 
 TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
@@ -151,7 +138,7 @@ TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
   diameter.setValue(12.02);
   WAIT_FOR(panel.enabled("touch_off"));
   panel.click("touch_off");
-  WAIT_FOR(panel.text("messages").find("open the job first") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "open the job first"));
 
   Panel with_job("cell/stage", kPaper);
   with_job.the<QComboBox>("touch_axis").setCurrentText("Y");
@@ -201,14 +188,12 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
 }
 
 TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
-  for (const Row& row : std::vector<Row>{{flute_grinder::GrinderState::READY, "ready", true},
-                                         {flute_grinder::GrinderState::JOGGING, "jogging", false},
-                                         {flute_grinder::GrinderState::DISABLED, "disabled", true},
-                                         {flute_grinder::GrinderState::RETRACTED, "retracted", false}}) {
-    stage.be(row.state, row.name);
-    WAIT_FOR(panel.enabled("touch_off") == row.allowed);
+  for (const auto& [state, allowed] :
+       {std::pair{"ready", true}, {"jogging", false}, {"disabled", true}, {"retracted", false}}) {
+    stage.be(state);
+    WAIT_FOR(panel.enabled("touch_off") == allowed);
   }
-  stage.be(flute_grinder::GrinderState::READY, "ready");
+  stage.be("ready");
   WAIT_FOR(panel.enabled("touch_off"));
   stage.change([&] { stage.state.homed = 0; });
   WAIT_FOR(!panel.enabled("touch_off"));
@@ -227,7 +212,7 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   panel.click("spindle_on");
   WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_on"}));
   EXPECT_EQ(panel.label("meaning").find("The spindle is on. "), 0U) << panel.label("meaning");
-  WAIT_FOR(panel.text("messages").find("The spindle is on; keep clear of the wheel") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "The spindle is on; keep clear of the wheel"));
   panel.picture("spindle_on");
   panel.click("spindle_off");
   WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
@@ -237,11 +222,9 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   WAIT_FOR(enabled().size() == 2);
   // While a job runs they are its own.
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
-  stage.be(flute_grinder::GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.state() == "Running");
+  stage.be("running", panel);
   EXPECT_TRUE(enabled().empty());
-  stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
-  WAIT_FOR(panel.state() == "Disabled");
+  stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
 }
 
@@ -280,7 +263,7 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
   }
   EXPECT_EQ(panel.text("messages"), "");
   stage.refuseJog("jog refused: axis Y stands at -20 mm, the end of its way");
-  WAIT_FOR(panel.text("messages").find("Jog refused: axis Y stands at -20 mm") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Jog refused: axis Y stands at -20 mm"));
   QTest::mouseRelease(&panel.the<QPushButton>("jog_y_minus"), Qt::LeftButton);
   expectStopped();
   EXPECT_TRUE(steps().empty());
@@ -309,7 +292,7 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
   expectStopped();
   QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
   ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  stage.be(flute_grinder::GrinderState::FAULT, "fault");
+  stage.be("fault");
   expectStopped();
   QTest::mouseRelease(&button, Qt::LeftButton);
 }

@@ -29,11 +29,9 @@ class ZeroPoints : public ::testing::Test {
       stage.plan.valid = 1;
       stage.plan.duration = 12;
     });
-    stage.be(flute_grinder::GrinderState::READY, "ready");
+    stage.be("ready");
     panel.widget().show();
-    WAIT_FOR(panel.enabled("plan"));
-    panel.click("plan");
-    WAIT_FOR(panel.enabled("start"));
+    panel.plan();
   }
 
   /// Offsets of 1, 2, 3 mm that were set for the paper's job with another end diameter and height [m].
@@ -52,13 +50,13 @@ class ZeroPoints : public ::testing::Test {
     }
     stage.publishOffsets(offsets);
   }
-  bool asks() { return panel.the<QPushButton>("ignore_offset_check").isVisible(); }
-  std::vector<flute_grinder::GrindActionGoal> goals() {
-    return stage.get([&] { return stage.goals; });
+  bool asks() { return panel.isVisible("ignore_offset_check"); }
+  void startAndBeAsked() {
+    panel.click("start");
+    WAIT_FOR(asks());
   }
-  std::vector<flute_grinder::SetOffset::Request> offsetsSet() {
-    return stage.get([&] { return stage.offsets_set; });
-  }
+  std::vector<flute_grinder::GrindActionGoal> goals() { return stage.get(&Stage::goals); }
+  std::vector<flute_grinder::SetOffset::Request> offsetsSet() { return stage.get(&Stage::offsets_set); }
 
   Stage stage;
   Panel panel{"cell/stage", kPaper};
@@ -79,8 +77,7 @@ TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
   }
   stage.publishOffsets(offsets);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
-  panel.click("start");
-  WAIT_FOR(asks());
+  startAndBeAsked();
   const auto& text = panel.the<QPlainTextEdit>("offsets_question");
   std::string shown;
   for (QTextBlock line = text.document()->begin(); line.isValid(); line = line.next()) {
@@ -129,8 +126,7 @@ TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
 TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   setFor(0.006);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
-  panel.click("start");
-  WAIT_FOR(asks());
+  startAndBeAsked();
   EXPECT_NE(panel.text("offsets_question")
                 .find("Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"),
             std::string::npos)
@@ -139,8 +135,7 @@ TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   panel.answer("decline_offsets");
   WAIT_FOR(!asks());
   EXPECT_TRUE(goals().empty());
-  panel.click("start");
-  WAIT_FOR(asks());
+  startAndBeAsked();
   panel.answer("ignore_offset_check");
   WAIT_FOR(goals().size() == 1);
   EXPECT_TRUE(goals()[0].goal.ignore_offset_check);
@@ -150,8 +145,7 @@ TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
 TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
   setFor(0.006);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
-  panel.click("start");
-  WAIT_FOR(asks());
+  startAndBeAsked();
   EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
   panel.answer("fit_offsets");
   WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
@@ -167,8 +161,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
 TEST_F(ZeroPoints, ThatAreFittedAreShownWithWhatTheyWereBesideThePlan) {
   setFor(0.006, 0.001788);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y, Z");
-  panel.click("start");
-  WAIT_FOR(asks());
+  startAndBeAsked();
   EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
   panel.answer("fit_offsets");
   WAIT_FOR(panel.text("messages").size() > 9 && panel.text("verdict").find("Takes 12.0 s.") == 0);
@@ -180,21 +173,20 @@ TEST_F(ZeroPoints, ThatAreFittedAreShownWithWhatTheyWereBesideThePlan) {
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   stage.publishOffsets({});
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
-  panel.click("start");
-  WAIT_FOR(asks());
-  EXPECT_FALSE(panel.the<QPushButton>("fit_offsets").isVisible());
-  EXPECT_NE(panel.text("offsets_question").find("Y was never set"), std::string::npos);
+  startAndBeAsked();
+  EXPECT_FALSE(panel.isVisible("fit_offsets"));
+  EXPECT_TRUE(panel.says("offsets_question", "Y was never set")) << panel.text("offsets_question");
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!asks());
 }
 
 TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
-  const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
+  const auto touches = [&] { return stage.get(&Stage::touches); };
   const auto large = [&](bool is) {
     stage.change([&] { stage.touch_refusal = is ? "it would change by much" : "", stage.large_change = is; });
   };
-  const auto asks = [&] { return panel.the<QPushButton>("touch_off_anyway").isVisible(); };
+  const auto asks = [&] { return panel.isVisible("touch_off_anyway"); };
   panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
   WAIT_FOR(panel.enabled("touch_off"));
@@ -224,7 +216,7 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
 }
 
 TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
-  const auto touches = [&] { return stage.get([&] { return stage.touches; }); };
+  const auto touches = [&] { return stage.get(&Stage::touches); };
   // The wheel's middle at the height of the axis, where it touches.
   stage.change([&] { stage.state.work_position[kZ] = -0.002788, stage.state.override = 0.5; });
   WAIT_FOR(panel.label("override_value") == "50 %");
@@ -239,7 +231,7 @@ TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
   EXPECT_NEAR(touches()[0].position, 0.00345, 1e-12);
   at.setValue(110);
   panel.click("touch_off");
-  WAIT_FOR(panel.the<QWidget>("touch_off_anyway").isVisible());
+  WAIT_FOR(panel.isVisible("touch_off_anyway"));
   EXPECT_EQ(panel.text("touch_question"),
             "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm.");
   panel.picture("touch_off_diameter");
@@ -259,8 +251,8 @@ TEST_F(ZeroPoints, OfYAndZNeedAJob) {
   WAIT_FOR(without.text("messages").find("open the job first") != std::string::npos);
   without.the<QComboBox>("touch_axis").setCurrentText("X");
   without.click("touch_off");
-  WAIT_FOR(stage.get([&] { return stage.touches.size(); }) == 1);
-  EXPECT_EQ(stage.get([&] { return stage.touches[0].basis.wheel_digest; }), "");
+  WAIT_FOR(stage.get(&Stage::touches).size() == 1);
+  EXPECT_EQ(stage.get(&Stage::touches).at(0).basis.wheel_digest, "");
 }
 
 }  // namespace test_panel_offsets

@@ -21,7 +21,7 @@ class Operation : public ::testing::Test {
  protected:
   void SetUp() override {
     stage.change([&] { stage.plan.valid = 1, stage.state.swivel = 13.104 * M_PI / 180; });
-    stage.be(flute_grinder::GrinderState::READY, "ready");
+    stage.be("ready");
   }
   static QComboBox& box(Panel& panel) { return panel.the<QComboBox>("operation"); }
   static void choose(Panel& panel, const QString& operation) {
@@ -31,11 +31,7 @@ class Operation : public ::testing::Test {
       ASSERT_NE(box(panel).currentIndex(), before) << operation.toStdString();
     }
   }
-  static void plan(Panel& panel) {
-    WAIT_FOR(panel.enabled("plan"));
-    panel.click("plan");
-    WAIT_FOR(panel.enabled("start"));
-  }
+  static void plan(Panel& panel) { panel.plan(); }
   static bool says(Panel& panel, const std::string& begin) { return panel.text("verdict").find(begin) == 0; }
 
   Stage stage;
@@ -68,14 +64,14 @@ TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
   panel.picture("operation_chosen");
   const flute_grinder::GrindGoal primary = goalFromFile(kReamer.toStdString(), "primary");
   ASSERT_EQ(primary.operation, 1);
-  EXPECT_EQ(stage.get([&] { return stage.plans.back(); }), primary);
+  EXPECT_EQ(stage.get(&Stage::plans).back(), primary);
   choose(panel, "3 secondary relief");
   WAIT_FOR(!panel.enabled("start"));
   EXPECT_TRUE(says(panel, "Not planned yet."));
   plan(panel);
   panel.click("start");
-  WAIT_FOR(stage.get([&] { return stage.goals.size(); }) == 1);
-  EXPECT_EQ(stage.get([&] { return stage.goals[0].goal; }), goalFromFile(kReamer.toStdString(), "secondary"));
+  WAIT_FOR(stage.get(&Stage::goals).size() == 1);
+  EXPECT_EQ(stage.get(&Stage::goals).at(0).goal, goalFromFile(kReamer.toStdString(), "secondary"));
 }
 
 TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
@@ -100,8 +96,8 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   plan(panel);
   write(true, "0.04");
   panel.click("plan");
-  WAIT_FOR(stage.get([&] { return stage.plans.size(); }) == 2);
-  EXPECT_EQ(stage.get([&] { return stage.plans[1].process.infeed; }), 0.04e-3);
+  WAIT_FOR(stage.get(&Stage::plans).size() == 2);
+  EXPECT_EQ(stage.get(&Stage::plans).at(1).process.infeed, 0.04e-3);
   EXPECT_EQ(box(panel).currentText(), "2 primary relief");
   WAIT_FOR(says(panel, "Takes "));
   write(false, "0.04");
@@ -115,7 +111,7 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   panel.widget().save(config);
   panel.widget().load(config);  // the same file, as it was opened once more
   EXPECT_EQ(box(panel).currentText(), "choose");
-  EXPECT_EQ(stage.get([&] { return stage.goals.size(); }), 0U);
+  EXPECT_EQ(stage.get(&Stage::goals).size(), 0U);
 }
 
 TEST_F(Operation, ThatRunsIsNamed) {
@@ -125,11 +121,11 @@ TEST_F(Operation, ThatRunsIsNamed) {
   job.goal = goalFromFile(kReamer.toStdString(), "secondary");
   stage.publishJob(job);
   stage.change([&] { stage.progress.tooth = 4, stage.progress.pass = 11; });
-  stage.be(flute_grinder::GrinderState::RUNNING, "running");
-  WAIT_FOR(panel.the<QWidget>("other_job").isVisible());
+  stage.be("running");
+  WAIT_FOR(panel.isVisible("other_job"));
   EXPECT_EQ(panel.text("other_job").find("Running: taper_reamer_d6_t6.yaml, secondary relief (D 6 mm, "), 0U)
       << panel.text("other_job");
-  EXPECT_NE(panel.label("place").find(", secondary, tooth 5, pass 12"), std::string::npos) << panel.label("place");
+  EXPECT_TRUE(panel.shows("place", ", secondary, tooth 5, pass 12")) << panel.label("place");
   EXPECT_EQ(panel.the<QLabel>("place").toolTip(), "taper_reamer_d6_t6.yaml, 3 secondary relief");
   panel.picture("operation_running");
 }
@@ -165,13 +161,13 @@ TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
   WAIT_FOR(panel.enabled("touch_off"));
   panel.click("touch_off");
-  WAIT_FOR(panel.text("messages").find("Touch-off: choose the operation of the job first") != std::string::npos);
+  WAIT_FOR(panel.says("messages", "Touch-off: choose the operation of the job first"));
   panel.openTab("Job");
   choose(panel, "3 secondary relief");
   panel.openTab("Jog");
   panel.click("touch_off");
-  WAIT_FOR(stage.get([&] { return stage.touches.size(); }) == 1);
-  EXPECT_NEAR(stage.get([&] { return stage.touches[0].basis.height; }), -3.548e-3, 1e-12);
+  WAIT_FOR(stage.get(&Stage::touches).size() == 1);
+  EXPECT_NEAR(stage.get(&Stage::touches).at(0).basis.height, -3.548e-3, 1e-12);
 }
 
 }  // namespace test_panel_operation

@@ -24,18 +24,18 @@ constexpr const char* kGrinder = "--grinder";  ///< argument of the grinder's pr
 int runGrinder() {
   Stage stage;
   const MasterWatch master_watch({"/cell/stage/resume"});
-  stage.be(flute_grinder::GrinderState::RUNNING, "running");
+  stage.be("running");
   std::size_t done = 0;
   int resumed = 0;
   for (ros::WallRate rate(100); ros::ok(); rate.sleep()) {
-    for (const int resumes = stage.get([&] { return stage.resumes; }); resumed < resumes; ++resumed) {
-      stage.be(flute_grinder::GrinderState::RUNNING, "running");
+    for (const int resumes = stage.get(&Stage::resumes); resumed < resumes; ++resumed) {
+      stage.be("running");
     }
-    const auto stops = stage.get([&] { return stage.stops; });
+    const auto stops = stage.get(&Stage::stops);
     for (; done < stops.size(); ++done) {
-      if (stops[done] == flute_grinder::Stop::HOLD) stage.be(flute_grinder::GrinderState::HELD, "held");
-      if (stops[done] == flute_grinder::Stop::CANCEL) stage.be(flute_grinder::GrinderState::READY, "ready");
-      if (stops[done] == flute_grinder::Stop::DISABLE) stage.be(flute_grinder::GrinderState::DISABLED, "disabled");
+      if (stops[done] == flute_grinder::Stop::HOLD) stage.be("held");
+      if (stops[done] == flute_grinder::Stop::CANCEL) stage.be("ready");
+      if (stops[done] == flute_grinder::Stop::DISABLE) stage.be("disabled");
     }
   }
   return 0;
@@ -113,7 +113,7 @@ class WithoutMaster : public ::testing::Test {
     WAIT_FOR(panel.enabled("resume"));
     panel.click("resume");  // by a service, which only the master can find
     WAIT_FOR(panel.state() == "Running");
-    WAIT_FOR(panel.text("messages").find("Resume: the job continues") != std::string::npos);
+    WAIT_FOR(panel.says("messages", "Resume: the job continues"));
   }
 
   const std::string kNoGrinder = "No grinder answers as /cell/stage. Does its node run?";
@@ -135,7 +135,7 @@ TEST_F(WithoutMaster, StopsReachTheGrinder) {
   EXPECT_EQ(panel.enabledRequests(), Names{"disable"});
   panel.click("disable");
   WAIT_FOR(panel.state() == "Disabled");
-  EXPECT_NE(panel.text("messages").find("Disable was sent"), std::string::npos) << panel.text("messages");
+  EXPECT_TRUE(panel.says("messages", "Disable was sent")) << panel.text("messages");
 }
 
 TEST_F(WithoutMaster, AMasterThatHangsIsMissing) {

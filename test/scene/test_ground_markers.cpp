@@ -79,12 +79,6 @@ TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
   expectFit(steep);
 }
 
-TEST(GroundMarkers, BeforeTheFirstStrokeNothingIsGround) {
-  const GrindJob job = jobOf("roughing_d10_t4");
-  const GroundCutter cutter = groundSoFar(ValidJob(job), {{0, 0}, PassPhase::kBefore, 0});
-  EXPECT_EQ(cutter.volumeRemoved(0, job.cutter.flute_length, 10), 0);
-}
-
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
   even.process.z_law = ZLaw::kConstantRake;

@@ -132,24 +132,9 @@ TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
   }
 }
 
-TEST(PathMarkers, LeaveOutPositionsThatAreNone) {
+TEST(PathMarkers, StayFiniteWhateverTheDriveSaysAndLeaveOutPositionsThatAreNone) {
   const Shown clean = show(0, kX, 0);
   ASSERT_GT(clean.max, 0);
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-                               -std::numeric_limits<double>::infinity()}) {
-      SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
-      const Shown spoiled = show(7, axis, value);
-      EXPECT_GT(spoiled.max, 0.9 * clean.max);
-      EXPECT_LE(spoiled.max, clean.max);
-      expectFinite(spoiled.flutes);
-      expectFinite(spoiled.executed);
-      EXPECT_EQ(spoiled.flutes.markers.size(), clean.flutes.markers.size());
-    }
-  }
-}
-
-TEST(PathMarkers, StayFiniteWhateverTheDriveSays) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const double value : hostileValues()) {
       SCOPED_TRACE(::testing::Message() << kJointNames[static_cast<std::size_t>(axis)] << " " << value);
@@ -158,6 +143,10 @@ TEST(PathMarkers, StayFiniteWhateverTheDriveSays) {
         EXPECT_TRUE(std::isfinite(spoiled.max));
         expectFinite(spoiled.flutes);
         expectFinite(spoiled.executed);
+        if (every == 1 || std::isfinite(value)) continue;
+        EXPECT_GT(spoiled.max, 0.9 * clean.max);
+        EXPECT_LE(spoiled.max, clean.max);
+        EXPECT_EQ(spoiled.flutes.markers.size(), clean.flutes.markers.size());
       }
     }
   }

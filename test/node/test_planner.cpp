@@ -111,6 +111,18 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
   EXPECT_NE(withFirstPass(1), withFirstPass(0));
 }
 
+TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
+  Planner planner(machine(), kShapes);
+  GrindJob job = endless();
+  job.process.z_law = ZLaw::kConstantRake;
+  Asked asked(job);
+  asked.request.control->give_up = true;
+  ASSERT_TRUE(planner.submit(asked.request));
+  const auto plan = asked.wait();
+  EXPECT_EQ(plan->fault, PlanFault::kGivenUp);
+  EXPECT_EQ(plan->program, nullptr);
+}
+
 TEST(Planner, ReportsWhyAJobCannotBeGround) {
   Planner planner(machine(), kShapes);
   Asked asked(paper());

@@ -32,7 +32,7 @@ Real spline(Real t) {
 
 }  // namespace
 
-Watch::Watch(Asked asked) : asked_(std::move(asked)) {
+Watch::Watch(Asked asked) : asked_(std::move(asked)), reached_(asked_.from) {
   for (const Tooth& t : asked_.teeth) {
     // A is a difference of turns, and X in it is rounded.
     for (const Real x : {Real(0), asked_.from, asked_.to}) {
@@ -175,7 +175,14 @@ void Watch::checkStroke(const Row& row) {
   const Real x = row.work[0];
   const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
   if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(1))) throw Violation(text("stroke: place", 1, row.work[1], y));
-  if (next && std::abs(x - asked_.to) <= noiseOf(0)) ++ground_;
+  if (!next) return;
+  const Real forward = asked_.to < asked_.from ? -1 : 1;
+  const Real step = asked_.velocity[0] * asked_.period * (1 + 1e-9L);
+  if (!(forward * (x - reached_) <= step + noiseOf(0))) throw Violation(text("a gap: place", 0, x, reached_));
+  reached_ = forward * (x - reached_) > 0 ? x : reached_;
+  if (std::abs(x - asked_.to) > noiseOf(0)) return;
+  ++ground_;
+  reached_ = asked_.from;
 }
 
 }  // namespace second_opinion

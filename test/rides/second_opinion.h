@@ -82,6 +82,7 @@ class Watch {
 
   Asked asked_;
   std::size_t ground_ = 0;
+  Real reached_;                      ///< X up to which the next pass has been ground without a gap
   Real turn_ = 0;                     ///< the largest of A's terms [rad]
   std::array<double, 4> farthest_{};  ///< of each axis from 0
   Row last_;

@@ -105,15 +105,15 @@ bool isPlausible(const char* option, double measured, double before, bool force)
 }
 
 /// Writes what a wheel has become into its file, if the file may say so.
-/// @param old the file's text, from which `before` was read.
+/// @param old the file's text, from which `before` was read. @param dressed whether it was, not only measured.
 int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width,
            bool dressed) {
   const std::string date = now();
   std::vector<JobEdit> edits{{"measured.date", date}, {"measured.diameter_mm", millimetres(diameter)}};
-  if (dressed) edits.insert(edits.begin(), {"dressed", date});
   const bool same_width = std::abs(width - before.process.wheel_width) <= kRounding;
   if (!same_width) edits.push_back({"measured.width_mm", millimetres(width)});
   edits.push_back({"measured.by", whoami()});
+  if (dressed) edits.push_back({"dressed", date});
   const std::string text = editJob(old, path, edits);
   try {
     const WheelFile after = parseWheel(text, path);

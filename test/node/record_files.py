@@ -11,7 +11,7 @@ def wheel_of(process):
         return process['wheel']
     with open(gc.package_file('jobs/' + process['wheel']['file'])) as text:
         wheel = yaml.safe_load(text)
-    return dict({key: wheel[key] for key in wheel if key not in ('flange_mm', 'measured')}, wear_mm=0)
+    return dict({key: wheel[key] for key in wheel if key not in ('flange_mm', 'measured', 'dressed')}, wear_mm=0)
 
 
 def job_of(path, operation=None):

@@ -135,6 +135,6 @@ class RunTest(unittest.TestCase):
     def wait_in_stroke(client, seen):
         def past():
             new = client.batches[seen:]
-            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 2 * MM
+            return new and new[-1].setpoints[-1].move == STROKE and new[-1].setpoints[-1].position[X] > 0
 
         client.wait_for(past, 'the stroke')

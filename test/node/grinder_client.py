@@ -294,8 +294,7 @@ class Run:
     @property
     def last(self):
         """The setpoint reported last, if there is one."""
-        batches = self.batches
-        return batches[-1].setpoints[-1] if batches else None
+        return next((batch.setpoints[-1] for batch in reversed(self._grinder.batches) if batch.goal_id == self.id), None)
 
     def wait_past(self, past, what):
         """Waits until the setpoint reported last is one that is wanted."""
@@ -513,11 +512,12 @@ class Grinder:
                       'joint states')
         return [axes_of(joint) for joint in self.joints[first:]]
 
-    def make_ready(self):
-        """Takes the machine from any state to ready, homed and at rest, with the swivel set for the paper's job."""
+    def make_ready(self, override=1):
+        """Takes the machine from any state to ready, homed and at rest, with the swivel set for the paper's job. With a low
+        feed override, which holds for strokes alone, there is time to interfere in a stroke, even on a host that stalls."""
         self.client.cancel_all_goals()
         self.take_faults_back()
-        assert self.set_feed_override(1).success
+        assert self.set_feed_override(override).success
 
         def ready():
             """Whether it is; otherwise requests the next step, if there is one to request in this state."""

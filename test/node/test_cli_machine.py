@@ -158,12 +158,12 @@ class TestMachine(CommandLine):
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^feed +0\.0 mm/min, override 1[23] %$')
 
     def test_hold_retract_and_resume(self):
+        self.grind(0, 'override', '10')
+        self.addCleanup(grinder().set_feed_override, 1)
         batches = len(grinder().batches)
         command = Command('run', PAPER_JOB, '--discard', '--ignore-offset-check')
         self.addCleanup(command.close)
         RunTest.wait_in_stroke(grinder(), batches)
-        self.grind(0, 'override', '10')
-        self.addCleanup(grinder().set_feed_override, 1)
         self.grind(0, 'hold')
         grinder().wait_state(GrinderState.HELD)
         printed = self.grind(0, 'status').stdout
@@ -183,7 +183,8 @@ class TestMachine(CommandLine):
             self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, command.text)
 
     def test_stops_need_no_home(self):
-        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        grinder().make_ready(0.1)
+        run = grinder().send(gc.PAPER).wait_in_stroke(0)
         with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
             self.grind(0, 'hold')
             grinder().wait_state(GrinderState.HELD)
@@ -195,7 +196,8 @@ class TestMachine(CommandLine):
         self.assertEqual(run.wait().code, GrindResult.CANCELED)
 
     def test_status_reports_why_the_job_is_held(self):
-        run = grinder().send(gc.PAPER).wait_in_stroke(2 * MM)
+        grinder().make_ready(0.1)
+        run = grinder().send(gc.PAPER).wait_in_stroke(0)
         reported, _ = self.json(0, 'status')
         self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
                          ('running', 1, 1, False, True))

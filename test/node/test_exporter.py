@@ -83,7 +83,7 @@ class TestExporter(unittest.TestCase):
         metrics = self.wait('state disabled')
         self.assertEqual((metrics['up'], metrics['state ready'], metrics['jobs_total done']), (1, 0, 0))
         self.check_nobody_knows()
-        self.grinder.make_ready()
+        self.grinder.make_ready(0.2)
         self.wait('state ready')
 
         run = self.grinder.send(JOB, job_name='two.yaml').wait_in_stroke(1 * MM)
@@ -91,7 +91,8 @@ class TestExporter(unittest.TestCase):
         metrics = gc.poll(lambda: [m for m in [self.scrape()] if m.get('state running') and m.get('job_progress_ratio', 0) > 0],
                           'the running job')[0]
         self.assertLess(metrics['job_progress_ratio'], 1)
-        self.assertEqual((metrics['spindle_commanded'], metrics['spindle_at_speed'], metrics['feed_override_ratio']), (1, 1, 1))
+        self.assertEqual((metrics['spindle_commanded'], metrics['spindle_at_speed'], metrics['feed_override_ratio']), (1, 1, 0.2))
+        self.assertTrue(self.grinder.set_feed_override(1).success)
         self.assertEqual([name for name in metrics if name.startswith('job_info two.yaml')],
                          ['job_info two.yaml  D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 2 teeth'])
         self.assertEqual(run.wait_complete().status, 'SUCCEEDED', run.text)

@@ -31,8 +31,8 @@ class TestFaultInTheStroke(unittest.TestCase):
     def fault_in_stroke(self, fault, axis=X):
         """The run that the fault has ended, and the state."""
         g = grinder()
-        g.make_ready()
-        run = g.send(STEEP).wait_in_stroke(5 * MM)
+        g.make_ready(0.1)
+        run = g.send(STEEP).wait_in_stroke(0)
         reply = g.inject(fault, axis)
         self.assertTrue(reply.success, reply.message)
         run.wait_complete()
@@ -56,8 +56,8 @@ class TestFaultInTheStroke(unittest.TestCase):
     def test_drive_that_hangs(self):
         """Nothing can be asked of the loop; its watchdog switches the power off, and the drive's return ends the job."""
         g = grinder()
-        g.make_ready()
-        run = g.send(STEEP).wait_in_stroke(5 * MM)
+        g.make_ready(0.1)
+        run = g.send(STEEP).wait_in_stroke(0)
         self.assertTrue(g.inject('hang').success)
         state = g.wait_state(GrinderState.FAULT)
         self.assertRegex(state.fault, r'the drive reports a fault: it does not return to the control loop; its power is switched off')

@@ -87,6 +87,10 @@ class TestRecords(Kept):
         self.node.close()
         type(self).start()
 
+    def send_into_stroke(self, **fields):
+        self.grinder.make_ready(0.2)
+        return self.grinder.send(JOB, **fields).wait_in_stroke(0)
+
     def check_broken_off(self, record, outcome, run):
         self.assertEqual(record['outcome'], outcome)
         self.assertEqual(record['reason'], run.text)
@@ -97,7 +101,7 @@ class TestRecords(Kept):
 
     def test_canceled(self):
         def cancel():
-            run = self.grinder.send(JOB).wait_in_stroke(3 * MM)
+            run = self.send_into_stroke()
             run.cancel()
             return run.wait_complete()
 
@@ -124,7 +128,7 @@ class TestRecords(Kept):
         before = self.files()
 
         def end():
-            run = self.grinder.send(JOB, job_name='broken off').wait_in_stroke(3 * MM)
+            run = self.send_into_stroke(job_name='broken off')
             self.restart()
             return run
 
@@ -136,7 +140,7 @@ class TestRecords(Kept):
 
     def test_kill_leaves_no_half_record(self):
         before = self.files()
-        self.grinder.send(JOB).wait_in_stroke(3 * MM)
+        self.send_into_stroke()
         self.restart(signal.SIGKILL)
         self.assertEqual(self.files(), before)
 

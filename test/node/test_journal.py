@@ -175,11 +175,10 @@ class JournalTest(gc.OwnNode):
         self.assertIn('journal ' + self.journal, report.message)
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
 
-    def hold_in_stroke_of(self, tooth, pass_):
+    def hold_in_stroke_of(self, tooth, pass_, override=0.02):
         """Holds a job in the midst of a stroke. The feed is low so that it does not get away."""
+        self.assertTrue(self.client.set_feed_override(override).success)
         run = self.client.send(self.job, job_name=JOB_NAME)
-        run.wait_past(lambda s: (s.tooth, s.pass_) == (tooth, pass_), 'the tooth')
-        self.assertTrue(self.client.set_feed_override(0.05).success)
         run.wait_past(lambda s: s.move == STROKE and (s.tooth, s.pass_) == (tooth, pass_) and s.position[X] > FROM,
                       'the stroke')
         self.assertTrue(self.client.hold().success)
@@ -270,7 +269,7 @@ class TestContinue(JournalTest):
         self.start()
         self.check_reported(journal)
         state = self.client.fresh_state()
-        self.assertEqual((bool(state.wheel_in_work), state.override), (True, 0.05))
+        self.assertEqual((bool(state.wheel_in_work), state.override), (True, 0.02))
         self.assertTrue(self.client.set_feed_override(1).success)
         status = self.grind(0, 'status').stdout
         self.assertRegex(status, r'(?m)^last job .*tooth 2, pass 1 not finished, X %.3f mm' % (at.position[X] / MM))
@@ -301,7 +300,7 @@ class TestContinueARelief(JournalTest):
         path = gc.reamer_file(os.path.join(self.folder, 'reamer.yaml'))
         self.job = flute_grinder.job.goal(path, 'primary')
         self.start_ready()
-        run = self.hold_in_stroke_of(1, 0)
+        run = self.hold_in_stroke_of(1, 0, override=0.2)  # its strokes are long
         journal = self.wait_left(run)
         self.kill()
         self.assertEqual((journal['finished'], journal['tooth'], journal['pass'], journal['wheel_in_work']),

@@ -95,10 +95,12 @@ class TestState(unittest.TestCase):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
 
     def test_plan_while_running_does_not_disturb(self):
+        grinder().make_ready(0.05)
         run = grinder().send(LONG).wait_in_stroke(0)
         self.assertTrue(grinder().plan(gc.goal_of(gc.SHORT)).valid)
         self.assertFalse(grinder().plan(gc.goal_of(gc.paper(feed=math.nan))).valid)
         self.assertFalse(run.done)
+        self.assertTrue(grinder().set_feed_override(1).success)
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertTrue(checks.is_gapless(run.setpoints))

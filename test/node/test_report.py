@@ -62,7 +62,8 @@ class Recording:
             self.node.make_ready()
             self.grind_with_hold_and_override()
             self.report_while_recording = gc.grind('report', self.bag + '.active', '-o', os.path.join(folder, 'no.html'))
-            self.node.send(gc.PAPER).wait_in_stroke(10 * MM)
+            self.node.make_ready(0.2)
+            self.node.send(gc.PAPER).wait_in_stroke(6 * MM)
         finally:
             launch.send_signal(signal.SIGINT)
             launch.wait(timeout=gc.PATIENCE)

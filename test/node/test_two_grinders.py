@@ -149,17 +149,20 @@ LONG = gc.paper(feed=900 * gc.MM_MIN)
 class TestFaultOfOne(unittest.TestCase):
     def test_override_hold_and_emergency_stop_of_one_do_not_touch_the_other(self):
         left, right = clients()
+        for client in (left, right):
+            self.assertTrue(client.set_feed_override(0.1).success)
         runs = [client.send(LONG) for client in (left, right)]
         for run in runs:
             run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
-        self.assertTrue(left.set_feed_override(0.5).success)
+        self.assertTrue(left.set_feed_override(0.2).success)
         self.assertTrue(left.hold().success)
-        self.assertEqual(left.wait_state(GrinderState.HELD).override, 0.5)
+        self.assertEqual(left.wait_state(GrinderState.HELD).override, 0.2)
         left.inject('emergency_stop')
         runs[0].wait()
         self.assertEqual((runs[0].status, runs[0].code), ('ABORTED', GrindResult.EMERGENCY_STOP))
         self.assertFalse(runs[1].done)
         self.assertEqual(right.fresh_state().state, GrinderState.RUNNING)
+        self.assertTrue(right.set_feed_override(1).success)
         runs[1].wait_complete()
         self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0), runs[1].text)
         self.assertTrue(checks.is_gapless(runs[1].setpoints))

@@ -15,7 +15,7 @@ import threading
 import unittest
 
 import grinder_client as gc
-from grinder_client import MM, STROKE, X
+from grinder_client import STROKE, X
 
 PAPER_JOB = gc.package_file('test/jobs/paper.yaml')
 

@@ -123,7 +123,8 @@ class SimulatedDrive : public Drive {
   bool probe_near_ = false;              ///< as near to the blank as a contact that flickers is made
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;       ///< fraction of full speed
-  std::int64_t processor_ns_ = 0;  ///< time that the thread had used at the last wait()
+  ros::Duration ahead_;            ///< time of the clock that the cycles since the last rest are to take
+  std::int64_t processor_ns_ = 0;  ///< time that the thread had used at the last rest
   DriveStatus status_;
   DriveCommand command_;  ///< as last written
 };

@@ -58,7 +58,7 @@ class NodeTest(gc.OwnNode):
         self.client.make_ready()
 
     def send_into_stroke(self):
-        return self.client.send(SLOW).wait_in_stroke(5 * MM)
+        return self.client.send(SLOW).wait_in_stroke(1 * MM)
 
     def check_stopped_and_lifted(self, run):
         """By its setpoints: the stroke is left radially, up to the clearance."""
@@ -278,7 +278,7 @@ class TestTheEnd(NodeTest):
                 self.check_end(number, -number)
 
     def test_goals_that_come_meanwhile_do_not_start(self):
-        self.start(machine()).make_ready()
+        self.start(machine()).make_ready(0.2)
         run = self.send_into_stroke()
         others = []
         with self.in_background(lambda: (others.append(self.client.send(gc.SHORT)), time.sleep(0.001))):

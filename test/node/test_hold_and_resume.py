@@ -32,16 +32,16 @@ class TestInterference(unittest.TestCase):
     def setUpClass(cls):
         g = grinder()
         g.make_ready_at_park()
-        cls.replies = [g.set_feed_override(0.3)]
+        cls.replies = [g.set_feed_override(0.1)]
         first_state = len(g.states)
-        cls.job_run = run = g.send(JOB).wait_in_stroke(8 * MM)
+        cls.job_run = run = g.send(JOB).wait_in_stroke(3 * MM)
         cls.replies.append(g.hold())
         cls.held = cls.rest_at(g, GrinderState.HELD)
         cls.others = [g.send(gc.SHORT).wait(), g.send(gc.SHORT, dry_run=True).wait()]
         cls.replies += [g.hold(), g.retract()]
         cls.retracted = cls.rest_at(g, GrinderState.RETRACTED)
-        cls.replies += [g.resume(), g.set_feed_override(0.5)]
-        g.wait_for(lambda: run.done or cls.feed_is(g, 0.5) and run.last.position[X] > 9 * MM, 'half the feed')
+        cls.replies += [g.resume(), g.set_feed_override(0.2)]
+        g.wait_for(lambda: run.done or cls.feed_is(g, 0.2) and run.last.position[X] > 4 * MM, 'a fifth of the feed')
         cls.replies.append(g.set_feed_override(0))
         g.wait_for(lambda: cls.feed_is(g, 0), 'no feed')
         cls.stopped = cls.rest_at(g, GrinderState.RUNNING)

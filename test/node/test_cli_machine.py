@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows what those commands of `grind` print that need the grinder, and their exit status: 0 done, 1 the machine or the job
 said no, 2 an unreadable file."""
 
@@ -9,7 +8,6 @@ import shutil
 import unittest.mock
 
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
@@ -227,8 +225,3 @@ class TestMachine(CommandLine):
     def test_probe_with_arguments_that_do_not_belong_together(self):
         for arguments in (['diameter', '--at', '10'], ['diameter', '--job', PAPER_JOB], ['tooth', '--job', PAPER_JOB]):
             self.grind(2, 'probe', *arguments)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_cli_machine')
-    rostest.rosrun('flute_grinder', 'cli_machine', '__main__')

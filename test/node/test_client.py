@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the client on the page docs/ros-interface.md runs a job, with the goal that `grind run` sends for its file, and says what
 came of it."""
 
@@ -9,7 +8,6 @@ import subprocess
 import sys
 
 import rospy
-import rostest
 from flute_grinder.msg import GrindActionGoal
 
 import grinder_client as gc
@@ -59,8 +57,3 @@ class TestClient(CommandLine):
         done = self.run_client(gc.job_file(self.path('long.yaml'), flute_length_mm=400))
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn('axis X position 401 mm is 101 mm beyond its limit', done.stdout.splitlines()[-1])
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_client')
-    rostest.rosrun('flute_grinder', 'client', '__main__')

@@ -1,10 +1,8 @@
-#!/usr/bin/env python3
 """Shows what /diagnostics reports of a running node at rest. Faults, figures and thresholds are gone through in test_diagnostics.cpp."""
 
 import unittest
 
 import rospy
-import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 import grinder_client as gc
@@ -68,8 +66,3 @@ class TestDiagnostics(unittest.TestCase):
                            ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'),
                            ('History', 'kept')):
             self.assertEqual(self.reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_diagnostics')
-    rostest.rosrun('flute_grinder', 'diagnostics', '__main__')

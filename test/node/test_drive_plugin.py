@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows what the node does with drive plugins from a package of their own: those of another version of the drive interface it
 refuses before it makes the drive, those that cannot do what the machine needs before they get power, and it waits for slow ones."""
 
@@ -10,7 +9,6 @@ import unittest
 
 import rosgraph
 import rospy
-import rostest
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
@@ -99,8 +97,3 @@ class TestDrivePlugin(unittest.TestCase):
                       rospy.ServiceProxy('/%s/enable' % node.name, Trigger)().message)
         self.assertEqual(node.end(signal.SIGTERM), 1, node.output)
         self.assertIn('the drive does not return: the process ends without it', node.output)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_drive_plugin')
-    rostest.rosrun('flute_grinder', 'drive_plugin', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the exporter follows a grinder over HTTP: its states, a job whose counters are those of its record, a fault, the
 exporter's restart, the grinder's end and its return; and that nothing knows of the exporter, which listens on loopback alone."""
 
@@ -14,7 +13,6 @@ import urllib.request
 
 import rosgraph
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState
 from prometheus_client.parser import text_string_to_metric_families
 
@@ -126,8 +124,3 @@ class TestExporter(unittest.TestCase):
         self.wait('state disabled')
         self.assertEqual(self.counters(), counters)
         self.assertIsNone(self.exporter.poll())
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_exporter')
-    rostest.rosrun('flute_grinder', 'exporter', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows what a client learns of a fault of the drive in the middle of a stroke, for every kind that the simulated drive can inject:
 the goal ends with the right code and words, requests are refused with a reason, and after reset, enable and lift the grinder is
 back in use. What the control loop does, cycle by cycle, is shown in test/control."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that tf knows where wheel, cutter and contact are: while a stroke runs, the wheel is found in the cutter's frame where
 the setpoint has it, with swivel, height and work offsets; that the frames of the set-up are latched and follow its changes;
 and that the joint states are those of the four axes alone."""
@@ -9,7 +8,6 @@ import unittest
 
 import numpy
 import rospy
-import rostest
 import tf2_ros
 from tf2_msgs.msg import TFMessage
 
@@ -230,8 +228,3 @@ class TestSetUp(unittest.TestCase):
         for joint in grinder().joints:
             self.assertEqual(joint.name, gc.JOINTS)
             self.assertEqual((len(joint.position), len(joint.velocity)), (4, 4))
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_frames')
-    rostest.rosrun('flute_grinder', 'frames', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the grinder keeps a record of every job that moved, with the figures that follow from its setpoints, that the
 disk cannot hold up a job, and what `grind history` lists of the records; and that the node reports which machine it is."""
 
@@ -15,7 +14,6 @@ import unittest
 
 import rospkg
 import rospy
-import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from flute_grinder.msg import MachineInfo
@@ -294,8 +292,3 @@ class TestCommand(Kept):
         done = self.grind('--from', folder)
         self.assertEqual((done.returncode, done.stdout), (0, 'no records in %s\n' % folder))
         self.assertEqual(json.loads(self.grind('--from', folder, '--json').stdout), [])
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_history')
-    rostest.rosrun('flute_grinder', 'history', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the services that hold, retract, resume and slow down a job reach it, that states, feedback and setpoints show what
 comes of it, and that a service refuses what the state does not allow. Every moment and state is gone through in test/control and
 test/motion."""

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that axes are jogged by a service in steps, and by a topic for as long as its message is repeated; that a jog ends by a stop,
 and when its client dies. Limits, states and moments, and a job whose wheel was jogged off the work, are gone through in
 test/control/test_jog.cpp."""
@@ -12,7 +11,6 @@ import time
 import unittest
 
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState, Jog, Stop
 from flute_grinder.srv import JogStep
 from std_msgs.msg import String
@@ -201,8 +199,3 @@ class TestCtrlC(RunTest):
         self.assertRegex(command.stdout, r'^X -?\d+\.\d{4} mm\n$')
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertLess(grinder().positions()[X], 40 * MM)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_jog')
-    rostest.rosrun('flute_grinder', 'jog', __name__)

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows how the node starts, listens, is used and ends: on loopback alone, not at all where its parameters leave a
 doubt; and what it leaves behind."""
 
@@ -18,7 +17,6 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState
 from flute_grinder.srv import JogStep
 from visualization_msgs.msg import Marker, MarkerArray
@@ -298,8 +296,3 @@ class TestMemory(gc.OwnNode):
         self.client.make_ready()
         self.client.send(self.TOOL).wait_in_stroke(1 * MM)
         self.assertLess(self.memory('VmHWM'), 100e6)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_node_life')
-    rostest.rosrun('flute_grinder', 'node_life', '__main__')

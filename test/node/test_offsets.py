@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that a job is ground where its work offsets say: setpoints are the work's, joint states and limits the machine's; that
 the offsets outlive the process, or are reported to be unknown; and that nothing changes them while a job depends on them."""
 
@@ -12,7 +11,6 @@ import threading
 import time
 
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult, OffsetBasis, WorkOffsets
 
 import grinder_client as gc
@@ -405,8 +403,3 @@ class TestCommandLine(OffsetsTest):
         self.check_fails(['touch-off', 'y', '--job', 'test/jobs/paper.yaml'], 2, 'touch-off y needs --at DIAMETER')
         self.check_fails(['offsets', '--set', 'x=1', '--set', 'z=1'], 2, '--set z=1 needs --job JOB')
         self.check_fails(['offsets', '--set', 'x=2e6'], 1, 'work offset of axis X = 2000000 mm; allowed: -100 to 300 mm')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_offsets')
-    rostest.rosrun('flute_grinder', 'offsets', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that what another program sends to the node's ports by mistake costs neither the stroke nor more than a little memory."""
 
 import contextlib
@@ -16,7 +15,6 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
 from flute_grinder.srv import Plan, PlanRequest
@@ -221,8 +219,3 @@ class TestManyConnections(Attacked):
 
     def descriptors(self):
         return len(os.listdir('/proc/%d/fd' % self.node.process.pid))
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_peers')
-    rostest.rosrun('flute_grinder', 'peers', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the measuring probe finds what stands in the simulated machine: end face, diameter and run-out, and the first tooth;
 that the work offsets follow; and that a stop ends it."""
 
@@ -13,7 +12,6 @@ import subprocess
 import tempfile
 
 import rospy
-import rostest
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import GrinderState, GrindResult
@@ -258,8 +256,3 @@ class TestStop(ProbeTest):
         with self.begun():
             self.node.process.terminate()
             self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_probe')
-    rostest.rosrun('flute_grinder', 'probe', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that whatever is not allowed is refused before anything moves, each with the code and with a text that names
 what is wrong, its value and what is allowed; and that the grinder is as good as before."""
 

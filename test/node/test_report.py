@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that `bag:=true` writes a bag of all setpoints, which Ctrl-C closes, and that `grind report` makes of it, and of
 the CSV files, one HTML file whose figures are the job's and whose pictures show its points."""
 
@@ -19,8 +18,6 @@ import xmlrpc.client
 
 import rosbag
 import rosgraph
-import rospy
-import rostest
 from PIL import Image
 
 import browser
@@ -948,8 +945,3 @@ class TestBadFiles(ReportCase):
         done = gc.grind('report', FILES['plan'], '-o', self.path('no.html'), '--machine', self.path('nothing.yaml'))
         self.assertEqual(done.returncode, 2)
         self.assertIn(self.path('nothing.yaml') + ': cannot be read', done.stderr)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_report')
-    rostest.rosrun('flute_grinder', 'report', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows how often the node reports positions and state: seldom while nothing changes, at the full rate while an axis moves, and at
 once when the rest ends. All times are the messages' stamps, by the loop's clock."""
 
@@ -6,8 +5,6 @@ import itertools
 import statistics
 import unittest
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState
 from flute_grinder.srv import JogStep
 
@@ -85,8 +82,3 @@ class TestRest(unittest.TestCase):
         run = g.send(gc.SHORT).wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertLess(statistics.median(intervals(g.joints[seen:])), REST / 4)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_rest')
-    rostest.rosrun('flute_grinder', 'rest', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows how `grind run` behaves while it waits: what it draws on a terminal and writes into a file, that whatever ends it
 stops the machine cleanly, and what it says when the grinder is gone. And the same of `grind home`."""
 
@@ -8,8 +7,6 @@ import re
 import signal
 import subprocess
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
@@ -365,8 +362,3 @@ class TestOwnNode(RunTest, gc.OwnNode):
         self.client.wait_state(GrinderState.HOMING)
         self.node.process.kill()
         self.check_lost(command)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_run')
-    rostest.rosrun('flute_grinder', 'run', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows the command line with a stand-in for the grinder, which reports what a good one hardly ever does: a job that takes
 long to plan, setpoints that were lost, those of others' jobs amid one's own, a wheel that is left in the work."""
 
@@ -13,7 +12,6 @@ import threading
 import actionlib
 import rosgraph
 import rospy
-import rostest
 from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
                                WorkOffsets, WrittenSetpoint)
 from flute_grinder.srv import Plan, PlanResponse, SetFeedOverride
@@ -241,8 +239,3 @@ class TestStandIn(RunTest):
         gc.poll(lambda: self.node.lifts > lifts, 'the lift')
         self.node.set(GrinderState.FAULT, 'fault', fault='emergency stop')
         self.assertEqual((command.end(), command.text), (1, 'emergency stop\n'))
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_stand_in')
-    rostest.rosrun('flute_grinder', 'stand_in', '__main__')

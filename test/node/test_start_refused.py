@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that a goal is refused until the machine is homed, and the swivel at the job's angle, as an operator has confirmed it or as
 the drive measures it; how a client sees it, and that the machine homes. What the control loop makes of reference and angle, at
 every moment of a job, is shown in test/control."""
@@ -6,8 +5,6 @@ every moment of a job, is shown in test/control."""
 import json
 import math
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult, Reason
 
 import grinder_client as gc
@@ -125,8 +122,3 @@ class TestSwivel(gc.OwnNode):
         done = self.grind(1, 'confirm-swivel', '31.769')
         self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which stands at 31.8 deg; '
                                       'nothing is to be confirmed\n')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_start_refused')
-    rostest.rosrun('flute_grinder', 'start_refused', '__main__')

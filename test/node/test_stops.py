@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that nothing stands between a stop and the axes: not planning, disk, terminal, other clients or their goals, not the
 end of the process; and that the wheel is not left in the work."""
 
@@ -12,7 +11,6 @@ import time
 import unittest
 
 import rospy
-import rostest
 from actionlib_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
@@ -327,8 +325,3 @@ class TestClock(NodeTest):
                 clock.publish(Clock(clock=rospy.Time.from_sec(set_to)))
                 seen = len(reports)
                 gc.poll(lambda: len(reports) > seen, 'diagnostics at %f' % set_to)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_stops')
-    rostest.rosrun('flute_grinder', 'stops', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the paper's job is streamed as it was planned: every setpoint arrives once and in order, bit for bit the same as
 `grind plan` lists, with its velocity, and the feedback reports how far it is; and what rviz is shown of it."""
 
@@ -9,7 +8,6 @@ import tempfile
 import unittest
 
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState, Legend
 from visualization_msgs.msg import Marker, MarkerArray
 
@@ -147,8 +145,3 @@ class TestMarkers(unittest.TestCase):
         legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
         self.assertEqual((legend.cutter, legend.tolerance, legend.max_error),
                          (gc.goal_of(gc.MOTION).cutter, gc.MOTION['interpolation.tolerance'], 0))
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_stream')
-    rostest.rosrun('flute_grinder', 'stream', '__main__')

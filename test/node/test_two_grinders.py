@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that two grinders in two namespaces under one master have nothing to do with one another: they run two jobs at
 once, each with the setpoints of its own plan, and have journals, transforms, faults and ends of their own."""
 
@@ -14,7 +13,6 @@ import xmlrpc.client
 
 import rosgraph
 import rospy
-import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from flute_grinder.msg import GrinderState, GrindResult
@@ -192,8 +190,3 @@ class TestEndOfOne(unittest.TestCase):
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_two_grinders')
-    rostest.rosrun('flute_grinder', 'two_grinders', '__main__')

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows that the grinder knows how far a job has come, whatever becomes of its process: after a kill at any moment the
 journal is whole, and continuing grinds every pass that was not finished, and none that the grinder's state reported as
 finished. The journal belongs to one node, and no job that is not finished is forgotten without a word."""
@@ -13,7 +12,6 @@ import time
 
 import flute_grinder.job
 import rospy
-import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from flute_grinder.msg import GrinderState, GrindResult
@@ -473,8 +471,3 @@ class TestFailingDisk(JournalTest):
         os.rmdir(new)
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
         self.check_reported(self.wait_finished())
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_journal')
-    rostest.rosrun('flute_grinder', 'journal', '__main__')

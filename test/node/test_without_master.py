@@ -45,17 +45,34 @@ def wait_for(condition, what):
 
 
 class Master:
-    """A ROS master of one's own, with a grinder."""
+    """A ROS master of one's own, and programs under it."""
 
     def __init__(self, **parameters):
-        port = free_port()
-        self.environment = {'ROS_MASTER_URI': 'http://127.0.0.1:%d' % port}
+        self.port = free_port()
+        self.environment = {'ROS_MASTER_URI': 'http://127.0.0.1:%d' % self.port}
         self.log = tempfile.TemporaryFile()
-        self.process = self.start(['rosmaster', '--core', '-p', str(port)])
-        master = rosgraph.Master(CALLER, self.environment['ROS_MASTER_URI'])
-        gc.poll(master.is_online, 'the master')
+        self.api = rosgraph.Master(CALLER, self.environment['ROS_MASTER_URI'])
+        self.process = None
+        self.run()
         for name, value in parameters.items():
-            master.setParam('/' + name, value)
+            self.api.setParam('/' + name, value)
+
+    @classmethod
+    def of_grinder(cls, folder, **parameters):
+        """With the parameters of a grinder, which keeps its files in a folder."""
+        files = {name: os.path.join(folder, name) for name in ('journal', 'offsets', 'history')}
+        with open(gc.package_file('urdf/grinder.urdf')) as urdf:
+            return cls(grinder=dict(gc.machine(), **files), robot_description=urdf.read(), **parameters)
+
+    def run(self):
+        """Starts the master, again if it could not have the port, until it answers."""
+
+        def answers():
+            if self.process is None or self.process.poll() is not None:
+                self.process = self.start(['rosmaster', '--core', '-p', str(self.port)])
+            return self.api.getPid()
+
+        wait_for(answers, 'master')
 
     def start(self, arguments):
         return subprocess.Popen(arguments, env=dict(os.environ, **self.environment), stdout=self.log,
@@ -65,6 +82,13 @@ class Master:
     def end(process):
         process.kill()
         process.wait()
+
+    def kill(self):
+        self.end(self.process)
+
+    def close(self):
+        self.kill()
+        self.log.close()
 
     def grind(self, *arguments):
         return subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, **self.environment),
@@ -132,17 +156,12 @@ class TestNodeWithoutMaster(unittest.TestCase):
 
 
 class TestWithoutMaster(RunTest):
-    def start_master(self, **parameters):
-        self.master = Master(**parameters)
-        self.addCleanup(self.master.log.close)
-        self.addCleanup(self.master.end, self.master.process)
+    def use(self, master):
+        self.master = master
+        self.addCleanup(master.close)
 
     def start_grinder(self, **parameters):
-        with open(gc.package_file('urdf/grinder.urdf')) as urdf:
-            self.start_master(grinder=dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
-                                           offsets=os.path.join(self.folder, 'offsets'),
-                                           history=os.path.join(self.folder, 'history')),
-                              robot_description=urdf.read(), **parameters)
+        self.use(Master.of_grinder(self.folder, **parameters))
         node = self.master.start([gc.program('grinder')])
         self.addCleanup(self.master.end, node)
         gc.poll(lambda: self.master.grind('status').returncode == 0, 'the grinder')
@@ -154,7 +173,7 @@ class TestWithoutMaster(RunTest):
             self.assertEqual(done.returncode, 0, done.stderr)
         command = self.grind('run', PAPER_JOB, '--ignore-offset-check', environment=self.master.environment)
         command.wait_text('  running  ')
-        self.master.end(self.master.process)
+        self.master.kill()
         return command
 
     def test_ctrl_z_holds_and_ctrl_c_stops_the_job_when_the_master_is_gone(self):
@@ -167,13 +186,13 @@ class TestWithoutMaster(RunTest):
         self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
 
     def test_commands_say_that_the_master_is_missing(self):
-        self.start_master()
-        self.master.end(self.master.process)
+        self.use(Master())
+        self.master.kill()
         missing = 'no ROS master answers at %s; ' % re.escape(self.master.environment['ROS_MASTER_URI'])
         self.check_all_say('^%swaiting for one\n%slaunch the grinder, or correct ROS_MASTER_URI\n$' % (missing, missing))
 
     def test_commands_say_that_the_grinder_is_missing(self):
-        self.start_master()
+        self.use(Master())
         left = rosgraph.Master('/left/grinder', self.master.environment['ROS_MASTER_URI'])
         for topic, kind in (('state', 'GrinderState'), ('offsets', 'WorkOffsets')):
             left.registerPublisher('/left/grinder/' + topic, 'flute_grinder/' + kind, 'http://127.0.0.1:1')
@@ -204,20 +223,11 @@ class TestMasterWatch(unittest.TestCase):
     """The node outlives its master, and is found under the next one."""
 
     def setUp(self):
-        self.port = free_port()
-        self.environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % self.port)
-        self.api = rosgraph.Master(CALLER, self.environment['ROS_MASTER_URI'])
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-        self.master = None
-        self.start_master()
-        self.addCleanup(lambda: self.master.poll() is not None or self.kill_master())
-        parameters = dict(gc.machine(), journal=os.path.join(self.folder, 'journal'),
-                          offsets=os.path.join(self.folder, 'offsets'),
-                          history=os.path.join(self.folder, 'history'))
-        self.api.setParam(NODE, parameters)
-        with open(gc.package_file('urdf/grinder.urdf')) as urdf:
-            self.api.setParam('/robot_description', urdf.read())
+        folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, folder)
+        self.master = Master.of_grinder(folder)
+        self.addCleanup(self.master.close)
+        self.api = self.master.api
         self.node = self.start(gc.program('grinder'), '__name:=' + NODE[1:])
         # The action's goals are what it registers last.
         wait_for(lambda: NODE + '/grind/goal' in self.registered()['subscribers'] and self.api.lookupService(NODE + '/plan'),
@@ -225,24 +235,9 @@ class TestMasterWatch(unittest.TestCase):
         self.node_api = xmlrpc.client.ServerProxy(self.api.lookupNode(NODE))
 
     def start(self, *command):
-        process = subprocess.Popen(command, env=self.environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(lambda: process.poll() is not None or process.kill() or process.wait())
+        process = self.master.start(command)
+        self.addCleanup(Master.end, process)
         return process
-
-    def start_master(self):
-        """Starts a master, again if it could not have the port, until it answers."""
-
-        def answers():
-            if self.master is None or self.master.poll() is not None:
-                self.master = subprocess.Popen(['rosmaster', '--core', '-p', str(self.port)], env=self.environment,
-                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            return self.api.getPid()
-
-        wait_for(answers, 'master')
-
-    def kill_master(self):
-        self.master.kill()
-        self.master.wait()
 
     def registered(self):
         """What the master says that the node publishes, subscribes to and serves."""
@@ -254,9 +249,8 @@ class TestMasterWatch(unittest.TestCase):
         return [c[1] for c in self.node_api.getBusInfo(CALLER)[2] if c[2] == 'i' and c[4] == CANCEL]
 
     def grind(self, *arguments):
-        call = subprocess.run([gc.program('grind'), *arguments], env=self.environment, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, universal_newlines=True, timeout=gc.PATIENCE)
-        self.assertEqual(call.returncode, 0, call.stdout)
+        call = self.master.grind(*arguments)
+        self.assertEqual(call.returncode, 0, call.stdout + call.stderr)
         return call.stdout
 
     def test_everything_is_found_under_the_next_master(self):
@@ -264,8 +258,8 @@ class TestMasterWatch(unittest.TestCase):
         self.assertIn(NODE + '/state', before['publishers'])
         self.assertIn(NODE + '/grind/goal', before['subscribers'])
         self.assertIn(NODE + '/hold', before['services'])
-        self.kill_master()
-        self.start_master()
+        self.master.kill()
+        self.master.run()
         # The node looks for another master once a second.
         self.grind('disable')
         wait_for(lambda: self.registered() == before, 'node as it was under the master before')
@@ -283,8 +277,8 @@ class TestMasterWatch(unittest.TestCase):
         old = self.publishers_at_node()
         # The other publisher is there before the node has found the next master. The old one will not look for it.
         self.node.send_signal(signal.SIGSTOP)
-        self.kill_master()
-        self.start_master()
+        self.master.kill()
+        self.master.run()
         publish()
         wait_for(lambda: CANCEL in dict(self.api.getSystemState()[0]), 'second publisher')
         self.node.send_signal(signal.SIGCONT)
@@ -294,7 +288,7 @@ class TestMasterWatch(unittest.TestCase):
     def test_a_node_that_the_master_has_forgotten_comes_back(self):
         before = self.registered()
         uri = self.api.lookupNode(NODE)
-        own = rosgraph.Master(NODE, self.environment['ROS_MASTER_URI'])
+        own = rosgraph.Master(NODE, self.master.environment['ROS_MASTER_URI'])
         for topic in before['publishers']:
             own.unregisterPublisher(topic, uri)
         for topic in before['subscribers']:
@@ -305,7 +299,7 @@ class TestMasterWatch(unittest.TestCase):
         wait_for(lambda: self.registered() == before, 'node as it was')
 
     def test_without_a_master_the_node_ends_as_ever(self):
-        self.kill_master()
+        self.master.kill()
         self.node.send_signal(signal.SIGTERM)
         self.assertEqual(self.node.wait(timeout=gc.PATIENCE), 0)
 

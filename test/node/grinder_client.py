@@ -535,8 +535,16 @@ class Grinder:
             return False
 
         poll(ready, 'the machine ready')
+        self.wait_for(self.has_last_setpoints, 'the last setpoints of the goal before')
         self.confirm_swivel(PAPER['process.setup_swivel'])
         return self.wait_rest()
+
+    def has_last_setpoints(self):
+        """Whether all setpoints are here of the goal that ended last: on a busy host they come later than its result."""
+        last = next((r for r in reversed(self.results) if r.result.setpoints_written > 0), None)
+        return last is None or any(batch.goal_id == last.status.goal_id.id and
+                                   batch.setpoints[-1].cycle == last.result.setpoints_written - 1
+                                   for batch in reversed(self.batches))
 
     def make_ready_at_park(self):
         """The same, where a job ends, as `grind plan` takes it to start."""

@@ -40,7 +40,9 @@ class TestInterference(unittest.TestCase):
         cls.replies += [g.hold(), g.retract()]
         cls.retracted = cls.rest_at(g, GrinderState.RETRACTED)
         cls.replies += [g.resume(), g.set_feed_override(0.2)]
-        g.wait_for(lambda: run.done or cls.feed_is(g, 0.2) and run.last.position[X] > 4 * MM, 'a fifth of the feed')
+        # Without feed it would not come back to the path.
+        g.wait_for(lambda: run.done or g.states[-1].state == GrinderState.RUNNING and cls.feed_is(g, 0.2),
+                   'a fifth of the feed in the stroke')
         cls.replies.append(g.set_feed_override(0))
         g.wait_for(lambda: cls.feed_is(g, 0), 'no feed')
         cls.stopped = cls.rest_at(g, GrinderState.RUNNING)

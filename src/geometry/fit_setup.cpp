@@ -21,9 +21,12 @@ constexpr double kNearEnough = 5;         ///< by the tolerances: an error that 
 constexpr int kFitSteps = 40;             ///< of a fit
 constexpr int kStepsBetweenSections = 4;  ///< where errors are weighed by their tolerances
 constexpr double kNoGain = 1e-2;          ///< of a step, of the errors, that ends a fit
-constexpr double kFigureStep = 1e-6;      ///< [rad], of the taper, and of the small end's radius
-constexpr double kMinSpiral = 1e-3;       ///< below whose tangent a lead has no effect
-constexpr double kMinDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
+/// [rad], of the taper, and of the small end's radius: large enough that the places of extrema, known to 1e-8, are no
+/// noise in a difference.
+constexpr double kFigureStep = 1e-4;
+constexpr double kMinSpiral = 1e-3;  ///< below whose tangent a lead has no effect
+/// The first keeps a fit near its start along a valley of equally good set-ups.
+constexpr double kDamping = 1e-3, kMinDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
 
 /// What a figure may differ by: a tolerance of 0 asks for it exactly.
 double allowed(double tolerance) { return std::max(tolerance, kExact); }
@@ -51,7 +54,7 @@ class DampedFit {
   std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough) const {
     Eigen::VectorXd errors = at(point, errors_of);
     if (!errors.allFinite()) return std::nullopt;
-    double damping = kMinDamping;
+    double damping = kDamping;
     for (int i = 0; i < kFitSteps && maxOf(errors) > enough; ++i) {
       const double before = errors.norm();
       if (!step(point, errors, damping, errors_of) || errors.norm() > (1 - kNoGain) * before) break;
@@ -74,10 +77,29 @@ class DampedFit {
   SetupPoint moved(SetupPoint point, const Eigen::VectorXd& step) const {
     for (std::size_t k = 0; k < figures_.size(); ++k)
       point.*figures_[k] += step[static_cast<Eigen::Index>(k)] * unit(k);
-    // At the end of the machine's range the others go on.
     point.swivel = std::clamp(point.swivel, request_.min_swivel, request_.max_swivel);
     if (is_height_tied_) point.height = tiedHeight(trial_, request_, point.swivel);
     return point;
+  }
+
+  static Eigen::VectorXd dampedStep(const Eigen::MatrixXd& by_figure, const Eigen::VectorXd& errors, double damping) {
+    Eigen::MatrixXd squares = by_figure.transpose() * by_figure;
+    squares.diagonal() *= 1 + damping;
+    return squares.ldlt().solve(-by_figure.transpose() * errors);
+  }
+
+  /// At the end of the machine's range the other figures make the best of it.
+  Eigen::VectorXd stepWithin(const SetupPoint& point, const Eigen::MatrixXd& by_figure, const Eigen::VectorXd& errors,
+                             double damping) const {
+    Eigen::VectorXd step = dampedStep(by_figure, errors, damping);
+    if (figures_.front() != &SetupPoint::swivel) return step;
+    const double swivel = point.swivel + step[0];
+    const double limit = std::clamp(swivel, request_.min_swivel, request_.max_swivel);
+    if (limit == swivel) return step;
+    const double to_limit = limit - point.swivel;
+    const Eigen::Index others = step.size() - 1;
+    step << to_limit, dampedStep(by_figure.rightCols(others), errors + to_limit * by_figure.col(0), damping);
+    return step;
   }
 
   /// Goes a step that makes the errors smaller. @return false if there is none.
@@ -92,14 +114,11 @@ class DampedFit {
       if (!there.allFinite()) return false;
       by_figure.col(k) = (there - errors) / off;
     }
-    const Eigen::MatrixXd squares = by_figure.transpose() * by_figure;
     for (; damping <= kMostDamping; damping *= kDampingFactor) {
-      Eigen::MatrixXd damped = squares;
-      damped.diagonal() *= 1 + damping;
-      const SetupPoint next = moved(point, damped.ldlt().solve(-by_figure.transpose() * errors));
+      const SetupPoint next = moved(point, stepWithin(point, by_figure, errors, damping));
       const Eigen::VectorXd there = at(next, errors_of);
       if (!(there.allFinite() && there.norm() < errors.norm())) {
-        damping = std::max(damping, 1e-4);
+        damping = std::max(damping, kDamping);
         continue;
       }
       point = next;
@@ -131,13 +150,13 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
   return EndsFit{*found, maxOf(errors_of(*found)) <= kExact};
 }
 
-/// All errors over the flute, each by its tolerance.
-Eigen::ArrayXd weighedErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
+/// All errors over the flute, each by its tolerance. @param chord_from below which that of the chords is none.
+Eigen::ArrayXd weighedErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point,
+                             double chord_from) {
   const CutterGeometry& c = request.cutter;
   const SetupErrors e = setupErrors(trial, request, point, kStepsBetweenSections);
-  // Chords count only where they are beyond their tolerance: within it the rake at the edge is to be as asked.
   const double chord = c.chordal_rake_tolerance;
-  const Eigen::ArrayXd off = chord > 0 ? Eigen::ArrayXd((e.chord.abs() / chord - 1).max(0)) : Eigen::ArrayXd();
+  const Eigen::ArrayXd off = chord > 0 ? Eigen::ArrayXd((e.chord.abs() / chord - chord_from).max(0)) : Eigen::ArrayXd();
   Eigen::ArrayXd all(e.rake.size() + e.turn.size() + e.spiral.size() + off.size() + e.core.size());
   all << e.rake / allowed(c.rake_tolerance), e.turn / allowed(c.spiral_tolerance),
       e.spiral / allowed(c.spiral_tolerance), off, e.core / allowed(c.core_tolerance / c.end_diameter);
@@ -224,15 +243,16 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
 }
 
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
-  const auto errors_of = [&](const SetupPoint& point) { return weighedErrors(trial, request, point); };
+  // Within its tolerance a chord is none of the errors: the rake at the edge is to be as asked.
+  const auto errors_of = [&](const SetupPoint& point) { return weighedErrors(trial, request, point, kWithin); };
   return DampedFit(trial, request).solve(start, errors_of, 0);
 }
 
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
-  const auto cubed = [&](const SetupPoint& p) -> Eigen::ArrayXd { return weighedErrors(trial, request, p).cube(); };
-  const double error = maxOf(weighedErrors(trial, request, nearest));
-  if (!(error > 1 && error < kNearEnough)) return nearest;
-  return DampedFit(trial, request).solve(nearest, cubed, 1).value_or(nearest);
+  const auto cubed = [&](const SetupPoint& p) -> Eigen::ArrayXd { return weighedErrors(trial, request, p, 0).cube(); };
+  const double error = maxOf(weighedErrors(trial, request, nearest, 0));
+  if (!(error > kWithin && error < kNearEnough)) return nearest;
+  return DampedFit(trial, request).solve(nearest, cubed, std::pow(kWithin, 3)).value_or(nearest);
 }
 
 }  // namespace grinder

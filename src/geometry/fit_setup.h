@@ -9,6 +9,8 @@
 
 namespace grinder {
 
+constexpr double kWithin = 0.98;  ///< of the tolerances, for a set-up to be taken: figures are rounded, the wheel wears
+
 /// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
 struct SetupErrors {
   Eigen::ArrayXd rake;    ///< in sections at equal distances, the flute's ends among them [rad]

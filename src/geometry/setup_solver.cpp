@@ -17,9 +17,10 @@ namespace {
 
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr double kQuarter = units::kPi / 2;
-constexpr double kSame = 1e-4;   ///< [rad], of the taper and of the radius: of two fits that came to the same
-constexpr double kAlike = 0.02;  ///< likewise, of two that lead on to the same
-constexpr int kMostEvened = 8;   ///< of those nearest to the tolerances
+constexpr double kSame = 1e-4;        ///< [rad], of the taper and of the radius: of two fits that came to the same
+constexpr double kAlike = 0.02;       ///< likewise, of two that lead on to the same
+constexpr double kMeasurable = 1e-3;  ///< [rad], and of the end diameter
+constexpr int kMostEvened = 8;        ///< of those nearest to the tolerances
 /// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
 /// A wheel in the plane of the helix may give the maximum rake on a cylinder, and that be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
@@ -34,7 +35,6 @@ constexpr double kLessWidth = 0.1;
 constexpr int kWiderCores = 12;  ///< times that their tolerance is widened
 constexpr double kWider = 1.4;
 constexpr double kAtLimit = 5 * units::kDegree;  ///< of the swivel, that may have stopped a fit
-constexpr double kWithin = 0.98;                 ///< of the tolerances: the figures are rounded, and the wheel wears
 
 void requireFinite(const char* name, double value, bool good, const char* allowed) {
   if (good && std::isfinite(value)) return;
@@ -140,6 +140,16 @@ bool hasTolerances(const SetupRequest& request) {
          (c.spiral_tolerance > 0 || !request.asks_spiral) && (c.core_tolerance > 0 || !asks_core);
 }
 
+/// The tolerances asked, none less than what can be measured: exact set-ups may be alike at the ends of the flute, but
+/// not between them.
+SetupRequest measurable(SetupRequest r) {
+  CutterGeometry& c = r.cutter;
+  c.rake_tolerance = std::max(c.rake_tolerance, kMeasurable);
+  c.spiral_tolerance = std::max(c.spiral_tolerance, kMeasurable);
+  c.core_tolerance = std::max(c.core_tolerance, kMeasurable * c.end_diameter);
+  return r;
+}
+
 /// The best set-up with all that is asked: exact, or else within the tolerances. If there is none, the nearest.
 struct Fitted {
   std::optional<Judged> best;
@@ -166,7 +176,9 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
   const auto take = [&](const SetupPoint& fit) {
     if (!add_new(fit, seen, kSame)) return;
     Judged judged = judge(trial, request, fit);
-    if (has_tolerances) judged.error = worst(fit);
+    if (request.z_law == ZLaw::kPublished) {
+      judged.error = setupErrors(trial, request, fit, SetupTrial::kSections).worst(measurable(request));
+    }
     if (!fitted.best || isBetter(judged, *fitted.best)) fitted.best = judged;
   };
   for (const SetupPoint& start : starts) {

@@ -334,7 +334,7 @@ class ReliefGround(unittest.TestCase):
 
     def test_cutters_of_the_design(self):
         """Diameter, cone and spiral; clearance, swivel and wheel of the relief. As many teeth as that wheel leaves alone."""
-        rows = (((10, 5, 30), 10, 30, (100, 6), 6), ((10, 5, 30), 20, 60, (100, 6), 8), ((10, 0, 35), 9, 43, (100, 8), 4),
+        rows = (((10, 5, 30), 10, 30, (100, 6), 6), ((10, 5, 30), 20, 60, (100, 6), 9), ((10, 0, 35), 9, 43, (100, 8), 4),
                 ((12, -1, 38), 12, 45, (100, 6), 4), ((2, 8, 20), 14, 25, (80, 3), 6))
 
         def case(cutter, clearance, swivel, its, teeth):

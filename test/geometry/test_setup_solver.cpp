@@ -145,6 +145,18 @@ TEST(SetupSolver, ConesGetTheAskedEdgeAndCore) {
   }
 }
 
+// Of a valley of set-ups that are exact at both ends, the last bit of a length takes another, but none far away.
+TEST(SetupSolver, ARoundedLengthMovesTheSetupBarely) {
+  SetupRequest request = requestForAll({12, 6, 20, 6, 20, 1.2, 75, 2});
+  const SolvedSetup s = solved(request);
+  for (int i = 0; i < 6; ++i) {
+    request.cutter.flute_length = std::nextafter(request.cutter.flute_length, 1);
+    const SolvedSetup other = solved(request);
+    EXPECT_NEAR(other.setup.swivel / kDegree, s.setup.swivel / kDegree, 1e-5);
+    EXPECT_NEAR(other.setup.height / kMillimetre, s.setup.height / kMillimetre, 0.2);
+  }
+}
+
 /// A tool whose rake, edge and cores are asked, within 0.5 deg and 0.05 mm, in the shop's units; a spiral below 0 is
 /// left hand.
 struct Asked {
@@ -337,8 +349,8 @@ TEST(SetupSolver, RakeAndCoreAreSolvedTogether) {
     request.core_diameter = core_mm * kMillimetre;
     const SolvedSetup s = solved(request);
     const GroundCutter g = ground(request, s);
-    EXPECT_NEAR(g.section(0).core_radius * 2 / kMillimetre, core_mm, 1e-6);
-    EXPECT_NEAR(s.core_diameter / kMillimetre, core_mm, 1e-6);
+    EXPECT_NEAR(g.section(0).core_radius * 2 / kMillimetre, core_mm, 1e-5);
+    EXPECT_NEAR(s.core_diameter / kMillimetre, core_mm, 1e-5);
     for (const double x : {0.0, 7.0, 15.0, 30.0}) EXPECT_NEAR(rakeAt(g, x), 8, 0.02);
     EXPECT_NEAR(rakeAt(g, 0), rakeAt(g, 30), 0.001);
   }

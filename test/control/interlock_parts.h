@@ -30,14 +30,11 @@ inline const std::vector<Part>& parts() {
        "the swivel is not at the job's angle"}};
   return all;
 }
-inline std::ostream& operator<<(std::ostream& out, const Part& part) { return out << part.name; }
 
 /// Restores every part; spindle and coolant follow their commands by themselves.
 inline void restoreParts(FakeDrive& drive) {
   drive.status.homed = drive.status.probe_free = true;
   drive.status.swivel = kPaperSwivel;
 }
-
-inline std::string partName(const testing::TestParamInfo<Part>& info) { return info.param.name; }
 
 }  // namespace grinder::test_support

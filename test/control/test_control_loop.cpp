@@ -53,7 +53,6 @@ TEST(ControlLoopDisabled, SamplesWhatWasRead) {
 
 TEST(PaperJob, IsStreamedBitForBitAsPlannedASetpointACycle) {
   Rig<SimulatedDrive> rig;
-  rig.cycle();
   rig.startPaper();
   rig.runToEnd();
   ASSERT_GT(planned().size(), 3000u);
@@ -87,7 +86,6 @@ TEST(ControlLoopSamples, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
 
 TEST(ControlLoopSamples, AJobIsStreamedWholeWithNobodyTakingThem) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();
@@ -107,7 +105,6 @@ TEST(ControlLoopSamples, AJobIsStreamedWholeWithNobodyTakingThem) {
 
 TEST(ControlLoopSamples, TheEndOfAJobIsReportedEvenIfItsOwnSampleWasLost) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   SetpointStream stream = rig.paperStream();
   const std::size_t planned = allSetpoints(stream).size();

@@ -27,15 +27,12 @@ TEST(FeedOverride, IsOneAtFirstTakesWhatIsInItsRangeAndRefusesTheRest) {
 
 TEST(FeedOverride, StaysForTheJobsToCome) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.startPaper();
   rig.runTo(MoveKind::kStroke);
   rig.loop->setFeedOverride(0.5);
   rig.runToEnd();
-  rig.log.erase(rig.log.begin(), rig.log.end() - 1);
-  rig.log.front().job_ended = false;
-  rig.stream.emplace(rig.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig.start(*rig.stream));
+  rig.keepLast();
+  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
   rig.runTo(MoveKind::kStroke);
   rig.run(1000);
   EXPECT_EQ(rig.last().feed_override, 0.5);
@@ -46,7 +43,6 @@ TEST(FeedOverride, StaysForTheJobsToCome) {
 class FeedOverrideOfZero : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, S::kRunning));
     rig_.loop->setFeedOverride(0);
     for (int i = 0; i < 1000 && rig_.cycle().has_setpoint; ++i) {
     }
@@ -54,7 +50,7 @@ class FeedOverrideOfZero : public testing::Test {
     at_rest_ = rig_.log.size() - 1;
   }
 
-  Rig<FakeDrive> rig_;
+  RigIn rig_{S::kRunning};
   std::size_t at_rest_ = 0;
 };
 

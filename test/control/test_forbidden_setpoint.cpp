@@ -74,7 +74,6 @@ class ForbiddenSetpoint : public testing::TestWithParam<LimitCase> {
   ForbiddenSetpoint() : rig_(tightened()), strong_(machineConfig().machine) {}
 
   void SetUp() override {
-    rig_.cycle();
     rig_.enable();
     planned_ = allSetpoints(rig_.paperStream(strong_));
     rig_.stream.emplace(rig_.paperStream(strong_));

@@ -281,8 +281,7 @@ TEST_P(JogFrom, AFaultEndsItAndAJob) {
   rig_.drive.status.emergency_stop = false;
   rig_.run(10);
   EXPECT_TRUE(atRestFrom(rig_.log, stopped));
-  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  ASSERT_NO_FATAL_FAILURE(rig_.recover());
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady);
   ASSERT_TRUE(rig_.jog(step(kX, 0.001)).accepted);
@@ -319,7 +318,6 @@ INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), s
 
 TEST(Jog, ToALimitItEndsThereWithoutAFault) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   const AxisLimits limits = machineConfig().machine.limits;
   for (const int axis : {kZ, kX, kA}) {
@@ -342,14 +340,12 @@ TEST(Jog, ToALimitItEndsThereWithoutAFault) {
 TEST(Jog, FromOutsideTheLimitsIsRefused) {
   Rig<FakeDrive> rig;
   rig.drive.position[kZ] = -0.051;
-  rig.cycle();
   rig.enable();
   EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z stands at -51 mm, outside its limit -50 mm");
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   rig.drive.status.commands_waiting = 4;
   const double from = rig.last().command[kX];
@@ -366,10 +362,8 @@ TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
 // With the wheel in the work
 
 TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
+  RigIn rig(S::kFault);
+  ASSERT_NO_FATAL_FAILURE(rig.recover());
   rig.drive.on_read = nullptr;
   ASSERT_TRUE(rig.last().wheel_in_work);
   for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),
@@ -390,8 +384,7 @@ TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
 // In the middle of a job
 
 TEST(JogRetracted, NeverGoesDownToTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRetracted));
+  RigIn rig(S::kRetracted);
   const double clear = rig.loop->status().wheel.clear_y;
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
   EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y stands at 8.23708 mm, the end of its way");
@@ -411,7 +404,6 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
 
 TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.startPaper();
   ASSERT_NO_FATAL_FAILURE(rig.runToCycle(planned().back().cycle));
   ASSERT_NO_FATAL_FAILURE(rig.hold());
@@ -420,8 +412,7 @@ TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {
 }
 
 TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kJoggingRetracted));
+  RigIn rig(S::kJoggingRetracted);
   rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
   rig.runUntil(S::kRetracted);
   EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the spindle is not at speed");

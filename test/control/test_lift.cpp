@@ -12,8 +12,7 @@ namespace test_lift {
 /// Ready, with the wheel in the work after a fault.
 void bringIntoTheWork(Rig<FakeDrive>& rig) {
   ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
+  ASSERT_NO_FATAL_FAILURE(rig.recover());
   ASSERT_TRUE(rig.last().wheel_in_work);
   rig.drive.on_read = nullptr;
 }
@@ -26,12 +25,10 @@ class InTheWork : public testing::Test {
 };
 
 TEST_F(InTheWork, StartAndHomeAreRefusedUntilItIsLifted) {
-  rig_.stream.emplace(rig_.paperStream());
-  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel stands in the work; lift it first");
   EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
   EXPECT_EQ(rig_.last().state, S::kReady);
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  rig_.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig_.lift());
   EXPECT_TRUE(rig_.ask(E::kHome).accepted);
 }
 
@@ -92,8 +89,7 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
 class StopsTheLift : public testing::TestWithParam<E> {};
 
 TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
+  RigIn rig(S::kLifting);
   const auto is_lift = [](const CycleSample& r) { return r.state == S::kLifting; };
   const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
   const auto before = begun - rig.log.begin() - 1;
@@ -110,8 +106,7 @@ TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
   rig.run(50);
   EXPECT_TRUE(atRestFrom(rig.log, stopped));
   if (GetParam() == E::kDisable) rig.enable();
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_FALSE(rig.last().wheel_in_work);
 }
 
@@ -119,8 +114,7 @@ INSTANTIATE_TEST_SUITE_P(, StopsTheLift, testing::Values(E::kHold, E::kCancel, E
                          [](const testing::TestParamInfo<E>& info) { return std::string(toString(info.param)); });
 
 TEST(Lift, AFaultEndsItWithTheWheelStillInTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
+  RigIn rig(S::kLifting);
   rig.drive.on_read = [](FakeDrive& d) { d.position[kX] += 0.002; };
   rig.cycle();
   EXPECT_EQ(rig.last().state, S::kFault);
@@ -141,8 +135,7 @@ TEST(AfterARestart, TheWheelIsStillInTheWork) {
   rig.cycle();
   EXPECT_TRUE(rig.last().wheel_in_work);
   rig.enable();
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_EQ(rig.last().command[kY], kClearanceHeight);
   EXPECT_FALSE(rig.last().wheel_in_work);
 }
@@ -163,8 +156,7 @@ TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
   rig.enable();
   EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
   const double from = rig.last().command[kY];
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
   EXPECT_FALSE(rig.last().wheel_in_work);
   EXPECT_TRUE(rig.ask(E::kHome).accepted);
@@ -173,7 +165,6 @@ TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
 TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
   for (const double far : {0.2, std::numeric_limits<double>::quiet_NaN()}) {
     Rig<FakeDrive> rig(machineConfig(), Wheel{true, far, 0.01});
-    rig.cycle();
     rig.enable();
     EXPECT_CONTAINS(rig.ask(E::kLift).text, " mm; allowed: up to 150 mm");
     EXPECT_EQ(rig.last().state, S::kReady);

@@ -246,8 +246,7 @@ INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
 class NotARequest : public testing::TestWithParam<E> {};
 
 TEST_P(NotARequest, IsRefusedFromOutside) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
+  RigIn rig(S::kRunning);
   EXPECT_FALSE(rig.ask(GetParam()).accepted);
   EXPECT_EQ(rig.last().state, S::kRunning);
 }
@@ -260,7 +259,6 @@ INSTANTIATE_TEST_SUITE_P(, NotARequest, testing::Values(E::kDone, E::kAtRest, E:
 
 TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   ASSERT_TRUE(rig.ask(E::kDisable).accepted);
   EXPECT_EQ(rig.last().state, S::kDisabled);
@@ -277,7 +275,6 @@ TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
 TEST(Start, IsRefusedAfterTheLeastMotionOfAnyAxis) {
   for (const int axis : {kX, kY, kZ, kA}) {
     Rig<FakeDrive> rig;
-    rig.cycle();
     rig.enable();
     Axes planned = rig.last().command;
     planned[axis] = std::nextafter(planned[axis], 1.0);

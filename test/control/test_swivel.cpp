@@ -126,8 +126,7 @@ TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
 class SwivelInState : public testing::TestWithParam<S> {};
 
 TEST_P(SwivelInState, IsNotTurnedDuringAJob) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam()));
+  RigIn rig(GetParam());
   const RequestReply refused = rig.confirm(31.7 * kDegree);
   EXPECT_FALSE(refused.accepted);
   EXPECT_EQ(refused.text,
@@ -144,12 +143,10 @@ INSTANTIATE_TEST_SUITE_P(, SwivelInState,
                          stateName);
 
 TEST(Swivel, MayBeTurnedOnceTheJobHasEnded) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
+  RigIn rig(S::kCanceling);
   rig.runUntil(S::kReady);
   EXPECT_TRUE(rig.confirm(0.1).accepted);
-  rig.stream.emplace(rig.paperStream());
-  EXPECT_FALSE(rig.askToStart(*rig.stream).accepted);
+  EXPECT_FALSE(rig.askToStartPaper().accepted);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -196,9 +193,7 @@ TEST(MeasuredSwivel, ThatIsLostAmidAJobLiftsTheWheelUntilAnOperatorConfirmsIt) {
   EXPECT_EQ(rig.last().interlock, Interlock::kSwivel);
   EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the swivel is not at the job's angle");
   ASSERT_TRUE(rig.confirm(kPaperSwivel).accepted);
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
+  expectResumedAndCompleted(rig);
 }
 
 /// A clamp that gives way slowly, under the eyes of an encoder with noise.
@@ -231,9 +226,7 @@ TEST(MeasuredSwivel, ThatDriftsAmidAJobHoldsItOnceAtTheToleranceAndLiftsTheWheel
   EXPECT_FALSE(rig.confirm(kPaperSwivel).accepted) << "the encoder counts";
   measure(rig, kPaperSwivel);
   rig.cycle();
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
+  expectResumedAndCompleted(rig);
 }
 
 }  // namespace test_swivel

@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <cmath>
 #include <exception>
@@ -232,9 +230,6 @@ TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
   }
   EXPECT_EQ(rig.last().state, S::kReady);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Faults, in every state under power
 
 TEST(FaultIn, AnyStateEndsTheJobAndNothingMovesUntilResetEnableAndStart) {
   for (const S state : {S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,

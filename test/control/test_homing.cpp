@@ -1,112 +1,44 @@
 #include "control/checks.h"
 #include "control/rig.h"
 
-#include <algorithm>
-#include <cmath>
+#include <functional>
+#include <string>
 
 // Homing: the drive finds the machine's reference by itself while the loop only monitors it.
 namespace grinder::test_support {
 namespace test_homing {
 
-using Fault = SimulatedDrive::Fault;
-
-// ---------------------------------------------------------------------------------------------------------------------
-// A simulated drive with incremental encoders, away from home when it is switched on
-
-const Axes kFromHome(0.02, -0.01, 0.004, 0.5);  // where the axes stand at the start
-
+/// With incremental encoders.
 SimulatedDrive::Model awayFromHome() {
+  const Axes from_home(0.02, -0.01, 0.004, 0.5);
   SimulatedDrive::Model model = driveModel();
   for (std::size_t i = 0; i < model.size(); ++i) {
-    model[i].start_position = model[i].home_position + kFromHome[static_cast<int>(i)];
+    model[i].start_position = model[i].home_position + from_home[static_cast<int>(i)];
     model[i].homing_velocity = i == kA ? 50 : 1.25;  // Y, X, Z, A: 8, 16, 4 and 10 periods
   }
   return model;
 }
 
-struct IncrementalRig : Rig<SimulatedDrive> {
-  IncrementalRig() : Rig(machineConfig(), [](SimulatedDrive& d) { d.init(awayFromHome(), {false, 0.0045}); }) {
-    run(3);
-    enable();
-  }
-
-  void home() {
-    ASSERT_TRUE(ask(E::kHome).accepted);
-    for (int i = 0; i < 1000 && last().state == S::kHoming; ++i) cycle();
-    ASSERT_EQ(last().state, S::kReady) << last().fault.text();
-    EXPECT_TRUE((last().position == machineConfig().machine.park).all()) << last().position.transpose();
-  }
-};
-
-TEST(Incremental, HomingLeadsToTheHomePositionWhereTheAxesThenStand) {
-  IncrementalRig rig;
+TEST(Homing, LeadsToTheHomePositionWhereTheAxesThenStand) {
+  const Axes home = machineConfig().machine.park;
+  Rig<SimulatedDrive> rig(machineConfig(), [](SimulatedDrive& d) { d.init(awayFromHome(), {false, 0.0045}); });
+  rig.enable();
   const std::size_t before = rig.log.size();
-  ASSERT_NO_FATAL_FAILURE(rig.home());
+  ASSERT_TRUE(rig.ask(E::kHome).accepted);
+  for (int i = 0; i < 1000 && rig.last().state == S::kHoming; ++i) rig.cycle();
+  EXPECT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
   // 38 periods, and a few for command and answer.
   EXPECT_GE(rig.log.size() - before, 39u);
   EXPECT_LE(rig.log.size() - before, 44u);
   EXPECT_TRUE(rig.last().drive.homed);
   EXPECT_FALSE(rig.last().drive.homing);
-  EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
   const std::size_t homed = rig.log.size() - 1;
   rig.run(100);
-  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
   EXPECT_TRUE(atRestFrom(rig.log, homed));
-  EXPECT_TRUE((rig.last().position == machineConfig().machine.park).all()) << rig.last().position.transpose();
-  EXPECT_TRUE((rig.last().command == machineConfig().machine.park).all());
+  EXPECT_TRUE((rig.last().position == home).all()) << rig.last().position.transpose();
+  EXPECT_TRUE((rig.last().command == home).all());
 }
-
-TEST(Incremental, DisableEndsHomingAtOnceAndTheAxesStandUntilTheyAreHomedAnew) {
-  IncrementalRig rig;
-  ASSERT_TRUE(rig.ask(E::kHome).accepted);
-  rig.run(20);
-  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
-  EXPECT_EQ(rig.last().state, S::kDisabled);
-  const Axes stopped = rig.cycle().position;
-  EXPECT_GT(stopped.abs().maxCoeff(), 0.005) << "it was on its way";
-  rig.run(100);
-  EXPECT_TRUE(sameBits(rig.last().position, stopped));
-  EXPECT_FALSE(rig.last().drive.homing);
-  EXPECT_FALSE(rig.last().drive.homed);
-  EXPECT_FALSE(rig.last().drive.enabled);
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
-  rig.run(50);
-  EXPECT_TRUE(sameBits(rig.last().position, stopped)) << "power on goes on with homing";
-  EXPECT_EQ(rig.askToStartPaper().text, "start refused: the axes are not homed");
-  ASSERT_NO_FATAL_FAILURE(rig.home());
-}
-
-TEST(IncrementalFault, EndsHomingForGood) {
-  const std::pair<Fault, FaultKind> rows[]{{Fault::kEmergencyStop, FaultKind::kEmergencyStop},
-                                           {Fault::kDriveFault, FaultKind::kDriveFault},
-                                           {Fault::kStaleFeedback, FaultKind::kStaleFeedback},
-                                           {Fault::kNanFeedback, FaultKind::kInvalidFeedback},
-                                           {Fault::kStuckAxis, FaultKind::kHoming}};
-  for (const auto& [fault, kind] : rows) {
-    SCOPED_TRACE(testing::Message() << "fault " << static_cast<int>(fault));
-    IncrementalRig rig;
-    ASSERT_TRUE(rig.ask(E::kHome).accepted);
-    rig.run(20);
-    rig.drive.inject(fault, kX);
-    for (int i = 0; i < 1000 && rig.last().state == S::kHoming; ++i) rig.cycle();
-    ASSERT_EQ(rig.last().state, S::kFault);
-    EXPECT_EQ(rig.last().fault.kind, kind);
-    EXPECT_FALSE(rig.last().job_ended);
-    rig.drive.inject(Fault::kNone);
-    const Axes stopped = rig.run(2).position;
-    rig.run(50);
-    EXPECT_TRUE(sameBits(rig.last().position, stopped));
-    ASSERT_NO_FATAL_FAILURE(rig.recover());
-    rig.run(50);
-    EXPECT_EQ(rig.last().state, S::kReady);
-    EXPECT_TRUE(sameBits(rig.last().position, stopped)) << "something moved without a request";
-    EXPECT_FALSE(rig.last().drive.homed);
-    ASSERT_NO_FATAL_FAILURE(rig.home());
-  }
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Drives that fail to home
 
 class HomingFake : public testing::Test {
  protected:

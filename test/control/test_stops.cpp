@@ -1,15 +1,10 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <algorithm>
 
 // Stops in every state, and the job in the loop's status.
 namespace grinder::test_support {
 namespace test_stops {
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Hold before the first setpoint
 
 class HoldWhileStarting : public testing::Test {
  protected:
@@ -49,9 +44,6 @@ TEST_F(HoldWhileStarting, ResumeWhileStartingTakesItBack) {
   EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
   for (const CycleSample& sample : rig_.log) EXPECT_NE(sample.state, S::kHeld);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Cancel and disable
 
 TEST(Cancel, StopsAsAStreamHeldInTheSameCycleAndLiftsTheWheelOffTheWork) {
   for (const MoveKind move : kAllMoves) {
@@ -165,9 +157,6 @@ TEST(Stops, EndHomingByThePower) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// The lift of a cancel
-
 TEST(CancelWithLift, AgainDuringTheLiftChangesNothing) {
   RigIn once(S::kCanceling), often(S::kCanceling);
   while (once.cycle().state == S::kCanceling) {
@@ -214,9 +203,6 @@ TEST(Cancel, InTheCycleOfTheStartEndsTheJobBeforeAnythingMoves) {
   EXPECT_EQ(status.setpoints_written, 0u);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Several at once
-
 TEST(Stops, WinOverARequestOfTheSameCycleWhicheverCameFirst) {
   RigIn rig(S::kHeld);
   rig.loop->postStop(E::kHold);
@@ -253,9 +239,6 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   ASSERT_TRUE(answer);
   EXPECT_FALSE(answer->accepted);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// The status
 
 TEST(Status, ReportsAWholeJob) {
   Rig<SimulatedDrive> rig;

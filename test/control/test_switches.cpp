@@ -1,7 +1,6 @@
 #include "control/rig.h"
 
 #include <functional>
-#include <utility>
 
 // Spindle and coolant by hand: only on request, with the power on and without a job, and never for longer.
 namespace grinder::test_support {
@@ -55,18 +54,21 @@ TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
 
 /// And neither the power nor what else ends such a state switches on again.
 TEST_F(Switches, DisableAFaultAndHomingSwitchOffAtOnce) {
-  using Act = std::function<void()>;
-  const std::pair<S, Act> rows[]{{S::kDisabled, [&] { EXPECT_TRUE(rig.ask(E::kDisable).accepted); }},
-                                 {S::kHoming, [&] { EXPECT_TRUE(rig.ask(E::kHome).accepted); }},
-                                 {S::kFault, [&] { rig.drive.status.emergency_stop = true; }},
-                                 {S::kFault, [&] { rig.drive.status.fault = true; }},
-                                 {S::kFault, [&] { rig.drive.on_read = [](auto& d) { d.status.enabled = false; }; }}};
-  for (const auto& [then, act] : rows) {
-    SCOPED_TRACE(&act - &rows[0].second);
+  const struct {
+    const char* name;
+    S then;
+    std::function<void()> act;
+  } rows[]{{"disable", S::kDisabled, [&] { EXPECT_TRUE(rig.ask(E::kDisable).accepted); }},
+           {"homing", S::kHoming, [&] { EXPECT_TRUE(rig.ask(E::kHome).accepted); }},
+           {"emergency stop", S::kFault, [&] { rig.drive.status.emergency_stop = true; }},
+           {"drive fault", S::kFault, [&] { rig.drive.status.fault = true; }},
+           {"lost power", S::kFault, [&] { rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; }; }}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.name);
     ASSERT_NO_FATAL_FAILURE(switchBothOn());
-    act();
+    row.act();
     if (rig.last().state == S::kReady) rig.cycle();
-    EXPECT_EQ(rig.last().state, then);
+    EXPECT_EQ(rig.last().state, row.then);
     EXPECT_EQ(on(), "");
     rig.drive.on_read = nullptr;
     rig.drive.status.emergency_stop = rig.drive.status.fault = false;
@@ -148,8 +150,6 @@ TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {
   EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel stands in the work; lift it first");
   EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 TEST(DistanceToGo, IsThatOfAJogByADistance) {
   Rig<FakeDrive> rig;

@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/job_plan.h"
@@ -174,9 +172,6 @@ RC_GTEST_PROP(WorkOffsets, AJobStartsWhereItWasPlannedFromAndNowhereElse, ()) {
   RC_ASSERT(((rig.last().command - at).abs() <= kUlp * (offset.abs() + at.abs())).all());
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Heights
-
 const Axes kOffset(0.1, 0.0375, -0.02, 7);
 
 /// In the middle of the paper's stroke.
@@ -190,15 +185,6 @@ class InAShiftedStroke : public testing::Test {
     rig_.run(1000);
     ASSERT_EQ(rig_.last().state, S::kRunning);
     ASSERT_TRUE(rig_.last().wheel_in_work);
-  }
-
-  void breakDown() {
-    rig_.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
-    rig_.cycle();
-    rig_.drive.on_read = nullptr;
-    rig_.drive.status.fault = false;
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kFault);
   }
 
   Rig<FakeDrive> rig_;
@@ -260,7 +246,7 @@ RC_GTEST_PROP(WorkOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack, ()) {
     RC_ASSERT(!rig.last().wheel_in_work);
     rig.run(100);
   }
-  rig.log.erase(rig.log.begin(), rig.log.end() - 1);
+  rig.keepLast();
   RC_ASSERT(rig.ask(E::kResume).accepted);
   rig.runToEnd();
   RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
@@ -275,7 +261,7 @@ TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
 }
 
 TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
-  ASSERT_NO_FATAL_FAILURE(breakDown());
+  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
   ASSERT_NO_FATAL_FAILURE(rig_.recover());
   const Axes from = rig_.last().command;
   ASSERT_NO_FATAL_FAILURE(rig_.lift());
@@ -285,10 +271,11 @@ TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
 }
 
 TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
-  ASSERT_NO_FATAL_FAILURE(breakDown());
+  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
   const Wheel wheel = rig_.loop->status().wheel;
   EXPECT_NEAR(wheel.lift, kLift, 1e-15);
   Rig<FakeDrive> next(machineConfig(), wheel);
+  EXPECT_TRUE(next.loop->status().wheel.in_work) << "before the first cycle";
   next.drive.place(rig_.last().position);
   next.cycle();
   EXPECT_TRUE(next.last().wheel_in_work);

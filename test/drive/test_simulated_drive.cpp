@@ -19,9 +19,6 @@ TEST(SimulatedDriveInit, IsHomedAndReadsDecimalStartPositionsToTheLastBit) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Motion
-
 // From x toward c, each period takes the fraction 1 / (1 + tau/T) of what is left: with q = tau / (tau + T), after n
 // periods the axis is at c - (c - x) q^n.
 TEST(SimulatedDriveMotion, EveryAxisHasAFirstOrderLagOfItsOwn) {
@@ -116,9 +113,6 @@ TEST(SimulatedDriveEncoder, DoesNotHoldTheMotorBack) {
   bench.run(100);
   EXPECT_EQ(bench.position(kX), 1);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Faults that are injected
 
 /// Injects a fault that takes power and motion away.
 void expectToStop(MovingBench& bench, Fault fault) {

@@ -7,9 +7,6 @@
 namespace grinder::test_support {
 namespace test_simulated_homing {
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Spindle and coolant
-
 /// With a spindle that reaches its speed in 7.5 periods, and turns.
 class SpindleBench : public Bench {
  public:
@@ -86,9 +83,6 @@ TEST(SimulatedDriveSwivel, ThatSlipsReadsMoreUntilItIsTakenBackAndNothingWithout
     EXPECT_TRUE(std::isnan(bare.status().swivel));
   }
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Reference and homing
 
 /// Every axis 10 mm and more from home, and as many periods as millimetres to go.
 SimulatedDrive::Model farModel() {

@@ -8,15 +8,12 @@
 #include <string>
 #include <vector>
 
-// The paper's job: its dimensions, its planned setpoints, and checks of the path.
+// The paper's job: its dimensions, its planned setpoints, and checks of its end.
 namespace grinder::test_support {
 
-// D1 = 10 mm, C = 5 degrees, S = 30 degrees, rake 8 degrees, 30 mm with 1 and 7 mm of overtravel, 1.6 mm deep,
-// 5 mm of clearance, 600 mm/min. The helix is A = (k/b) ln(1 + bX), with b = 2 tan C / D1 and k = 2 tan S / D1.
+// C = 5 degrees, 30 mm with 1 and 7 mm of overtravel, 1.6 mm deep, 5 mm of clearance.
 const double kDegree = std::acos(-1.0) / 180;
 const double kTanCone = std::tan(5 * kDegree);
-const double kB = 2 * kTanCone / 0.010;
-const double kK = 2 * std::tan(30 * kDegree) / 0.010;
 const double kClearanceHeight = 0.037 * kTanCone + 0.005;
 const double kLift = kClearanceHeight + 0.001 * kTanCone + 0.0016;  // from its deepest point
 const double kStrokeTo = 0.037;
@@ -32,18 +29,8 @@ inline const std::vector<Setpoint>& planned() {
   return all;
 }
 
-/// Cycles of a planned move, and the position before the first.
-struct Span {
-  std::uint64_t first, last;
-  Axes from, to;
-};
-
-inline Span spanOf(MoveKind move) {
-  const auto is_of = [=](const Setpoint& p) { return p.cycle > 0 && p.move == move; };
-  const auto first = std::find_if(planned().begin(), planned().end(), is_of);
-  const auto last = std::find_if(planned().rbegin(), planned().rend(), is_of);
-  return {first->cycle, last->cycle, (first - 1)->position, last->position};
-}
+constexpr MoveKind kAllMoves[]{MoveKind::kIndex,  MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
+                               MoveKind::kStroke, MoveKind::kRetract,  MoveKind::kReturn};
 
 /// A moment of the paper's job.
 struct Moment {
@@ -52,57 +39,25 @@ struct Moment {
   bool mid_pair;  ///< between the two steps of a pair
 
   std::uint64_t cycle() const {
-    const Span span = spanOf(move);
-    const std::uint64_t at = span.first + (span.last - span.first) * static_cast<std::uint64_t>(per_mille) / 1000;
+    const auto is_of = [this](const Setpoint& p) { return p.cycle > 0 && p.move == move; };
+    const std::uint64_t first = std::find_if(planned().begin(), planned().end(), is_of)->cycle;
+    const std::uint64_t last = std::find_if(planned().rbegin(), planned().rend(), is_of)->cycle;
+    const std::uint64_t at = first + (last - first) * static_cast<std::uint64_t>(per_mille) / 1000;
     return (at + 1) / 2 * 2 + (mid_pair ? 1 : 0);
   }
 };
 inline std::ostream& operator<<(std::ostream& out, const Moment& m) {
-  return out << toString(m.move) << " " << m.per_mille;
-}
-
-inline std::string momentName(const testing::TestParamInfo<Moment>& info) {
-  return std::string(toString(info.param.move)) + "_" + std::to_string(info.param.per_mille) +
-         (info.param.mid_pair ? "_mid_pair" : "_pair_end");
+  return out << toString(m.move) << " " << m.per_mille << (m.mid_pair ? " mid-pair" : " at a pair's end");
 }
 
 inline std::vector<Moment> moments(const std::vector<int>& per_mille) {
   std::vector<Moment> all;
-  for (const MoveKind move : {MoveKind::kIndex, MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
-                              MoveKind::kStroke, MoveKind::kRetract, MoveKind::kReturn}) {
+  for (const MoveKind move : kAllMoves) {
     for (const int at : per_mille) {
       for (const bool mid_pair : {false, true}) all.push_back({move, at, mid_pair});
     }
   }
   return all;
-}
-
-/// Whether a setpoint lies on the job's path: on the straight line of its move, or on the helix, within 1 um across it
-/// at the cutter's surface.
-inline testing::AssertionResult onPath(const Setpoint& p) {
-  const auto failure = [&] {
-    return testing::AssertionFailure() << "cycle " << p.cycle << " in " << toString(p.move) << ": "
-                                       << p.position.transpose();
-  };
-  if (p.cycle == 0) return testing::AssertionSuccess();
-  if (p.move == MoveKind::kStroke) {
-    const double x = p.position[kX];
-    const double radius = 0.005 + x * kTanCone;
-    const double off_a = p.position[kA] - kK / kB * std::log1p(kB * x);
-    if (!(std::abs(off_a) * radius * std::cos(30 * kDegree) <= 1.01e-6)) return failure() << " is off the helix";
-    if (!(std::abs(p.position[kY] - (x * kTanCone - 0.0016)) <= 1e-12)) return failure() << " is off in Y";
-    if (!(std::abs(p.position[kZ] - x * kTanCone * std::sin(8 * kDegree)) <= 1e-12)) return failure() << " is off in Z";
-    return testing::AssertionSuccess();
-  }
-  const Span span = spanOf(p.move);
-  const Axes way = span.to - span.from;
-  const double done = ((p.position - span.from) * way).sum() / (way * way).sum();
-  if (!(done >= -1e-9 && done <= 1 + 1e-9)) return failure() << " is beyond its move";
-  // After the stroke A starts where the odd-even steps ended.
-  const Axes off = (p.position - span.from - done * way).abs();
-  const double a_tolerance = p.move == MoveKind::kRetract ? 1e-6 / (0.008 * std::cos(30 * kDegree)) : 1e-12;
-  if (!((off.head<3>() <= 1e-12).all() && off[kA] <= a_tolerance)) return failure() << " is off its straight";
-  return testing::AssertionSuccess();
 }
 
 /// Expects that a job was completed as if nobody had interfered.
@@ -119,6 +74,13 @@ inline void expectCompleted(const Rig<Drive>& rig) {
     return p.move == MoveKind::kStroke && p.position[kX] == kStrokeTo;
   });
   EXPECT_TRUE(ground) << "the stroke's end was not ground";
+}
+
+template <typename Drive>
+inline void expectResumedAndCompleted(Rig<Drive>& rig) {
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  if (rig.jobsEnded() == 0) rig.runToEnd();
+  expectCompleted(rig);
 }
 
 }  // namespace grinder::test_support

@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -97,8 +98,15 @@ class Rig {
   }
 
   void enable() {
+    if (log.empty()) cycle();
     const RequestReply answer = ask(MachineEvent::kEnable);
     ASSERT_TRUE(answer.accepted) << answer.text;
+  }
+
+  /// Switches the power on again after a fault.
+  void recover() {
+    ASSERT_TRUE(ask(MachineEvent::kReset).accepted);
+    enable();
   }
 
   /// The paper's job from the commanded position; the machine may differ from the loop's.
@@ -114,9 +122,15 @@ class Rig {
     if (last().state != MachineState::kRunning) runUntil(MachineState::kRunning);
   }
 
-  /// Enables and starts the paper's job.
+  /// Requests to start the paper's job.
+  RequestReply askToStartPaper() {
+    stream.emplace(paperStream());
+    return askToStart(*stream);
+  }
+
+  /// Starts the paper's job, by a machine that is enabled if it has no power.
   void startPaper() {
-    enable();
+    if (log.empty() || last().state == MachineState::kDisabled) enable();
     stream.emplace(paperStream());
     start(*stream);
   }
@@ -131,6 +145,18 @@ class Rig {
   void retract() {
     ASSERT_TRUE(ask(MachineEvent::kRetract).accepted);
     if (last().state != MachineState::kRetracted) runUntil(MachineState::kRetracted);
+  }
+
+  /// Lifts the wheel of no job.
+  void lift() {
+    ASSERT_TRUE(ask(MachineEvent::kLift).accepted);
+    runUntil(MachineState::kReady);
+  }
+
+  /// Forgets what was before the last sample.
+  void keepLast() {
+    log.erase(log.begin(), log.end() - 1);
+    log.front().job_ended = false;
   }
 
   /// Runs until a state is reached.
@@ -224,61 +250,76 @@ class Rig {
 /// Names a test by its state.
 inline std::string stateName(const testing::TestParamInfo<S>& info) { return toString(info.param); }
 
+/// Lets the drive fail for a cycle.
+inline void breakDown(Rig<FakeDrive>& rig) {
+  rig.drive.status.fault = true;
+  rig.cycle();
+  rig.drive.status.fault = false;
+  ASSERT_EQ(rig.cycle().state, S::kFault);
+}
+
 /// Brings the machine to a state by requests and cycles; if that takes a job, it is the paper's, in the middle of its
 /// stroke.
 inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
+  const auto ask = [&](E event) {
+    const RequestReply answer = rig.ask(event);
+    ASSERT_TRUE(answer.accepted) << answer.text;
+  };
   rig.cycle();
   if (state == S::kDisabled) return;
-  if (state == S::kReady) return rig.enable();
-  if (state == S::kHoming) {
-    rig.enable();
-    ASSERT_TRUE(rig.ask(E::kHome).accepted);
-  } else if (state == S::kJogging) {
-    rig.enable();
-    ASSERT_TRUE(rig.ask(E::kJog).accepted);
+  rig.enable();
+  if (state == S::kReady) return;
+  if (state == S::kHoming) return ask(E::kHome);
+  if (state == S::kJogging) {
+    ask(E::kJog);
     rig.run(30);
-  } else if (state == S::kStarting) {
-    rig.enable();
+    return;
+  }
+  if (state == S::kStarting) {
     rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
-    rig.stream.emplace(rig.paperStream());
-    ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
-  } else {
-    ASSERT_NO_FATAL_FAILURE(rig.startPaper());
-    ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
-    rig.run(1000);
-    const auto ask = [&](E event) {
-      const RequestReply answer = rig.ask(event);
-      ASSERT_TRUE(answer.accepted) << answer.text;
-    };
-    if (state == S::kCanceling) {
-      ask(E::kCancel);
-    } else if (state == S::kFault) {
-      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
-      rig.cycle();
-      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = false; };
-      rig.cycle();
-    } else if (state == S::kLifting) {
-      rig.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
-      rig.cycle();
-      rig.drive.on_read = nullptr;
-      rig.drive.status.fault = false;
-      rig.cycle();
-      ask(E::kReset);
-      ask(E::kEnable);
-      ask(E::kLift);
-      rig.run(30);
-    } else if (state != S::kRunning) {
-      ask(E::kHold);
-      if (state != S::kHolding) rig.runUntil(S::kHeld);
-      const bool jogs = state == S::kJoggingRetracted;
-      if (state == S::kRetracting || state == S::kRetracted || state == S::kResuming || jogs) ask(E::kRetract);
-      if (state == S::kRetracted || state == S::kResuming || jogs) rig.runUntil(S::kRetracted);
-      if (jogs) ask(E::kJog);
-      if (jogs) rig.run(30);
-      if (state == S::kResuming) ask(E::kResume);
+    ASSERT_TRUE(rig.askToStartPaper().accepted);
+    return;
+  }
+  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+  rig.run(1000);
+  if (state == S::kCanceling) return ask(E::kCancel);
+  if (state == S::kFault || state == S::kLifting) {
+    breakDown(rig);
+    if (state == S::kFault) return;
+    rig.recover();
+    ask(E::kLift);
+    rig.run(30);
+  } else if (state != S::kRunning) {
+    ask(E::kHold);
+    if (state != S::kHolding) rig.runUntil(S::kHeld);
+    const bool jogs = state == S::kJoggingRetracted;
+    if (state == S::kRetracting || state == S::kRetracted || state == S::kResuming || jogs) ask(E::kRetract);
+    if (state == S::kRetracted || state == S::kResuming || jogs) rig.runUntil(S::kRetracted);
+    if (jogs) ask(E::kJog);
+    if (jogs) rig.run(30);
+    if (state == S::kResuming) ask(E::kResume);
+  }
+}
+
+/// In a state.
+class RigIn : public Rig<FakeDrive> {
+ public:
+  explicit RigIn(MachineState state, const LoopConfig& config = machineConfig()) : Rig(config) {
+    bringTo(*this, state);
+    if (last().state != state) {
+      throw std::runtime_error(std::string(toString(last().state)) + " instead of " + toString(state));
     }
   }
-  ASSERT_EQ(rig.last().state, state) << toString(rig.last().state);
-}
+};
+
+/// Ready, with the wheel in the work after a fault.
+class RigInTheWork : public RigIn {
+ public:
+  RigInTheWork() : RigIn(S::kFault) {
+    recover();
+    EXPECT_TRUE(last().wheel_in_work);
+  }
+};
 
 }  // namespace grinder::test_support

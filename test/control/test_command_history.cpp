@@ -35,20 +35,12 @@ TEST_F(CommandHistoryTest, IsEmptyAtFirstAndOnceCleared) {
   EXPECT_TRUE(history_->empty());
 }
 
-TEST_F(CommandHistoryTest, WithoutABufferTheLastCommandIsInEffect) {
-  add(1, 3);
-  expectInEffect(0, 3);
-}
-
-TEST_F(CommandHistoryTest, WithABufferAnOlderOneIsInEffect) {
+TEST_F(CommandHistoryTest, InEffectIsTheOneBeforeThoseThatWaitAndAtMostTheOldest) {
   add(1, 10);
+  expectInEffect(0, 10);
   expectInEffect(1, 9);
   expectInEffect(9, 1);
-}
-
-TEST_F(CommandHistoryTest, AtMostTheOldestIsInEffect) {
-  add(1, 3);
-  expectInEffect(3, 1);
+  expectInEffect(10, 1);
   expectInEffect(kMaxCommandsWaiting, 1);
 }
 

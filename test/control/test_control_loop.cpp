@@ -1,37 +1,8 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
-
-#include <limits>
 
 // The loop without power, a whole job, and the samples.
 namespace grinder::test_support {
 namespace test_control_loop {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Disabled
-
-TEST(ControlLoopDisabled, CommandsFollowThePositions) {
-  Rig<FakeDrive> rig;
-  for (double step = 1; step < 5; ++step) {
-    const Axes at(0.01 * step, -0.003 * step, 0.002 * step, 7.1 * step);
-    rig.drive.place(at);
-    rig.cycle();
-    EXPECT_TRUE(sameBits(toAxes(rig.drive.written), at));
-    EXPECT_TRUE(sameBits(rig.last().command, at));
-  }
-}
-
-TEST(ControlLoopDisabled, CommandsKeepTheLastGoodPositionWhileOneIsNotANumber) {
-  Rig<FakeDrive> rig;
-  const Axes good = toAxes(rig.drive.position);
-  rig.cycle();
-  rig.drive.place({0.01, kNan, 0.01, 0.01});
-  rig.cycle();
-  EXPECT_TRUE(sameBits(toAxes(rig.drive.written), good));
-}
 
 TEST(ControlLoopDisabled, SamplesWhatWasRead) {
   Rig<FakeDrive> rig;
@@ -48,12 +19,8 @@ TEST(ControlLoopDisabled, SamplesWhatWasRead) {
   EXPECT_DOUBLE_EQ(sample.period, 0.001);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// A whole job
-
 TEST(PaperJob, IsStreamedBitForBitAsPlannedASetpointACycle) {
   Rig<SimulatedDrive> rig;
-  rig.cycle();
   rig.startPaper();
   rig.runToEnd();
   ASSERT_GT(planned().size(), 3000u);
@@ -66,9 +33,6 @@ TEST(PaperJob, IsStreamedBitForBitAsPlannedASetpointACycle) {
     ASSERT_TRUE(sameBits(sample.command, sample.setpoint.position));
   }
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Samples
 
 TEST(ControlLoopSamples, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
   Rig<FakeDrive> rig;
@@ -85,38 +49,21 @@ TEST(ControlLoopSamples, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {
   EXPECT_EQ(rig.cycle().samples_lost, 7u);
 }
 
-TEST(ControlLoopSamples, AJobIsStreamedWholeWithNobodyTakingThem) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
+TEST(ControlLoopSamples, AJobIsStreamedWholeWithoutRoomForThemAndItsEndIsReportedLater) {
+  RigIn rig(S::kReady);
   SetpointStream stream = rig.paperStream();
-  const std::size_t planned = allSetpoints(stream).size();
+  rig.runUnseen(8192);
   ASSERT_TRUE(rig.loop->startJob(&stream));
-  rig.runUnseen(planned + 8192);
+  rig.runUnseen(planned().size() + 10);
   EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
   EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
-  EXPECT_EQ(rig.loop->status().setpoints_written, planned);
-  CycleSample sample;
-  while (rig.loop->pop(sample)) {
-  }
-  const CycleSample& last = rig.cycle();
-  EXPECT_EQ(last.state, S::kReady);
-  EXPECT_GT(last.samples_lost, 0u);
-  EXPECT_TRUE((last.command == machineConfig().machine.park).all());
-}
-
-TEST(ControlLoopSamples, TheEndOfAJobIsReportedEvenIfItsOwnSampleWasLost) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
-  SetpointStream stream = rig.paperStream();
-  const std::size_t planned = allSetpoints(stream).size();
-  rig.runUnseen(8192);  // no room for any sample of the job
-  ASSERT_TRUE(rig.loop->startJob(&stream));
-  rig.runUnseen(planned + 10);
+  EXPECT_EQ(rig.loop->status().setpoints_written, planned().size());
   CycleSample sample;
   while (rig.loop->pop(sample)) EXPECT_FALSE(sample.job_ended);
-  EXPECT_TRUE(rig.cycle().job_ended);
+  const CycleSample& first = rig.cycle();
+  EXPECT_TRUE(first.job_ended);
+  EXPECT_EQ(first.state, S::kReady);
+  EXPECT_TRUE((first.command == machineConfig().machine.park).all());
   EXPECT_FALSE(rig.cycle().job_ended);
 }
 

@@ -107,32 +107,16 @@ TEST_F(DriveChecksTest, UnderrunsCountFromThePowerOn) {
 }
 
 TEST_F(DriveChecksTest, RefusePowerWithTheReason) {
+  sample_.feedback_age = kNan;
+  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
+  EXPECT_EQ(found(), FaultKind::kStaleFeedback);
+  sample_.feedback_age = 0;
   sample_.position[kZ] = kNan;
   EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
   sample_.drive.fault = true;
   EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kDriveFault);
   sample_.drive.emergency_stop = true;
   EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kEmergencyStop);
-}
-
-TEST_F(DriveChecksTest, RefusePowerForAFeedbackAgeThatIsNotANumber) {
-  sample_.feedback_age = kNan;
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
-  EXPECT_EQ(found(), FaultKind::kStaleFeedback);
-}
-
-TEST(OpenInterlock, IsTheFirstThatIsOpen) {
-  DriveStatus drive;
-  drive.homed = drive.spindle_at_speed = drive.coolant_on = drive.probe_free = true;
-  EXPECT_EQ(openInterlock(drive), Interlock::kNone);
-  drive.probe_free = false;
-  EXPECT_EQ(openInterlock(drive), Interlock::kProbe);
-  drive.coolant_on = false;
-  EXPECT_EQ(openInterlock(drive), Interlock::kCoolant);
-  drive.spindle_at_speed = false;
-  EXPECT_EQ(openInterlock(drive), Interlock::kSpindle);
-  drive.homed = false;
-  EXPECT_EQ(openInterlock(drive), Interlock::kNotHomed);
 }
 
 }  // namespace test_drive_checks

@@ -1,10 +1,10 @@
 #include "control/rig.h"
 
+#include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 // A drive that is to be made ready before the power, by what may block.
@@ -12,35 +12,21 @@ namespace grinder::test_support {
 namespace test_drive_preparation {
 
 /// Of prepare(), which a test opens.
-class Gate {
- public:
-  void pass() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    ++waiting_;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return open_; });
-    --waiting_;
-  }
-  void open() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    open_ = true;
-    changed_.notify_all();
-  }
-  void awaitVisitor() {
-    std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait(lock, [this] { return waiting_ > 0; });
-  }
+struct Gate {
+  std::atomic<bool> open{false}, has_visitor{false};
 
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  bool open_ = false;
-  int waiting_ = 0;
+  void pass() {
+    has_visitor = true;
+    while (!open) std::this_thread::yield();
+  }
+  void awaitVisitor() const {
+    while (!has_visitor) std::this_thread::yield();
+  }
 };
 
 class Preparation : public testing::Test {
  protected:
-  ~Preparation() override { gate.open(); }
+  ~Preparation() override { gate.open = true; }
 
   /// @param timeout of an enable [s].
   void make(double timeout, std::function<void()> on_prepare, bool prepares = true) {
@@ -85,7 +71,7 @@ TEST_F(Preparation, ComesBeforeThePowerAndOutsideTheLoop) {
   rig().runUnseen(100);
   EXPECT_FALSE(isPowerOn());
   EXPECT_TRUE(rig().loop->isPreparing());
-  gate.open();
+  gate.open = true;
   EXPECT_EQ(answer(), "accepted");
   EXPECT_TRUE(isPowerOn());
   EXPECT_FALSE(rig().loop->isPreparing());
@@ -117,7 +103,7 @@ TEST_F(Preparation, IsWithdrawnByADisable) {
   gate.awaitVisitor();
   rig().loop->postStop(E::kDisable);
   EXPECT_EQ(answer(), "enable refused: disable came before the power");
-  gate.open();
+  gate.open = true;
   while (rig().loop->isPreparing()) rig().runUnseen(1);
   rig().runUnseen(100);
   EXPECT_FALSE(isPowerOn());

@@ -72,59 +72,46 @@ TEST(HeapUse, IsNoneOfStopsAndFeedOverrides) {
 }
 
 /// The rigs run the published rule, without a correction.
-class StreamAllocatesNothing : public testing::TestWithParam<EvenStepRule> {
- protected:
-  StreamAllocatesNothing() : stream_(program()) {}
-
-  static GrindProgram program() {
-    GrindJob job = readJobFile("test/jobs/paper.yaml");
-    job.interpolation.even_step = GetParam();
-    job.process.z_law = ZLaw::kConstantRake;
-    ZCorrection bow;
-    bow.from = -job.process.overtravel_end;
-    bow.pieces = ZCorrection::kMaxPieces;
-    bow.piece = 3e-3;
-    for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
-    const LoopConfig config = machineConfig();
-    return GrindProgram(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park);
-  }
-
-  SetpointStream stream_;
-};
-
-TEST_P(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
-  for (const MoveKind move : {MoveKind::kPosition, MoveKind::kStroke, MoveKind::kReturn}) {
-    SetpointStream stream = stream_;
-    bool finished = false;
-    const HeapUse use = heapUse([&] {
-      Setpoint setpoint;
-      const auto run = [&](int most) {
-        for (int i = 0; i < most && stream.next(setpoint); ++i) {
+TEST(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
+  const LoopConfig config = machineConfig();
+  GrindJob job = readJobFile("test/jobs/paper.yaml");
+  job.process.z_law = ZLaw::kConstantRake;
+  ZCorrection bow;
+  bow.from = -job.process.overtravel_end;
+  bow.pieces = ZCorrection::kMaxPieces;
+  bow.piece = 3e-3;
+  for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());
+  for (const EvenStepRule rule : {EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
+    job.interpolation.even_step = rule;
+    const GrindProgram program(ValidJob(job).withZCorrections({bow}), config.machine, config.machine.park);
+    for (const MoveKind move : {MoveKind::kPosition, MoveKind::kStroke, MoveKind::kReturn}) {
+      SCOPED_TRACE(std::string(toString(rule)) + " " + toString(move));
+      SetpointStream stream(program);
+      bool finished = false;
+      const HeapUse use = heapUse([&] {
+        Setpoint setpoint;
+        const auto run = [&](int most) {
+          for (int i = 0; i < most && stream.next(setpoint); ++i) {
+          }
+        };
+        while (setpoint.move != move && stream.next(setpoint)) {
         }
-      };
-      while (setpoint.move != move && stream.next(setpoint)) {
-      }
-      run(100);
-      stream.setFeedOverride(0.5);
-      run(100);
-      stream.hold();
-      run(100000);
-      stream.retract();
-      run(100000);
-      stream.resume();
-      run(100000);
-      finished = stream.finished();
-    });
-    EXPECT_FALSE(use.any());
-    EXPECT_TRUE(finished) << toString(move);
+        run(100);
+        stream.setFeedOverride(0.5);
+        run(100);
+        stream.hold();
+        run(100000);
+        stream.retract();
+        run(100000);
+        stream.resume();
+        run(100000);
+        finished = stream.finished();
+      });
+      EXPECT_FALSE(use.any());
+      EXPECT_TRUE(finished);
+    }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Rule, StreamAllocatesNothing,
-                         testing::Values(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact),
-                         [](const testing::TestParamInfo<EvenStepRule>& info) {
-                           return std::string(toString(info.param));
-                         });
 
 }  // namespace test_heap
 }  // namespace grinder::test_support

@@ -1,15 +1,42 @@
-#include "control/checks.h"
-#include "control/interlock_parts.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
-#include <chrono>
+#include <functional>
 #include <set>
-#include <thread>
+#include <string>
+#include <utility>
+#include <vector>
 
-// What a job waits for before it begins, and what the loop commands to spindle and coolant.
+// What a job needs to grind, how it waits for that before it begins, and how it loses it; what the loop commands to
+// spindle and coolant.
 namespace grinder::test_support {
 namespace test_interlocks {
+
+/// A part of the machine that grinding needs and that can be lost.
+struct Part {
+  const char* name;
+  Interlock interlock;
+  std::function<void(FakeDrive&)> lose;
+  const char* words;
+};
+
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all{
+      {"Reference", Interlock::kNotHomed, [](FakeDrive& d) { d.status.homed = false; }, "the axes are not homed"},
+      {"Spindle", Interlock::kSpindle, [](FakeDrive& d) { d.status.spindle_at_speed = false; },
+       "the spindle is not at speed"},
+      {"Coolant", Interlock::kCoolant, [](FakeDrive& d) { d.status.coolant_on = false; }, "no coolant flows"},
+      {"Probe", Interlock::kProbe, [](FakeDrive& d) { d.status.probe_free = false; },
+       "the measuring probe is in the way"},
+      {"Swivel", Interlock::kSwivel, [](FakeDrive& d) { d.status.swivel = kPaperSwivel + 0.001; },
+       "the swivel is not at the job's angle"}};
+  return all;
+}
+
+/// Restores every part; spindle and coolant follow their commands by themselves.
+void restoreParts(FakeDrive& drive) {
+  drive.status.homed = drive.status.probe_free = true;
+  drive.status.swivel = kPaperSwivel;
+}
 
 TEST(InterlockText, SaysWhatIsWrong) {
   EXPECT_STREQ(toString(Interlock::kNone), "");
@@ -17,95 +44,85 @@ TEST(InterlockText, SaysWhatIsWrong) {
   EXPECT_STREQ(toString(static_cast<Interlock>(99)), "unknown");
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Before a job
-
-class WaitsFor : public testing::TestWithParam<Part> {
- protected:
-  void SetUp() override {
-    rig_.cycle();
-    rig_.enable();
-    rig_.stream.emplace(rig_.paperStream());
-    ASSERT_TRUE(rig_.loop->startJob(&*rig_.stream));
-    rig_.cycle();
-    const auto answer = rig_.loop->startJobReply();
-    ASSERT_TRUE(answer && answer->accepted);
-    ASSERT_EQ(rig_.last().state, S::kStarting);
-    rig_.drive.on_read = GetParam().lose;
+/// With a job that waits for spindle and coolant, and for a part that is lost.
+struct WaitingRig : Rig<FakeDrive> {
+  explicit WaitingRig(const Part& part) {
+    enable();
+    EXPECT_TRUE(askToStartPaper().accepted);
+    EXPECT_EQ(last().state, S::kStarting);
+    drive.on_read = part.lose;
   }
 
-  Rig<FakeDrive> rig_;
+  void expectToWait() {
+    for (int i = 0; i < 15; ++i) {
+      cycle();
+      ASSERT_EQ(last().state, S::kStarting);
+      ASSERT_TRUE(drive.written_drive.spindle);
+      ASSERT_TRUE(drive.written_drive.coolant);
+    }
+  }
 };
 
-TEST_P(WaitsFor, WithSpindleAndCoolantAndStreamsTheWholeJobOnceItIsThere) {
-  const std::size_t from = rig_.log.size() - 1;
-  for (int i = 0; i < 15; ++i) {
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kStarting);
-    ASSERT_TRUE(rig_.drive.written_drive.spindle);
-    ASSERT_TRUE(rig_.drive.written_drive.coolant);
+TEST(WaitsFor, EachPartWithSpindleAndCoolantAndStreamsTheWholeJobOnceItIsThere) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    WaitingRig rig(part);
+    const std::size_t from = rig.log.size() - 1;
+    ASSERT_NO_FATAL_FAILURE(rig.expectToWait());
+    EXPECT_TRUE(atRestFrom(rig.log, from));
+    rig.drive.on_read = restoreParts;
+    EXPECT_EQ(rig.cycle().state, S::kRunning);
+    EXPECT_TRUE(rig.last().has_setpoint);
+    EXPECT_EQ(rig.last().setpoint.cycle, 0u);
+    rig.runToEnd();
+    expectCompleted(rig);
+    EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
   }
-  EXPECT_TRUE(atRestFrom(rig_.log, from));
-  rig_.drive.on_read = restoreParts;
-  EXPECT_EQ(rig_.cycle().state, S::kRunning);
-  EXPECT_TRUE(rig_.last().has_setpoint);
-  EXPECT_EQ(rig_.last().setpoint.cycle, 0u);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
 
-TEST_P(WaitsFor, GivesUpAfterTheTimeoutReadyWithEverythingOffForANewJob) {
-  const Axes before = rig_.last().command;
-  // 20.5 periods, and the cycle of the start counts.
-  for (int i = 2; i <= 20; ++i) {
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kStarting) << "in cycle " << i;
-    ASSERT_FALSE(rig_.last().job_ended);
+TEST(WaitsFor, EachPartUntilTheTimeoutAndIsReadyThenWithEverythingOffForANewJob) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    WaitingRig rig(part);
+    const Axes before = rig.last().command;
+    // 20.5 periods, and the cycle of the start counts.
+    for (int i = 2; i <= 20; ++i) {
+      rig.cycle();
+      ASSERT_EQ(rig.last().state, S::kStarting) << "in cycle " << i;
+      ASSERT_FALSE(rig.last().job_ended);
+    }
+    rig.cycle();
+    EXPECT_EQ(rig.last().state, S::kReady);
+    EXPECT_TRUE(rig.last().job_ended);
+    EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock);
+    EXPECT_EQ(rig.last().fault.interlock, part.interlock);
+    EXPECT_EQ(rig.last().fault.text(),
+              std::string(part.words) + " 0.021 s after the job was started, allowed 0.0205 s");
+    EXPECT_EQ(rig.loop->status().end, JobEnd::kFault);
+    EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kInterlock);
+    EXPECT_FALSE(rig.drive.written_drive.spindle);
+    EXPECT_FALSE(rig.drive.written_drive.coolant);
+    EXPECT_TRUE(rig.drive.written_drive.enable);
+    rig.stream.reset();
+    rig.drive.on_read = restoreParts;
+    rig.run(100);
+    EXPECT_EQ(rig.last().state, S::kReady) << "what comes late starts nothing";
+    EXPECT_EQ(rig.jobsEnded(), 1);
+    EXPECT_TRUE(rig.setpoints().empty());
+    EXPECT_TRUE(sameBits(rig.last().command, before));
+    EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
+    ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+    EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
+    rig.runToEnd();
+    EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
   }
-  rig_.cycle();
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_TRUE(rig_.last().job_ended);
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kInterlock);
-  EXPECT_EQ(rig_.last().fault.interlock, GetParam().interlock);
-  EXPECT_EQ(rig_.last().fault.text(),
-            std::string(GetParam().words) + " 0.021 s after the job was started, allowed 0.0205 s");
-  EXPECT_FALSE(rig_.drive.written_drive.spindle);
-  EXPECT_FALSE(rig_.drive.written_drive.coolant);
-  EXPECT_TRUE(rig_.drive.written_drive.enable);
-  rig_.stream.reset();
-  rig_.drive.on_read = restoreParts;
-  rig_.run(100);
-  EXPECT_EQ(rig_.last().state, S::kReady) << "what comes late starts nothing";
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_TRUE(rig_.setpoints().empty());
-  EXPECT_TRUE(sameBits(rig_.last().command, before));
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
-  rig_.stream.emplace(rig_.paperStream());
-  ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-  rig_.runToEnd();
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
-
-TEST_P(WaitsFor, CancelEndsTheWait) {
-  rig_.run(5);
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  if (rig_.last().state != S::kReady) rig_.runUntil(S::kReady);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kNone);
-  EXPECT_FALSE(rig_.drive.written_drive.spindle);
-}
-
-INSTANTIATE_TEST_SUITE_P(, WaitsFor, testing::ValuesIn(parts()), partName);
 
 TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
   for (std::size_t first = 0; first < parts().size(); ++first) {
     Rig<FakeDrive> rig;
-    rig.cycle();
     rig.enable();
-    rig.stream.emplace(rig.paperStream());
-    ASSERT_TRUE(rig.askToStart(*rig.stream).accepted);
+    ASSERT_TRUE(rig.askToStartPaper().accepted);
     rig.drive.on_read = [=](FakeDrive& d) {
       for (std::size_t i = first; i < parts().size(); ++i) parts()[i].lose(d);
     };
@@ -114,54 +131,42 @@ TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
   }
 }
 
-class WaitsForJournal : public testing::Test {
- protected:
-  void SetUp() override {
-    rig_.cycle();
-    rig_.enable();
-    rig_.stream.emplace(rig_.paperStream());
-    ASSERT_TRUE(rig_.loop->startJob(&*rig_.stream, false));
-    const RequestReply answer = rig_.answerOf([this] { return rig_.loop->startJobReply(); });
+TEST(WaitsForJournal, OfTheJobItselfAndNoLongerThanTheTimeout) {
+  for (const bool comes : {true, false}) {
+    RigIn rig(S::kReady);
+    rig.stream.emplace(rig.paperStream());
+    ASSERT_TRUE(rig.loop->startJob(&*rig.stream, false));
+    const RequestReply answer = rig.answerOf([&] { return rig.loop->startJobReply(); });
     ASSERT_TRUE(answer.accepted) << answer.text;
+    rig.loop->confirmJournal(rig.loop->status().jobs_started - 1);  // of the job before
+    for (int i = 0; i < 15; ++i) {
+      ASSERT_EQ(rig.cycle().state, S::kStarting);
+      ASSERT_TRUE(rig.drive.written_drive.spindle);
+      ASSERT_TRUE(rig.drive.written_drive.coolant);
+    }
+    EXPECT_TRUE(rig.setpoints().empty());
+    if (comes) {
+      rig.loop->confirmJournal(rig.loop->status().jobs_started);
+      EXPECT_EQ(rig.cycle().state, S::kRunning);
+      rig.runToEnd();
+      expectCompleted(rig);
+      EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
+    } else {
+      rig.runUntil(S::kReady);
+      EXPECT_EQ(rig.last().fault.interlock, Interlock::kJournal);
+      EXPECT_EQ(rig.last().fault.text(),
+                "the journal does not contain the job 0.021 s after the job was started, allowed 0.0205 s");
+      EXPECT_TRUE(rig.setpoints().empty());
+      EXPECT_FALSE(rig.drive.written_drive.spindle);
+    }
   }
-
-  Rig<FakeDrive> rig_;
-};
-
-TEST_F(WaitsForJournal, WithTheSpindleAndStreamsTheWholeJobOnceItIsThere) {
-  rig_.loop->confirmJournal(rig_.loop->status().jobs_started - 1);  // of the job before
-  for (int i = 0; i < 15; ++i) {
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kStarting);
-    ASSERT_TRUE(rig_.drive.written_drive.spindle);
-    ASSERT_TRUE(rig_.drive.written_drive.coolant);
-  }
-  EXPECT_TRUE(rig_.setpoints().empty());
-  rig_.loop->confirmJournal(rig_.loop->status().jobs_started);
-  EXPECT_EQ(rig_.cycle().state, S::kRunning);
-  rig_.runToEnd();
-  expectCompleted(rig_);
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), planned()));
 }
-
-TEST_F(WaitsForJournal, GivesUpAfterTheTimeout) {
-  rig_.runUntil(S::kReady);
-  EXPECT_EQ(rig_.last().fault.interlock, Interlock::kJournal);
-  EXPECT_EQ(rig_.last().fault.text(),
-            "the journal does not contain the job 0.021 s after the job was started, allowed 0.0205 s");
-  EXPECT_TRUE(rig_.setpoints().empty());
-  EXPECT_FALSE(rig_.drive.written_drive.spindle);
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Commands to the drive
 
 TEST(SpindleAndCoolant, TurnTheWheelWhileAJobHasTheMachine) {
   const std::set<S> without_job{S::kDisabled, S::kReady, S::kHoming, S::kFault, S::kLifting, S::kJogging};
   for (const StateRow& row : kMachineStates) {
     SCOPED_TRACE(row.name);
-    Rig<FakeDrive> rig;
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig, row.value));
+    RigIn rig(row.value);
     const bool on = without_job.count(row.value) == 0;
     EXPECT_EQ(rig.drive.written_drive.spindle, on);
     EXPECT_EQ(rig.drive.written_drive.coolant, on);
@@ -170,53 +175,209 @@ TEST(SpindleAndCoolant, TurnTheWheelWhileAJobHasTheMachine) {
   }
 }
 
-TEST(SpindleAndCoolant, AreCommandedThroughAWholeJob) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
-  rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.loop->startJob(&*rig.stream));
-  for (int i = 0; i < 100000; ++i) {
-    rig.cycle();
-    ASSERT_EQ(rig.drive.written_drive.spindle, !rig.last().job_ended) << "sample " << i;
-    ASSERT_EQ(rig.drive.written_drive.coolant, !rig.last().job_ended) << "sample " << i;
-    if (rig.last().job_ended) break;
-  }
-  EXPECT_EQ(rig.last().state, S::kReady);
-}
-
 TEST(SpindleAndCoolant, AreOffForAStartThatIsRefused) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.enable();
+  RigIn rig(S::kReady);
   rig.drive.status.homed = false;
-  SetpointStream stream = rig.paperStream();
-  EXPECT_FALSE(rig.askToStart(stream).accepted);
+  EXPECT_EQ(rig.askToStartPaper().text, "start refused: the axes are not homed");
   EXPECT_FALSE(rig.drive.written_drive.spindle);
   EXPECT_FALSE(rig.drive.written_drive.coolant);
 }
 
-TEST(SpindleAndCoolant, AreOffAfterTheLoopWasStopped) {
-  ros::Time::init();
-  FakeDrive drive;
-  LoopConfig config = machineConfig();
-  config.following_error.setConstant(1);
-  config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
-  setUp(drive, config);
-  SetpointStream stream = paperFromPark();
-  ControlLoop loop(drive, config);
-  loop.startThread();
-  ASSERT_TRUE(loop.request(E::kEnable).accepted);
-  ASSERT_TRUE(loop.confirmSwivel(kPaperSwivel).accepted);
-  ASSERT_TRUE(loop.startJob(&stream));
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  while (loop.status().jobs_started == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-  EXPECT_EQ(loop.status().jobs_started, 1u);
-  loop.stopThread();
-  EXPECT_FALSE(drive.written_drive.enable);
-  EXPECT_FALSE(drive.written_drive.spindle);
-  EXPECT_FALSE(drive.written_drive.coolant);
+/// When a part is lost, and the state in the cycle that detects it.
+struct LossMoment {
+  std::string name;
+  std::function<void(Rig<FakeDrive>&)> bring;
+  S then;
+};
+
+std::vector<LossMoment> lossMoments() {
+  std::vector<LossMoment> all;
+  for (const MoveKind move : kAllMoves) {
+    for (const int cycles : {50, 51}) {
+      const auto bring = [=](Rig<FakeDrive>& rig) {
+        rig.startPaper();
+        rig.runTo(move);
+        rig.run(cycles);
+        ASSERT_EQ(rig.last().setpoint.move, move);
+      };
+      all.push_back({std::string(toString(move)) + (cycles % 2 ? "_odd" : "_even"), bring, S::kHolding});
+    }
+  }
+  const std::vector<std::pair<S, S>> states{{S::kRunning, S::kHolding},     {S::kHolding, S::kHolding},
+                                            {S::kHeld, S::kRetracting},     {S::kRetracting, S::kRetracting},
+                                            {S::kRetracted, S::kRetracted}, {S::kResuming, S::kHolding}};
+  for (const auto& [state, then] : states) {
+    const S in = state;
+    all.push_back({std::string("in_") + toString(in), [=](Rig<FakeDrive>& rig) { bringTo(rig, in); }, then});
+  }
+  all.push_back({"at_rest_at_the_first_setpoint", [](Rig<FakeDrive>& rig) { rig.startPaper(); }, S::kHeld});
+  all.push_back({"on_the_way_back_to_the_work",
+                 [](Rig<FakeDrive>& rig) {
+                   bringTo(rig, S::kResuming);
+                   rig.runTo(MoveKind::kInfeed);
+                   rig.run(300);
+                   ASSERT_EQ(rig.last().setpoint.move, MoveKind::kInfeed);
+                   ASSERT_EQ(rig.last().state, S::kResuming);
+                 },
+                 S::kHolding});
+  all.push_back({"at_a_feed_override_of_0",
+                 [](Rig<FakeDrive>& rig) {
+                   bringTo(rig, S::kRunning);
+                   rig.loop->setFeedOverride(0);
+                   rig.run(500);
+                   ASSERT_FALSE(rig.last().has_setpoint);
+                 },
+                 S::kHeld});
+  for (const int before_end : {0, 1, 2, 9}) {
+    all.push_back({std::to_string(before_end) + "_before_the_end",
+                   [=](Rig<FakeDrive>& rig) {
+                     rig.startPaper();
+                     rig.runToCycle(planned().back().cycle - static_cast<std::uint64_t>(before_end));
+                   },
+                   before_end == 0 ? S::kHeld : S::kHolding});
+  }
+  return all;
+}
+
+/// With a part that was lost in the last cycle.
+struct LostRig : Rig<FakeDrive> {
+  LostRig(const Part& part, const LossMoment& moment) {
+    moment.bring(*this);
+    EXPECT_EQ(last().interlock, Interlock::kNone);
+    drive.on_read = part.lose;
+    cycle();
+  }
+
+  void awaitRetracted() {
+    if (last().state != S::kRetracted) runUntil(S::kRetracted);
+    loop->setFeedOverride(1);
+  }
+};
+
+TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
+  for (const Part& part : parts()) {
+    for (const LossMoment& moment : lossMoments()) {
+      SCOPED_TRACE(part.name + (" " + moment.name));
+      LostRig rig(part, moment);
+      EXPECT_EQ(rig.last().interlock, part.interlock);
+      EXPECT_EQ(rig.last().state, moment.then);
+      EXPECT_FALSE(rig.last().job_ended);
+      EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
+      ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
+      EXPECT_GE(rig.last().command[kY], kClearanceHeight - 1e-12);
+      EXPECT_EQ(rig.last().interlock, part.interlock);
+      EXPECT_EQ(rig.jobsEnded(), 0);
+      const std::size_t lifted = rig.log.size() - 1;
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
+        rig.run(100);
+      }
+      rig.drive.on_read = restoreParts;
+      rig.run(200);
+      EXPECT_EQ(rig.last().state, S::kRetracted);
+      EXPECT_EQ(rig.last().interlock, part.interlock) << "reported until the job is resumed";
+      EXPECT_TRUE(atRestFrom(rig.log, lifted));
+      ASSERT_TRUE(rig.ask(E::kResume).accepted);
+      EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+      if (rig.jobsEnded() == 0) rig.runToEnd();
+      expectCompleted(rig);
+    }
+  }
+}
+
+TEST(Lost, ForASinglePeriodIsAsGoodAsForLong) {
+  for (const Part& part : parts()) {
+    for (const LossMoment& moment : lossMoments()) {
+      SCOPED_TRACE(part.name + (" " + moment.name));
+      LostRig rig(part, moment);
+      rig.drive.on_read = restoreParts;
+      ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
+      EXPECT_EQ(rig.last().interlock, part.interlock);
+      expectResumedAndCompleted(rig);
+    }
+  }
+}
+
+TEST(Lost, CancelEndsTheJob) {
+  for (const Part& part : parts()) {
+    for (const LossMoment& moment : lossMoments()) {
+      SCOPED_TRACE(part.name + (" " + moment.name));
+      LostRig rig(part, moment);
+      ASSERT_TRUE(rig.ask(E::kCancel).accepted);
+      if (rig.last().state != S::kReady) rig.runUntil(S::kReady);
+      EXPECT_EQ(rig.jobsEnded(), 1);
+      EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+      EXPECT_FALSE(rig.drive.written_drive.spindle);
+      EXPECT_TRUE(smooth(rig.log));
+    }
+  }
+}
+
+TEST(LostPart, WhileCancelingDoesNotKeepTheJobFromEnding) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    RigIn rig(S::kCanceling);
+    rig.drive.on_read = part.lose;
+    rig.runUntil(S::kReady);
+    EXPECT_EQ(rig.jobsEnded(), 1);
+    for (const CycleSample& sample : rig.log) {
+      ASSERT_NE(sample.state, S::kRetracting);
+      ASSERT_EQ(sample.interlock, Interlock::kNone) << "it was not the loop that stopped the job";
+    }
+  }
+}
+
+TEST(LostPart, WithoutAJobIsNothing) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    RigIn rig(S::kReady);
+    rig.drive.on_read = part.lose;
+    rig.run(50);
+    EXPECT_EQ(rig.last().state, S::kReady);
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+  }
+}
+
+TEST(LostPart, RefusesToResumeFromHoldingButNotOnceItIsBackBeforeItRests) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    RigIn rig(S::kRunning);
+    rig.drive.on_read = part.lose;
+    rig.run(3);
+    EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
+    EXPECT_EQ(rig.last().state, S::kHolding);
+    rig.drive.on_read = restoreParts;
+    ASSERT_TRUE(rig.ask(E::kResume).accepted);
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+    EXPECT_EQ(rig.last().state, S::kRunning);
+    rig.runToEnd();
+    expectCompleted(rig);
+  }
+}
+
+TEST(LostPart, AHoldDuringTheRetractionDoesNotLeaveTheWheelAtTheWork) {
+  for (const Part& part : parts()) {
+    SCOPED_TRACE(part.name);
+    RigIn rig(S::kRunning);
+    rig.drive.on_read = part.lose;
+    rig.runUntil(S::kRetracting);
+    rig.run(20);
+    ASSERT_TRUE(rig.ask(E::kHold).accepted);
+    EXPECT_EQ(rig.last().state, S::kHolding);
+    rig.runUntil(S::kRetracted);
+    EXPECT_NEAR(rig.last().command[kY], kClearanceHeight, 1e-12);
+    EXPECT_TRUE(smooth(rig.log));
+  }
+}
+
+TEST(LostParts, TheFirstStaysReportedAndResumeReportsWhatIsAmissNow) {
+  RigIn rig(S::kRunning);
+  rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
+  rig.run(5);
+  rig.drive.on_read = [](FakeDrive& d) { d.status.coolant_on = false; };
+  rig.runUntil(S::kRetracted);
+  EXPECT_EQ(rig.last().interlock, Interlock::kSpindle);
+  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: no coolant flows");
 }
 
 }  // namespace test_interlocks

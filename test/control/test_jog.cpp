@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <cmath>
 #include <functional>
@@ -30,7 +28,6 @@ double brakingDistance(int axis, double v) {
 class JogFrom : public testing::TestWithParam<S> {
  protected:
   void SetUp() override {
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
     rig_.run(5);
     before_ = rig_.log.size() - 1;
     at_ = rig_.last().command;
@@ -53,7 +50,7 @@ class JogFrom : public testing::TestWithParam<S> {
     EXPECT_LE(rig_.last().command[kX] - from, brakingDistance(kX, 0.1) + 0.1 * 0.003);
     EXPECT_TRUE(smooth(rig_.log));
   }
-  Rig<FakeDrive> rig_;
+  RigIn rig_{GetParam()};
   std::size_t before_ = 0;
   Axes at_ = Axes::Zero();
 };
@@ -163,17 +160,6 @@ TEST_P(JogFrom, VelocityZeroANumberThatIsNoneOrALostReferenceStopsIt) {
   }
 }
 
-TEST_P(JogFrom, AContinuousJogRestsAtTheLimitAndIsThenRefused) {
-  for (int i = 0; i < 2500 && (i < 100 || rig_.last().state == jogging()); ++i) {
-    ASSERT_TRUE(i % 20 != 0 || rig_.jog(on(kX, 0.2)).accepted);
-    rig_.cycle();
-  }
-  EXPECT_EQ(rig_.last().command[kX], 0.3);
-  EXPECT_EQ(rig_.last().state, GetParam());
-  EXPECT_TRUE(smooth(rig_.log));
-  EXPECT_EQ(rig_.jog(on(kX, 0.2)).text, "jog refused: axis X stands at 300 mm, the end of its way");
-}
-
 TEST_P(JogFrom, TheLastMessageCounts) {
   jogFor(on(kX, 0.1), 400);
   jogFor(on(kX, 0.02), 400);
@@ -228,34 +214,23 @@ TEST_P(JogFrom, AfterAHoldAButtonThatStaysPressedMovesNothing) {
   EXPECT_EQ(rig_.last().state, jogging());
 }
 
-TEST_P(JogFrom, HoldStopsAStep) {
-  ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
-  rig_.run(400);
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  EXPECT_EQ(rig_.last().state, jogging()) << "an axis does not stop at once";
-  expectStop();
-  EXPECT_LT(rig_.last().command[kX], at_[kX] + 0.09);
-  EXPECT_TRUE(rig_.drive.written_drive.enable);
-}
-
-TEST_P(JogFrom, CancelAndDisableStopItAndEndAJob) {
-  for (const E stop : {E::kCancel, E::kDisable}) {
-    Rig<FakeDrive> rig;
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig, jogging()));
-    const std::size_t before = rig.log.size() - 1;
+TEST_P(JogFrom, EveryStopStopsItAndAllButAHoldEndAJob) {
+  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
+    SCOPED_TRACE(toString(stop));
+    const bool ends_job = GetParam() != S::kReady && stop != E::kHold;
+    RigIn rig(jogging());
+    const double before = rig.last().command[kY];
     ASSERT_TRUE(rig.ask(stop).accepted);
-    EXPECT_EQ(rig.last().state, GetParam() == S::kReady ? S::kJogging : S::kCanceling);
-    rig.runUntil(stop == E::kDisable ? S::kDisabled : S::kReady);
+    EXPECT_EQ(rig.last().state, ends_job ? S::kCanceling : jogging()) << "an axis does not stop at once";
+    rig.runUntil(stop == E::kDisable ? S::kDisabled : stop == E::kHold ? GetParam() : S::kReady);
     EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
     EXPECT_TRUE(smooth(rig.log));
     const std::size_t rest = rig.log.size() - 1;
-    EXPECT_LE(std::abs(rig.log[rest].command[kY] - rig.log[before].command[kY]),
-              brakingDistance(kY, 0.05) + 0.05 * 0.02);
+    EXPECT_LE(std::abs(rig.last().command[kY] - before), brakingDistance(kY, 0.05) + 0.05 * 0.02);
     rig.run(100);
     EXPECT_TRUE(atRestFrom(rig.log, rest));
-    const bool job = GetParam() != S::kReady;
-    EXPECT_EQ(rig.jobsEnded(), job ? 1 : 0);
-    EXPECT_TRUE(!job || rig.loop->status().end == JobEnd::kCanceled);
+    EXPECT_EQ(rig.jobsEnded(), ends_job ? 1 : 0);
+    EXPECT_TRUE(!ends_job || rig.loop->status().end == JobEnd::kCanceled);
     EXPECT_FALSE(rig.last().wheel_in_work);
   }
 }
@@ -271,8 +246,10 @@ TEST_P(JogFrom, AStopInTheSameCycleComesAfterIt) {
 TEST_P(JogFrom, AFaultEndsItAndAJob) {
   ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
   rig_.run(100);
+  const std::uint64_t ended = rig_.loop->status().jogs_ended;
   rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
   rig_.cycle();
+  EXPECT_EQ(rig_.loop->status().jogs_ended, ended + 1);
   EXPECT_EQ(rig_.last().state, S::kFault);
   EXPECT_FALSE(rig_.drive.written_drive.enable);
   EXPECT_EQ(rig_.jobsEnded(), GetParam() == S::kReady ? 0 : 1);
@@ -281,8 +258,7 @@ TEST_P(JogFrom, AFaultEndsItAndAJob) {
   rig_.drive.status.emergency_stop = false;
   rig_.run(10);
   EXPECT_TRUE(atRestFrom(rig_.log, stopped));
-  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig_.enable());
+  ASSERT_NO_FATAL_FAILURE(rig_.recover());
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady);
   ASSERT_TRUE(rig_.jog(step(kX, 0.001)).accepted);
@@ -319,7 +295,6 @@ INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), s
 
 TEST(Jog, ToALimitItEndsThereWithoutAFault) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   const AxisLimits limits = machineConfig().machine.limits;
   for (const int axis : {kZ, kX, kA}) {
@@ -334,6 +309,8 @@ TEST(Jog, ToALimitItEndsThereWithoutAFault) {
       ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
       EXPECT_EQ(rig.last().command[axis], limit);
       rig.run(kTimeoutCycles + 1);
+      EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its way");
+      rig.run(kTimeoutCycles + 1);
     }
   }
   EXPECT_TRUE(smooth(rig.log));
@@ -342,14 +319,12 @@ TEST(Jog, ToALimitItEndsThereWithoutAFault) {
 TEST(Jog, FromOutsideTheLimitsIsRefused) {
   Rig<FakeDrive> rig;
   rig.drive.position[kZ] = -0.051;
-  rig.cycle();
   rig.enable();
   EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z stands at -51 mm, outside its limit -50 mm");
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   rig.drive.status.commands_waiting = 4;
   const double from = rig.last().command[kX];
@@ -362,16 +337,8 @@ TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
   EXPECT_GE(rig.log.size() - 1 - reached, 4u);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// With the wheel in the work
-
 TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
-  rig.drive.on_read = nullptr;
-  ASSERT_TRUE(rig.last().wheel_in_work);
+  RigInTheWork rig;
   for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),
                                 on(kX, 0.01), on(kY, -0.01)}) {
     EXPECT_EQ(rig.jog(jog).text, "jog refused: the wheel stands in the work; lift it first");
@@ -386,12 +353,8 @@ TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
   EXPECT_TRUE(rig.jog(step(kX, 0.001)).accepted);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// In the middle of a job
-
 TEST(JogRetracted, NeverGoesDownToTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRetracted));
+  RigIn rig(S::kRetracted);
   const double clear = rig.loop->status().wheel.clear_y;
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
   EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y stands at 8.23708 mm, the end of its way");
@@ -411,7 +374,6 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
 
 TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.startPaper();
   ASSERT_NO_FATAL_FAILURE(rig.runToCycle(planned().back().cycle));
   ASSERT_NO_FATAL_FAILURE(rig.hold());
@@ -420,8 +382,7 @@ TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {
 }
 
 TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kJoggingRetracted));
+  RigIn rig(S::kJoggingRetracted);
   rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
   rig.runUntil(S::kRetracted);
   EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the spindle is not at speed");

@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <algorithm>
 #include <limits>
@@ -9,29 +7,16 @@
 namespace grinder::test_support {
 namespace test_lift {
 
-/// Ready, with the wheel in the work after a fault.
-void bringIntoTheWork(Rig<FakeDrive>& rig) {
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kFault));
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  ASSERT_NO_FATAL_FAILURE(rig.enable());
-  ASSERT_TRUE(rig.last().wheel_in_work);
-  rig.drive.on_read = nullptr;
-}
-
 class InTheWork : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_NO_FATAL_FAILURE(bringIntoTheWork(rig_)); }
-
-  Rig<FakeDrive> rig_;
+  RigInTheWork rig_;
 };
 
 TEST_F(InTheWork, StartAndHomeAreRefusedUntilItIsLifted) {
-  rig_.stream.emplace(rig_.paperStream());
-  EXPECT_EQ(rig_.askToStart(*rig_.stream).text, "start refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel stands in the work; lift it first");
   EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
   EXPECT_EQ(rig_.last().state, S::kReady);
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  rig_.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig_.lift());
   EXPECT_TRUE(rig_.ask(E::kHome).accepted);
 }
 
@@ -89,62 +74,29 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   EXPECT_FALSE(seeAt(0, true)) << "and nothing brings it back but a job";
 }
 
-class StopsTheLift : public testing::TestWithParam<E> {};
-
-TEST_P(StopsTheLift, OnItsWayWithTheWheelStillInTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
-  const auto is_lift = [](const CycleSample& r) { return r.state == S::kLifting; };
-  const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
-  const auto before = begun - rig.log.begin() - 1;
-  ASSERT_TRUE(rig.ask(GetParam()).accepted);
-  EXPECT_EQ(rig.last().state, S::kLifting) << "an axis does not stop at once";
-  EXPECT_TRUE(rig.drive.written_drive.enable);
-  while (rig.last().state == S::kLifting) rig.cycle();
-  EXPECT_EQ(rig.last().state, GetParam() == E::kDisable ? S::kDisabled : S::kReady);
-  EXPECT_EQ(rig.drive.written_drive.enable, GetParam() != E::kDisable);
-  EXPECT_LT(rig.last().command[kY], kClearanceHeight - 1e-4);
-  EXPECT_TRUE(rig.last().wheel_in_work);
-  EXPECT_TRUE(smooth({rig.log.begin() + before, rig.log.end()}));
-  const std::size_t stopped = rig.log.size() - 1;
-  rig.run(50);
-  EXPECT_TRUE(atRestFrom(rig.log, stopped));
-  if (GetParam() == E::kDisable) rig.enable();
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-}
-
-INSTANTIATE_TEST_SUITE_P(, StopsTheLift, testing::Values(E::kHold, E::kCancel, E::kDisable),
-                         [](const testing::TestParamInfo<E>& info) { return std::string(toString(info.param)); });
-
-TEST(Lift, AFaultEndsItWithTheWheelStillInTheWork) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kLifting));
-  rig.drive.on_read = [](FakeDrive& d) { d.position[kX] += 0.002; };
-  rig.cycle();
-  EXPECT_EQ(rig.last().state, S::kFault);
-  EXPECT_EQ(rig.last().fault.kind, FaultKind::kFollowingError);
-  EXPECT_TRUE(rig.last().wheel_in_work);
-  EXPECT_FALSE(rig.last().job_ended);
-  EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kDriveFault) << "the job's own";
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// After a restart
-
-TEST(AfterARestart, TheWheelIsStillInTheWork) {
-  const Wheel wheel{true, kClearanceHeight, kLift};
-  Rig<FakeDrive> rig(machineConfig(), wheel);
-  EXPECT_TRUE(rig.loop->status().wheel.in_work) << "before the first cycle";
-  rig.drive.position[kY] = -0.0005;
-  rig.cycle();
-  EXPECT_TRUE(rig.last().wheel_in_work);
-  rig.enable();
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
-  EXPECT_EQ(rig.last().command[kY], kClearanceHeight);
-  EXPECT_FALSE(rig.last().wheel_in_work);
+TEST(Lift, IsStoppedOnItsWayByEveryStopWithTheWheelStillInTheWork) {
+  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
+    SCOPED_TRACE(toString(stop));
+    RigIn rig(S::kLifting);
+    const auto is_lift = [](const CycleSample& r) { return r.state == S::kLifting; };
+    const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
+    const auto before = begun - rig.log.begin() - 1;
+    ASSERT_TRUE(rig.ask(stop).accepted);
+    EXPECT_EQ(rig.last().state, S::kLifting) << "an axis does not stop at once";
+    EXPECT_TRUE(rig.drive.written_drive.enable);
+    while (rig.last().state == S::kLifting) rig.cycle();
+    EXPECT_EQ(rig.last().state, stop == E::kDisable ? S::kDisabled : S::kReady);
+    EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
+    EXPECT_LT(rig.last().command[kY], kClearanceHeight - 1e-4);
+    EXPECT_TRUE(rig.last().wheel_in_work);
+    EXPECT_TRUE(smooth({rig.log.begin() + before, rig.log.end()}));
+    const std::size_t stopped = rig.log.size() - 1;
+    rig.run(50);
+    EXPECT_TRUE(atRestFrom(rig.log, stopped));
+    if (stop == E::kDisable) rig.enable();
+    ASSERT_NO_FATAL_FAILURE(rig.lift());
+    EXPECT_FALSE(rig.last().wheel_in_work);
+  }
 }
 
 TEST(AfterARestart, AWheelThatStandsAboveByNowIsNotInTheWork) {
@@ -163,8 +115,7 @@ TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
   rig.enable();
   EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
   const double from = rig.last().command[kY];
-  ASSERT_TRUE(rig.ask(E::kLift).accepted);
-  rig.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
   EXPECT_FALSE(rig.last().wheel_in_work);
   EXPECT_TRUE(rig.ask(E::kHome).accepted);
@@ -173,7 +124,6 @@ TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
 TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
   for (const double far : {0.2, std::numeric_limits<double>::quiet_NaN()}) {
     Rig<FakeDrive> rig(machineConfig(), Wheel{true, far, 0.01});
-    rig.cycle();
     rig.enable();
     EXPECT_CONTAINS(rig.ask(E::kLift).text, " mm; allowed: up to 150 mm");
     EXPECT_EQ(rig.last().state, S::kReady);

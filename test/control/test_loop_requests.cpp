@@ -1,15 +1,15 @@
 #include "control/rig.h"
 
+#include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 // Requests: enable, job starts, and what each state refuses.
 namespace grinder::test_support {
 namespace test_loop_requests {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Enable
 
 TEST(ControlLoopEnable, IsAnsweredOncePowerIsThere) {
   Rig<FakeDrive> rig;
@@ -22,15 +22,6 @@ TEST(ControlLoopEnable, IsAnsweredOncePowerIsThere) {
   const auto answer = rig.loop->reply();
   ASSERT_TRUE(answer);
   EXPECT_TRUE(answer->accepted);
-}
-
-TEST(ControlLoopEnable, MovesNothing) {
-  Rig<SimulatedDrive> rig;
-  const Axes before = rig.run(2).position;
-  rig.enable();
-  rig.run(100);
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_TRUE(sameBits(rig.last().position, before)) << rig.last().position.transpose();
 }
 
 TEST(ControlLoopEnable, TakesTheCommandsFromThePositionsAtTheMomentOfPower) {
@@ -50,36 +41,32 @@ struct RefusalCase {
   std::function<void(FakeDrive&)> spoil;
   const char* reason;
 };
-std::ostream& operator<<(std::ostream& out, const RefusalCase& c) { return out << c.name; }
 
-class EnableRefused : public testing::TestWithParam<RefusalCase> {};
-
-TEST_P(EnableRefused, WithTheReasonAndWithoutPower) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  rig.drive.on_read = GetParam().spoil;
-  rig.run(5);
-  const RequestReply answer = rig.ask(E::kEnable);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_CONTAINS(answer.text, "enable refused");
-  EXPECT_CONTAINS(answer.text, GetParam().reason);
-  EXPECT_EQ(rig.last().state, S::kDisabled);
-  EXPECT_FALSE(rig.drive.written_drive.enable);
-  rig.drive.on_read = nullptr;
-  rig.run(5);
-  EXPECT_EQ(rig.last().state, S::kDisabled) << "the refused request came back to life";
-  EXPECT_FALSE(rig.drive.written_drive.enable);
+TEST(ControlLoopEnable, IsRefusedWithTheReasonAndWithoutPower) {
+  const RefusalCase rows[]{
+      {"emergency stop", [](FakeDrive& d) { d.status.emergency_stop = true; }, "emergency stop is pressed"},
+      {"drive fault", [](FakeDrive& d) { d.status.fault = true; }, "the drive reports a fault"},
+      {"nan", [](FakeDrive& d) { d.position[kA] = kNan; }, "no valid, fresh positions"},
+      {"infinity", [](FakeDrive& d) { d.position[kX] = HUGE_VAL; }, "no valid, fresh positions"},
+      {"stale", [](FakeDrive& d) { d.status.feedback_count = 1; }, "no valid, fresh positions"}};
+  for (const RefusalCase& row : rows) {
+    SCOPED_TRACE(row.name);
+    Rig<FakeDrive> rig;
+    rig.cycle();
+    rig.drive.on_read = row.spoil;
+    rig.run(5);
+    const RequestReply answer = rig.ask(E::kEnable);
+    EXPECT_FALSE(answer.accepted);
+    EXPECT_CONTAINS(answer.text, "enable refused");
+    EXPECT_CONTAINS(answer.text, row.reason);
+    EXPECT_EQ(rig.last().state, S::kDisabled);
+    EXPECT_FALSE(rig.drive.written_drive.enable);
+    rig.drive.on_read = nullptr;
+    rig.run(5);
+    EXPECT_EQ(rig.last().state, S::kDisabled) << "the refused request came back to life";
+    EXPECT_FALSE(rig.drive.written_drive.enable);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    , EnableRefused,
-    testing::Values(
-        RefusalCase{"EmergencyStop", [](FakeDrive& d) { d.status.emergency_stop = true; }, "emergency stop is pressed"},
-        RefusalCase{"DriveFault", [](FakeDrive& d) { d.status.fault = true; }, "the drive reports a fault"},
-        RefusalCase{"NanFeedback", [](FakeDrive& d) { d.position[kA] = kNan; }, "no valid, fresh positions"},
-        RefusalCase{"InfiniteFeedback", [](FakeDrive& d) { d.position[kX] = HUGE_VAL; }, "no valid, fresh positions"},
-        RefusalCase{"StaleFeedback", [](FakeDrive& d) { d.status.feedback_count = 1; }, "no valid, fresh positions"}),
-    [](const testing::TestParamInfo<RefusalCase>& info) { return info.param.name; });
 
 TEST(ControlLoopEnable, DistinguishesAFaultThatStaysAfterTheResetFromANewOne) {
   Rig<FakeDrive> rig;
@@ -155,112 +142,82 @@ TEST(ControlLoopEnable, OneRequestAtATime) {
   EXPECT_FALSE(rig.loop->post(E::kReset));
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Requests against the table
-
-struct RequestCase {
-  S state;
-  E event;
-  const char* allowed = "";  ///< what the refusal must list
-};
-std::ostream& operator<<(std::ostream& out, const RequestCase& c) {
-  return out << toString(c.event) << " in " << toString(c.state);
-}
-std::string requestName(const testing::TestParamInfo<RequestCase>& info) {
-  return std::string(toString(info.param.event)) + "_in_" + toString(info.param.state);
-}
-
 /// Every request in every state that does not allow it.
-std::vector<RequestCase> refusedRequests() {
-  const std::vector<std::pair<S, const char*>> allowed{
-      {S::kDisabled, "enable, disable, reset"},
-      {S::kReady, "enable, disable, home, start (grind run), lift, jog"},
-      {S::kHoming, "disable, hold, cancel"},
-      {S::kStarting, "disable, hold, resume, cancel"},
-      {S::kRunning, "disable, hold, cancel"},
-      {S::kHolding, "disable, hold, resume, cancel"},
-      {S::kHeld, "disable, hold, resume, retract, cancel"},
-      {S::kRetracting, "disable, hold, cancel"},
-      {S::kRetracted, "disable, resume, cancel, jog"},
-      {S::kResuming, "disable, hold, cancel"},
-      {S::kCanceling, "disable, hold, cancel"},
-      {S::kFault, "disable, reset"},
-      {S::kLifting, "disable, hold, cancel"},
-      {S::kJogging, "disable, hold, cancel, jog"},
-      {S::kJoggingRetracted, "disable, hold, cancel, jog"}};
-  const std::vector<std::pair<E, const char*>> requests{
+TEST(Request, ThatAStateDoesNotAllowIsRefusedWithTheStateAndWhatItAllows) {
+  const std::pair<S, const char*> allowed[]{{S::kDisabled, "enable, disable, reset"},
+                                            {S::kReady, "enable, disable, home, start (grind run), lift, jog"},
+                                            {S::kHoming, "disable, hold, cancel"},
+                                            {S::kStarting, "disable, hold, resume, cancel"},
+                                            {S::kRunning, "disable, hold, cancel"},
+                                            {S::kHolding, "disable, hold, resume, cancel"},
+                                            {S::kHeld, "disable, hold, resume, retract, cancel"},
+                                            {S::kRetracting, "disable, hold, cancel"},
+                                            {S::kRetracted, "disable, resume, cancel, jog"},
+                                            {S::kResuming, "disable, hold, cancel"},
+                                            {S::kCanceling, "disable, hold, cancel"},
+                                            {S::kFault, "disable, reset"},
+                                            {S::kLifting, "disable, hold, cancel"},
+                                            {S::kJogging, "disable, hold, cancel, jog"},
+                                            {S::kJoggingRetracted, "disable, hold, cancel, jog"}};
+  const std::pair<E, const char*> requests[]{
       {E::kEnable, "enable"}, {E::kDisable, "disable"}, {E::kHome, "home"},       {E::kStart, "start (grind run)"},
       {E::kHold, "hold"},     {E::kResume, "resume"},   {E::kRetract, "retract"}, {E::kCancel, "cancel"},
       {E::kReset, "reset"},   {E::kLift, "lift"},       {E::kJog, "jog"}};
-  std::vector<RequestCase> cases;
   for (const auto& [state, list] : allowed) {
     for (const auto& [event, name] : requests) {
       const bool listed = (", " + std::string(list) + ",").find(", " + std::string(name) + ",") != std::string::npos;
-      if (!listed) cases.push_back({state, event, list});
+      if (listed) continue;
+      RigIn rig(state);
+      SetpointStream other = rig.paperStream();
+      const RequestReply answer = rig.ask(event, &other);
+      EXPECT_FALSE(answer.accepted);
+      EXPECT_EQ(answer.text, std::string(toString(event)) + " refused: the machine is in state " + toString(state) +
+                                 "; allowed: " + list);
+      EXPECT_EQ(rig.last().state, state) << toString(event);
     }
   }
-  return cases;
 }
 
-class RequestRefused : public testing::TestWithParam<RequestCase> {};
-
-TEST_P(RequestRefused, WithTheStateAndWhatItAllows) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam().state));
-  SetpointStream other = rig.paperStream();
-  const RequestReply answer = rig.ask(GetParam().event, &other);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text, std::string(toString(GetParam().event)) + " refused: the machine is in state " +
-                             toString(GetParam().state) + "; allowed: " + GetParam().allowed);
-  EXPECT_EQ(rig.last().state, GetParam().state);
+TEST(Request, ForWhatIsSoAlreadyIsAcceptedAndChangesNothing) {
+  const std::pair<S, std::vector<E>> rows[]{{S::kDisabled, {E::kDisable, E::kReset}},
+                                            {S::kReady, {E::kEnable}},
+                                            {S::kHolding, {E::kHold}},
+                                            {S::kHeld, {E::kHold}},
+                                            {S::kStarting, {E::kHold, E::kResume}},
+                                            {S::kCanceling, {E::kCancel, E::kDisable, E::kHold}},
+                                            {S::kFault, {E::kDisable}},
+                                            {S::kLifting, {E::kHold, E::kCancel, E::kDisable}},
+                                            {S::kJogging, {E::kHold, E::kCancel, E::kDisable}},
+                                            {S::kJoggingRetracted, {E::kHold}}};
+  for (const auto& [state, events] : rows) {
+    for (const E event : events) {
+      SCOPED_TRACE(testing::Message() << toString(event) << " in " << toString(state));
+      RigIn rig(state);
+      const bool enable = rig.drive.written_drive.enable;
+      const RequestReply answer = rig.ask(event);
+      EXPECT_TRUE(answer.accepted) << answer.text;
+      EXPECT_EQ(rig.last().state, state);
+      EXPECT_EQ(rig.drive.written_drive.enable, enable);
+    }
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(, RequestRefused, testing::ValuesIn(refusedRequests()), requestName);
-
-class RequestWithoutEffect : public testing::TestWithParam<RequestCase> {};
-
-TEST_P(RequestWithoutEffect, IsAcceptedAndChangesNothing) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam().state));
-  const bool enable = rig.drive.written_drive.enable;
-  const RequestReply answer = rig.ask(GetParam().event);
-  EXPECT_TRUE(answer.accepted) << answer.text;
-  EXPECT_EQ(rig.last().state, GetParam().state);
-  EXPECT_EQ(rig.drive.written_drive.enable, enable);
-}
-
-INSTANTIATE_TEST_SUITE_P(, RequestWithoutEffect,
-                         testing::Values(RequestCase{S::kDisabled, E::kDisable}, RequestCase{S::kDisabled, E::kReset},
-                                         RequestCase{S::kReady, E::kEnable}, RequestCase{S::kHolding, E::kHold},
-                                         RequestCase{S::kHeld, E::kHold}, RequestCase{S::kStarting, E::kHold},
-                                         RequestCase{S::kStarting, E::kResume}, RequestCase{S::kCanceling, E::kCancel},
-                                         RequestCase{S::kCanceling, E::kDisable}, RequestCase{S::kCanceling, E::kHold},
-                                         RequestCase{S::kFault, E::kDisable}, RequestCase{S::kLifting, E::kHold},
-                                         RequestCase{S::kLifting, E::kCancel}, RequestCase{S::kLifting, E::kDisable},
-                                         RequestCase{S::kJogging, E::kHold}, RequestCase{S::kJogging, E::kCancel},
-                                         RequestCase{S::kJogging, E::kDisable},
-                                         RequestCase{S::kJoggingRetracted, E::kHold}),
-                         requestName);
 
 // Events of the loop itself: from outside they would make the state inconsistent with the stream and the power.
-class NotARequest : public testing::TestWithParam<E> {};
-
-TEST_P(NotARequest, IsRefusedFromOutside) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
-  EXPECT_FALSE(rig.ask(GetParam()).accepted);
+TEST(Request, ThatIsNoneIsNotTakenNorAStopThatIsNone) {
+  RigIn rig(S::kRunning);
+  for (const E event : {E::kDone, E::kAtRest, E::kFault}) {
+    EXPECT_FALSE(rig.ask(event).accepted);
+    EXPECT_EQ(rig.last().state, S::kRunning) << toString(event);
+  }
+  for (const E event : {E::kEnable, E::kHome, E::kStart, E::kReset, E::kDone, E::kFault, static_cast<E>(99)}) {
+    rig.loop->postStop(event);
+  }
+  rig.run(3);
   EXPECT_EQ(rig.last().state, S::kRunning);
 }
 
-INSTANTIATE_TEST_SUITE_P(, NotARequest, testing::Values(E::kDone, E::kAtRest, E::kFault),
-                         [](const testing::TestParamInfo<E>& info) {
-                           const std::string name = toString(info.param);
-                           return name == "at rest" ? "at_rest" : name;
-                         });
-
 TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   ASSERT_TRUE(rig.ask(E::kDisable).accepted);
   EXPECT_EQ(rig.last().state, S::kDisabled);
@@ -271,13 +228,9 @@ TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
   EXPECT_TRUE(sameBits(toAxes(rig.drive.written), pushed));
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Start
-
 TEST(Start, IsRefusedAfterTheLeastMotionOfAnyAxis) {
   for (const int axis : {kX, kY, kZ, kA}) {
     Rig<FakeDrive> rig;
-    rig.cycle();
     rig.enable();
     Axes planned = rig.last().command;
     planned[axis] = std::nextafter(planned[axis], 1.0);

@@ -24,13 +24,17 @@ class ControlLoopThread : public testing::Test {
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
   }
 
-  bool popInTime(CycleSample& sample) {
+  template <typename Condition>
+  static bool await(const Condition& condition) {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!loop_->pop(sample)) {
+    while (!condition()) {
       if (std::chrono::steady_clock::now() > deadline) return false;
       std::this_thread::yield();
     }
     return true;
+  }
+  bool popInTime(CycleSample& sample) {
+    return await([&] { return loop_->pop(sample); });
   }
 
   FakeDrive drive_;
@@ -75,11 +79,6 @@ TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {
   };
   loop_->startThread();
   const LoopWatchdog watchdog(*loop_, drive_);
-  const auto await = [](const auto& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-    while (!condition() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    return condition();
-  };
   const std::uint64_t before = loop_->status().cycles;
   ASSERT_TRUE(await([&] { return loop_->status().cycles > before + 500; }));  // longer than it waits
   EXPECT_FALSE(watchdog.loopHangs());
@@ -113,7 +112,7 @@ TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {
   }
 }
 
-TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
+TEST_F(ControlLoopThread, StopEndsTheCyclesAndLeavesTheDriveWithEverythingOff) {
   LoopConfig config = machineConfig();
   config.following_error.setConstant(1);
   config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
@@ -121,9 +120,15 @@ TEST_F(ControlLoopThread, StopLeavesTheDriveWithoutPower) {
   loop_->startThread();
   const RequestReply answer = loop_->request(E::kEnable);
   ASSERT_TRUE(answer.accepted) << answer.text;
+  ASSERT_TRUE(loop_->request(E::kSpindleOn).accepted);
+  ASSERT_TRUE(loop_->request(E::kCoolantOn).accepted);
   loop_->stopThread();
-  EXPECT_FALSE(drive_.written_drive.enable);
+  const DriveCommand& last = drive_.written_drive;
+  EXPECT_FALSE(last.enable || last.spindle || last.coolant);
   EXPECT_TRUE(sameBits(toAxes(drive_.written), machineConfig().machine.park)) << "stopping moved an axis";
+  const int writes = drive_.writes;
+  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_EQ(drive_.writes, writes) << "the cycles have not ended";
 }
 
 TEST_F(ControlLoopThread, KeepsTheComputersTime) {
@@ -177,7 +182,7 @@ TEST_F(ControlLoopThread, LockedMemoryTakesNoneThatIsOnlyClaimed) {
   munmap(memory, claim);
 }
 
-TEST_F(ControlLoopThread, AnswersAStopAndReportsItsStatus) {
+TEST_F(ControlLoopThread, AnswersAStopAndARequestAndReportsItsStatus) {
   loop_->startThread();
   CycleSample sample;
   ASSERT_TRUE(popInTime(sample));
@@ -185,6 +190,8 @@ TEST_F(ControlLoopThread, AnswersAStopAndReportsItsStatus) {
   const RequestReply answer = loop_->stop(E::kCancel);
   EXPECT_TRUE(answer.answered);
   EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");
+  EXPECT_EQ(loop_->request(E::kLift).text,
+            "lift refused: the machine is in state disabled; allowed: enable, disable, reset");
   EXPECT_GT(loop_->status().cycles, 0u);
 }
 
@@ -200,31 +207,6 @@ TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
   EXPECT_FALSE(answer.accepted);
   EXPECT_FALSE(answer.answered);
   EXPECT_EQ(answer.text, "hold: the control loop does not answer");
-}
-
-TEST_F(ControlLoopThread, StopEndsTheCycles) {
-  loop_->startThread();
-  CycleSample sample;
-  ASSERT_TRUE(popInTime(sample));
-  loop_->stopThread();
-  while (loop_->pop(sample)) {
-  }
-  const std::uint64_t cycles = drive_.status.feedback_count;
-  std::this_thread::yield();
-  EXPECT_FALSE(loop_->pop(sample));
-  EXPECT_EQ(drive_.status.feedback_count, cycles);
-}
-
-TEST_F(ControlLoopThread, RequestReportsARefusal) {
-  loop_->startThread();
-  const RequestReply answer = loop_->request(E::kLift);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text, "lift refused: the machine is in state disabled; allowed: enable, disable, reset");
-}
-
-TEST_F(ControlLoopThread, StopWithoutAStartIsHarmless) {
-  loop_->stopThread();
-  EXPECT_FALSE(drive_.written_drive.enable);
 }
 
 }  // namespace test_loop_thread

@@ -1,5 +1,4 @@
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/machine/machine_geometry.h"
 #include "temp_folder.h"
 
@@ -39,8 +38,6 @@ MachineGeometry shippedGeometry() {
   geometry.flange = node["flange"].as<double>();
   return geometry;
 }
-
-GrindJob jobOf(const std::string& name) { return readJobFile("jobs/" + name + ".yaml"); }
 
 /// Where a link stands in the root's frame.
 Eigen::Isometry3d poseOf(const urdf::Model& model, const std::string& name,
@@ -90,19 +87,6 @@ TEST(WorkZero, OfAnUprightWheelByHand) {
   EXPECT_NEAR(swivelled.x(), 0.040 - 0.001 + 0.032, 1e-15);
   EXPECT_NEAR(swivelled.y(), zero.y(), 1e-15);
   EXPECT_NEAR(swivelled.z(), -0.0175 - 0.300, 1e-15);
-}
-
-TEST(WorkZero, OfANarrowerWheelMovesByHalfOfWhatWasDressed) {
-  const MachineGeometry machine = shippedGeometry();
-  GrindJob job = jobOf("unequal_d12_t4");
-  const Eigen::Vector3d before = workZero(machine, job, {0.002, 0.062});
-  job.process.wheel_width -= 0.0002;
-  const Eigen::Vector3d after = workZero(machine, job, {0.002, 0.062});
-  // Its middle has come up by 0.1 mm along the spindle, so the axes stand as much lower.
-  const double swivel = job.process.setup_swivel;
-  EXPECT_NEAR((after - before).x(), 0.0001 * std::sin(swivel), 1e-15);
-  EXPECT_NEAR((after - before).y(), 0, 1e-15);
-  EXPECT_NEAR((after - before).z(), -0.0001 * std::cos(swivel), 1e-15);
 }
 
 TEST(WorkZero, KnowsTheShippedMachineAsItsUrdfShowsIt) {

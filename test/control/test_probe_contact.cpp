@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <cmath>
 
@@ -8,24 +6,18 @@
 namespace grinder::test_support {
 namespace test_probe_contact {
 
-/// A wall that the probe touches while X stands at or beyond it.
-template <typename Drive>
-void putWall(Drive& drive, double x) {
-  drive.on_read = [x](FakeDrive& d) { d.status.probe_contact = d.position[kX] >= x; };
-}
-
 class ProbeFrom : public testing::TestWithParam<S> {
  protected:
   void SetUp() override {
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig_, GetParam()));
     rig_.run(5);
     at_ = rig_.last().command;
+    // The probe touches while X stands at or beyond it.
     wall_ = at_[kX] + 0.0123;
-    putWall(rig_.drive, wall_);
+    rig_.drive.on_read = [this](FakeDrive& d) { d.status.probe_contact = d.position[kX] >= wall_; };
   }
   JogRequest step(double distance, double speed = 0.02) const { return {kX, false, distance, speed}; }
 
-  Rig<FakeDrive> rig_;
+  RigIn rig_{GetParam()};
   Axes at_ = Axes::Zero();
   double wall_ = 0;
 };
@@ -202,16 +194,6 @@ TEST_P(ProbeForClient, AStepForOneThatIsGoneMovesNothing) {
   rig_.runUntil(GetParam());
   for (std::size_t i = rest; i < rig_.log.size(); ++i) EXPECT_TRUE((rig_.log[i].command == at_).all()) << i;
   EXPECT_EQ(rig_.loop->status().stops, next.stops + 1);
-}
-
-TEST_P(ProbeFrom, AFaultEndsTheJog) {
-  const std::uint64_t ended = rig_.loop->status().jogs_ended;
-  ASSERT_TRUE(rig_.jog(step(0.03)).accepted);
-  rig_.run(10);
-  rig_.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
-  rig_.cycle();
-  EXPECT_EQ(rig_.last().state, S::kFault);
-  EXPECT_EQ(rig_.loop->status().jogs_ended, ended + 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted), stateName);

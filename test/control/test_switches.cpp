@@ -1,12 +1,14 @@
 #include "control/rig.h"
 
+#include <functional>
+
 // Spindle and coolant by hand: only on request, with the power on and without a job, and never for longer.
 namespace grinder::test_support {
 namespace test_switches {
 
 class Switches : public testing::Test {
  protected:
-  void SetUp() override { rig.cycle(); }
+  void SetUp() override { rig.enable(); }
   /// What the drive is commanded to do, and what the sample says of it.
   std::string on() {
     const DriveCommand& c = rig.drive.written_drive;
@@ -15,7 +17,6 @@ class Switches : public testing::Test {
     return std::string(c.spindle ? "spindle " : "") + (c.coolant ? "coolant" : "");
   }
   void switchBothOn() {
-    rig.enable();
     ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
     ASSERT_TRUE(rig.ask(E::kCoolantOn).accepted);
     rig.run(1000);
@@ -27,7 +28,6 @@ class Switches : public testing::Test {
 };
 
 TEST_F(Switches, EachIsSwitchedByItself) {
-  rig.enable();
   EXPECT_EQ(on(), "") << "the power starts nothing";
   EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted);
   EXPECT_EQ(on(), "spindle ");
@@ -43,7 +43,6 @@ TEST_F(Switches, EachIsSwitchedByItself) {
 
 TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
   Rig<FakeDrive> rig(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
-  rig.cycle();
   rig.enable();
   EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the drive does not home the axes");
   EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the drive does not switch the spindle");
@@ -53,52 +52,31 @@ TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
   EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted) << "off is never refused";
 }
 
-TEST_F(Switches, NothingIsSwitchedOnWithoutPower) {
-  for (const E event : {E::kSpindleOn, E::kCoolantOn}) {
-    const RequestReply reply = rig.ask(event);
-    EXPECT_FALSE(reply.accepted);
-    EXPECT_EQ(reply.text, std::string(toString(event)) +
-                              " refused: the machine is in state disabled; allowed: enable, disable, reset");
-  }
-  EXPECT_EQ(on(), "");
-  rig.enable();
-  rig.run(10);
-  EXPECT_EQ(on(), "") << "the refused request is not remembered";
-}
-
-TEST_F(Switches, DisableSwitchesOffAndEnableDoesNotSwitchOnAgain) {
-  switchBothOn();
-  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
-  EXPECT_EQ(rig.last().state, S::kDisabled);
-  EXPECT_EQ(on(), "");
-  rig.enable();
-  rig.run(10);
-  EXPECT_EQ(on(), "");
-}
-
-TEST_F(Switches, AFaultSwitchesOffInItsCycle) {
-  using Spoil = void (*)(FakeDrive&);
-  for (const Spoil spoil :
-       {Spoil([](FakeDrive& d) { d.status.emergency_stop = true; }), Spoil([](FakeDrive& d) { d.status.fault = true; }),
-        Spoil([](FakeDrive& d) { d.status.enabled = false; })}) {
+/// And neither the power nor what else ends such a state switches on again.
+TEST_F(Switches, DisableAFaultAndHomingSwitchOffAtOnce) {
+  const struct {
+    const char* name;
+    S then;
+    std::function<void()> act;
+  } rows[]{{"disable", S::kDisabled, [&] { EXPECT_TRUE(rig.ask(E::kDisable).accepted); }},
+           {"homing", S::kHoming, [&] { EXPECT_TRUE(rig.ask(E::kHome).accepted); }},
+           {"emergency stop", S::kFault, [&] { rig.drive.status.emergency_stop = true; }},
+           {"drive fault", S::kFault, [&] { rig.drive.status.fault = true; }},
+           {"lost power", S::kFault, [&] { rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; }; }}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.name);
+    ASSERT_NO_FATAL_FAILURE(switchBothOn());
+    row.act();
+    if (rig.last().state == S::kReady) rig.cycle();
+    EXPECT_EQ(rig.last().state, row.then);
+    EXPECT_EQ(on(), "");
     rig.drive.on_read = nullptr;
     rig.drive.status.emergency_stop = rig.drive.status.fault = false;
-    rig.run(2);
-    if (rig.last().state == S::kFault) {
-      ASSERT_TRUE(rig.ask(E::kReset).accepted);
-    }
-    ASSERT_NO_FATAL_FAILURE(switchBothOn());
-    rig.drive.on_read = spoil;
-    rig.cycle();
-    EXPECT_EQ(rig.last().state, S::kFault);
+    ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+    ASSERT_NO_FATAL_FAILURE(rig.recover());
+    rig.run(10);
     EXPECT_EQ(on(), "");
   }
-  rig.drive.on_read = nullptr;
-  rig.drive.status.fault = false;
-  rig.run(2);
-  ASSERT_TRUE(rig.ask(E::kReset).accepted);
-  rig.enable();
-  EXPECT_EQ(on(), "");
 }
 
 TEST_F(Switches, TheSpindleDoesNotTurnWithTheProbeInItsWay) {
@@ -113,14 +91,6 @@ TEST_F(Switches, TheSpindleDoesNotTurnWithTheProbeInItsWay) {
   rig.run(5);
   EXPECT_EQ(on(), "coolant") << "it waits for another request";
   EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted);
-}
-
-TEST_F(Switches, HomingSwitchesOff) {
-  switchBothOn();
-  ASSERT_TRUE(rig.ask(E::kHome).accepted);
-  EXPECT_EQ(rig.last().state, S::kHoming);
-  EXPECT_EQ(on(), "");
-  EXPECT_FALSE(rig.ask(E::kSpindleOn).accepted);
 }
 
 TEST_F(Switches, TheyStayOnWhileAnAxisIsJogged) {
@@ -142,8 +112,7 @@ TEST_F(Switches, TheyStayOnWhileAnAxisIsJogged) {
 
 TEST_F(Switches, AJobTakesThemOverAndSwitchesThemOff) {
   switchBothOn();
-  rig.stream.emplace(rig.paperStream());
-  rig.start(*rig.stream);
+  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
   EXPECT_EQ(on(), "spindle coolant");
   for (const E event : {E::kSpindleOn, E::kSpindleOff, E::kCoolantOn, E::kCoolantOff}) {
     EXPECT_FALSE(rig.ask(event).accepted) << toString(event);
@@ -167,8 +136,7 @@ TEST_F(Switches, AJobThatIsRefusedLeavesThemAsTheyAre) {
 TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
   for (const auto& row : kMachineStates) {
     SCOPED_TRACE(row.name);
-    Rig<FakeDrive> rig;
-    ASSERT_NO_FATAL_FAILURE(bringTo(rig, row.value));
+    RigIn rig(row.value);
     const bool job = isInJob(row.value);
     const bool may_be_on = row.value == S::kReady || row.value == S::kJogging;
     for (const E event : {E::kSpindleOn, E::kCoolantOn}) EXPECT_EQ(rig.ask(event).accepted, may_be_on);
@@ -178,23 +146,13 @@ TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
 }
 
 TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {
-  Wheel wheel;
-  wheel.in_work = true;
-  wheel.clear_y = 0.09;
-  wheel.lift = 0.01;
-  Rig<FakeDrive> rig(machineConfig(), wheel);
-  rig.cycle();
-  rig.enable();
-  const RequestReply reply = rig.ask(E::kSpindleOn);
-  EXPECT_EQ(reply.text, "spindle on refused: the wheel stands in the work; lift it first");
+  RigInTheWork rig;
+  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel stands in the work; lift it first");
   EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-
 TEST(DistanceToGo, IsThatOfAJogByADistance) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   EXPECT_TRUE((rig.last().distance_to_go == 0).all());
   const double end = rig.last().position[kY] + 0.02;
@@ -212,7 +170,6 @@ TEST(DistanceToGo, IsThatOfAJogByADistance) {
 
 TEST(DistanceToGo, OfAJobEndsWithEachMove) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   ASSERT_NO_FATAL_FAILURE(rig.startPaper());
   const std::vector<Move> moves = rig.stream->program().moves();
   ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));

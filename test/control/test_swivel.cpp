@@ -1,7 +1,4 @@
-#include "control/checks.h"
-#include "control/interlock_parts.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 
 #include <cmath>
 #include <limits>
@@ -19,11 +16,6 @@ struct Unconfirmed : Rig<FakeDrive> {
     cycle();
     enable();
   }
-
-  RequestReply startPaperJob() {
-    stream.emplace(paperStream());
-    return askToStart(*stream);
-  }
 };
 
 /// Sets what the drive measures from the next cycle on.
@@ -35,7 +27,7 @@ TEST(Swivel, IsUnknownAtFirstAndAJobDoesNotStart) {
   Unconfirmed rig;
   EXPECT_TRUE(std::isnan(rig.loop->status().swivel.angle));
   EXPECT_TRUE(std::isnan(rig.last().swivel.angle));
-  const RequestReply answer = rig.startPaperJob();
+  const RequestReply answer = rig.askToStartPaper();
   EXPECT_FALSE(answer.accepted);
   EXPECT_EQ(answer.text,
             "start refused: process.setup.swivel_deg = 31.769 deg: the swivel is not confirmed; set it to 31.769 deg "
@@ -45,55 +37,37 @@ TEST(Swivel, IsUnknownAtFirstAndAJobDoesNotStart) {
   EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
 
-struct Offset {
-  const char* name;
-  double degrees;
-  bool starts;
-};
-std::ostream& operator<<(std::ostream& out, const Offset& offset) { return out << offset.name; }
+TEST(Swivel, ConfirmedOrMeasuredLetsAJobStartAndGoOnWithinTheToleranceOnly) {
+  for (const auto& [degrees, within] :
+       {std::pair(-63.538, false), {-0.06, false}, {-0.04, true}, {0.0, true}, {0.04, true}, {0.06, false}}) {
+    SCOPED_TRACE(degrees);
+    const double angle = kPaperSwivel + degrees * kDegree;
+    Unconfirmed confirmed;
+    ASSERT_TRUE(confirmed.confirm(angle).accepted);
+    EXPECT_EQ(confirmed.loop->status().swivel.angle, angle);
+    EXPECT_EQ(confirmed.last().swivel.angle, angle);
+    EXPECT_FALSE(confirmed.last().swivel.measured);
+    EXPECT_EQ(confirmed.askToStartPaper().accepted, within);
 
-class SwivelOff : public testing::TestWithParam<Offset> {};
+    Unconfirmed measured;
+    measure(measured, angle);
+    measured.cycle();
+    EXPECT_EQ(measured.loop->status().swivel.angle, angle);
+    EXPECT_TRUE(measured.loop->status().swivel.measured);
+    EXPECT_EQ(measured.askToStartPaper().accepted, within);
 
-TEST_P(SwivelOff, AsConfirmedLetsAJobStartWithinTheTolerance) {
-  Unconfirmed rig;
-  const double angle = kPaperSwivel + GetParam().degrees * kDegree;
-  ASSERT_TRUE(rig.confirm(angle).accepted);
-  EXPECT_EQ(rig.loop->status().swivel.angle, angle);
-  EXPECT_EQ(rig.last().swivel.angle, angle);
-  EXPECT_FALSE(rig.last().swivel.measured);
-  EXPECT_EQ(rig.startPaperJob().accepted, GetParam().starts);
+    RigIn amid(S::kRunning);
+    measure(amid, angle);
+    amid.run(20);
+    EXPECT_EQ(amid.last().state, within ? S::kRunning : S::kHolding);
+    EXPECT_EQ(amid.last().interlock, within ? Interlock::kNone : Interlock::kSwivel);
+  }
 }
-
-TEST_P(SwivelOff, AsMeasuredLetsAJobStartWithinTheTolerance) {
-  Unconfirmed rig;
-  const double angle = kPaperSwivel + GetParam().degrees * kDegree;
-  measure(rig, angle);
-  rig.cycle();
-  EXPECT_EQ(rig.loop->status().swivel.angle, angle);
-  EXPECT_TRUE(rig.loop->status().swivel.measured);
-  EXPECT_EQ(rig.startPaperJob().accepted, GetParam().starts);
-}
-
-TEST_P(SwivelOff, AmidAJobStopsItBeyondTheTolerance) {
-  Rig<FakeDrive> rig;
-  measure(rig, kPaperSwivel);
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
-  measure(rig, kPaperSwivel + GetParam().degrees * kDegree);
-  rig.run(20);
-  EXPECT_EQ(rig.last().state, GetParam().starts ? S::kRunning : S::kHolding);
-  EXPECT_EQ(rig.last().interlock, GetParam().starts ? Interlock::kNone : Interlock::kSwivel);
-}
-
-INSTANTIATE_TEST_SUITE_P(By, SwivelOff,
-                         testing::Values(Offset{"FarBelow", -63.538, false}, Offset{"MuchBelow", -0.06, false},
-                                         Offset{"JustBelow", -0.04, true}, Offset{"Nothing", 0, true},
-                                         Offset{"JustAbove", 0.04, true}, Offset{"MuchAbove", 0.06, false}),
-                         [](const testing::TestParamInfo<Offset>& info) { return std::string(info.param.name); });
 
 TEST(Swivel, ThatIsConfirmedAtAnotherAngleIsAskedFor) {
   Unconfirmed rig;
   ASSERT_TRUE(rig.confirm(-20.5 * kDegree).accepted);
-  EXPECT_EQ(rig.startPaperJob().text,
+  EXPECT_EQ(rig.askToStartPaper().text,
             "start refused: process.setup.swivel_deg = 31.769 deg: the swivel is confirmed at -20.5 deg; allowed: "
             "within 0.05 deg of that; set it to 31.769 deg and confirm it: grind confirm-swivel 31.769");
 }
@@ -123,37 +97,28 @@ TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
   EXPECT_TRUE(std::isnan(loop.status().swivel.angle)) << "the refused request came back to life";
 }
 
-class SwivelInState : public testing::TestWithParam<S> {};
-
-TEST_P(SwivelInState, IsNotTurnedDuringAJob) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, GetParam()));
-  const RequestReply refused = rig.confirm(31.7 * kDegree);
-  EXPECT_FALSE(refused.accepted);
-  EXPECT_EQ(refused.text,
-            "confirm-swivel refused: a job is in progress that needs 31.769 deg; allowed: that angle, or to end the "
-            "job first");
-  EXPECT_EQ(rig.last().swivel.angle, kPaperSwivel);
-  EXPECT_TRUE(rig.confirm(kPaperSwivel).accepted);
-  EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+TEST(Swivel, IsNotTurnedDuringAJob) {
+  for (const S state :
+       {S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting, S::kRetracted, S::kResuming, S::kCanceling}) {
+    SCOPED_TRACE(toString(state));
+    RigIn rig(state);
+    const RequestReply refused = rig.confirm(31.7 * kDegree);
+    EXPECT_FALSE(refused.accepted);
+    EXPECT_EQ(refused.text,
+              "confirm-swivel refused: a job is in progress that needs 31.769 deg; allowed: that angle, or to end the "
+              "job first");
+    EXPECT_EQ(rig.last().swivel.angle, kPaperSwivel);
+    EXPECT_TRUE(rig.confirm(kPaperSwivel).accepted);
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(, SwivelInState,
-                         testing::Values(S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
-                                         S::kRetracted, S::kResuming, S::kCanceling),
-                         stateName);
 
 TEST(Swivel, MayBeTurnedOnceTheJobHasEnded) {
-  Rig<FakeDrive> rig;
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kCanceling));
+  RigIn rig(S::kCanceling);
   rig.runUntil(S::kReady);
   EXPECT_TRUE(rig.confirm(0.1).accepted);
-  rig.stream.emplace(rig.paperStream());
-  EXPECT_FALSE(rig.askToStart(*rig.stream).accepted);
+  EXPECT_FALSE(rig.askToStartPaper().accepted);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// With an encoder
 
 TEST(MeasuredSwivel, IsNotConfirmed) {
   Rig<FakeDrive> rig;
@@ -169,7 +134,7 @@ TEST(MeasuredSwivel, IsNotConfirmed) {
 TEST(MeasuredSwivel, AtAnotherAngleIsAskedForAndNotToBeConfirmed) {
   Unconfirmed rig;
   measure(rig, 32 * kDegree);
-  EXPECT_EQ(rig.startPaperJob().text,
+  EXPECT_EQ(rig.askToStartPaper().text,
             "start refused: process.setup.swivel_deg = 31.769 deg: the swivel stands at 32 deg; allowed: within 0.05 "
             "deg of that; set it to 31.769 deg");
 }
@@ -185,20 +150,6 @@ TEST(MeasuredSwivel, ThatIsLostIsUnknownEvenIfItWasConfirmedBefore) {
     EXPECT_TRUE(std::isnan(rig.cycle().swivel.angle));
     EXPECT_FALSE(rig.last().swivel.measured);
   }
-}
-
-TEST(MeasuredSwivel, ThatIsLostAmidAJobLiftsTheWheelUntilAnOperatorConfirmsIt) {
-  Rig<FakeDrive> rig;
-  measure(rig, kPaperSwivel);
-  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRunning));
-  measure(rig, kNan);
-  rig.runUntil(S::kRetracted);
-  EXPECT_EQ(rig.last().interlock, Interlock::kSwivel);
-  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the swivel is not at the job's angle");
-  ASSERT_TRUE(rig.confirm(kPaperSwivel).accepted);
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
 }
 
 /// A clamp that gives way slowly, under the eyes of an encoder with noise.
@@ -231,9 +182,7 @@ TEST(MeasuredSwivel, ThatDriftsAmidAJobHoldsItOnceAtTheToleranceAndLiftsTheWheel
   EXPECT_FALSE(rig.confirm(kPaperSwivel).accepted) << "the encoder counts";
   measure(rig, kPaperSwivel);
   rig.cycle();
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  expectCompleted(rig);
+  expectResumedAndCompleted(rig);
 }
 
 }  // namespace test_swivel

@@ -1,6 +1,4 @@
-#include "control/checks.h"
 #include "control/paper_job.h"
-#include "control/rig.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/job_plan.h"
@@ -64,7 +62,6 @@ std::vector<CycleSample> inWork(const std::vector<CycleSample>& log, const Axes&
 RC_GTEST_PROP(WorkOffsets, SetpointsAreThePlansAndCommandsTheMachines, ()) {
   const Axes offset = anyOffset();
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   SetpointStream stream = streamAt(offset, rig.last().command);
   const std::vector<Setpoint> planned = allSetpoints(stream);
@@ -87,7 +84,6 @@ RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
   // Where the stroke ends, by a sum that is rounded as badly as any.
   limits.max_position[kX] = kStrokeTo + offset[kX];
   Rig<FakeDrive> rig(config);
-  rig.cycle();
   rig.enable();
   const JobPlan plan = planJob(paper(), config.machine, {rig.last().command, {}, offset});
   RC_ASSERT(plan.good());
@@ -125,7 +121,6 @@ RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesF
 
 TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   const Axes offset(0.28, 0, 0, 0);
   SetpointStream stream = streamAt(offset, rig.last().command);
@@ -163,7 +158,6 @@ RC_GTEST_PROP(WorkOffsets, AJobStartsWhereItWasPlannedFromAndNowhereElse, ()) {
   const Axes at(between(-0.1, 0.3), between(0, 0.15), between(-0.05, 0.1), between(-120, 120));
   Rig<FakeDrive> rig;
   rig.drive.place(at);
-  rig.cycle();
   rig.enable();
   Axes elsewhere = at;
   elsewhere[*rc::gen::inRange(0, 4)] += 1e-9;
@@ -178,16 +172,12 @@ RC_GTEST_PROP(WorkOffsets, AJobStartsWhereItWasPlannedFromAndNowhereElse, ()) {
   RC_ASSERT(((rig.last().command - at).abs() <= kUlp * (offset.abs() + at.abs())).all());
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Heights
-
 const Axes kOffset(0.1, 0.0375, -0.02, 7);
 
 /// In the middle of the paper's stroke.
 class InAShiftedStroke : public testing::Test {
  protected:
   void SetUp() override {
-    rig_.cycle();
     rig_.enable();
     rig_.stream.emplace(streamAt(kOffset, rig_.last().command));
     ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
@@ -195,15 +185,6 @@ class InAShiftedStroke : public testing::Test {
     rig_.run(1000);
     ASSERT_EQ(rig_.last().state, S::kRunning);
     ASSERT_TRUE(rig_.last().wheel_in_work);
-  }
-
-  void breakDown() {
-    rig_.drive.on_read = [](FakeDrive& d) { d.status.fault = true; };
-    rig_.cycle();
-    rig_.drive.on_read = nullptr;
-    rig_.drive.status.fault = false;
-    rig_.cycle();
-    ASSERT_EQ(rig_.last().state, S::kFault);
   }
 
   Rig<FakeDrive> rig_;
@@ -234,7 +215,6 @@ TEST_F(InAShiftedStroke, RetractJogAndResume) {
 RC_GTEST_PROP(WorkOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack, ()) {
   const Axes offset = anyOffset();
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   rig.stream.emplace(streamAt(offset, rig.last().command));
   rig.start(*rig.stream);
@@ -266,7 +246,7 @@ RC_GTEST_PROP(WorkOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack, ()) {
     RC_ASSERT(!rig.last().wheel_in_work);
     rig.run(100);
   }
-  rig.log.erase(rig.log.begin(), rig.log.end() - 1);
+  rig.keepLast();
   RC_ASSERT(rig.ask(E::kResume).accepted);
   rig.runToEnd();
   RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
@@ -281,35 +261,32 @@ TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
 }
 
 TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
-  ASSERT_NO_FATAL_FAILURE(breakDown());
-  ASSERT_TRUE(rig_.ask(E::kReset).accepted);
-  rig_.enable();
+  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
+  ASSERT_NO_FATAL_FAILURE(rig_.recover());
   const Axes from = rig_.last().command;
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  rig_.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(rig_.lift());
   EXPECT_TRUE(sameBits(rig_.last().command, Axes(from[kX], rig_.loop->status().wheel.clear_y, from[kZ], from[kA])));
   EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(rig_.last().wheel_in_work);
 }
 
 TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
-  ASSERT_NO_FATAL_FAILURE(breakDown());
+  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
   const Wheel wheel = rig_.loop->status().wheel;
   EXPECT_NEAR(wheel.lift, kLift, 1e-15);
   Rig<FakeDrive> next(machineConfig(), wheel);
+  EXPECT_TRUE(next.loop->status().wheel.in_work) << "before the first cycle";
   next.drive.place(rig_.last().position);
   next.cycle();
   EXPECT_TRUE(next.last().wheel_in_work);
   next.enable();
-  ASSERT_TRUE(next.ask(E::kLift).accepted);
-  next.runUntil(S::kReady);
+  ASSERT_NO_FATAL_FAILURE(next.lift());
   EXPECT_NEAR(next.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
   EXPECT_FALSE(next.last().wheel_in_work);
 }
 
 TEST(WorkOffsets, TheNextJobMayHaveOthers) {
   Rig<FakeDrive> rig;
-  rig.cycle();
   rig.enable();
   for (const Axes& offset : {kOffset, Axes(Axes::Zero()), Axes(-0.05, -0.01, 0.03, -70)}) {
     const std::size_t before = rig.log.size();

@@ -15,22 +15,15 @@ class Bench {
       : cycle_{ros::Time(1), ros::Duration(period), ros::Duration(period)} {
     drive.init(model, equipment);
     read();
-    command_.position = feedback_.position;
+    asked.position = feedback_.position;
   }
 
-  void command(int axis, double position) { command_.position[static_cast<std::size_t>(axis)] = position; }
-  /// All but the positions.
-  void set(DriveCommand command) {
-    command.position = command_.position;
-    command_ = command;
-  }
-  void set(bool enable, bool reset = false) { set(DriveCommand{enable, reset}); }
+  void command(int axis, double position) { asked.position[static_cast<std::size_t>(axis)] = position; }
   void read() { drive.read(cycle_, feedback_); }
-  void write() { drive.write(cycle_, command_); }
 
   void run(int cycles) {
     for (int i = 0; i < cycles; ++i) {
-      write();
+      drive.write(cycle_, asked);
       read();
     }
   }
@@ -41,11 +34,11 @@ class Bench {
   const DriveStatus& status() const { return feedback_.status; }
 
   SimulatedDrive drive;
+  DriveCommand asked;  ///< in every cycle
 
  private:
   DriveCycle cycle_;
   DriveFeedback feedback_;
-  DriveCommand command_;
 };
 
 /// All axes at zero, with the same lag and a fine encoder.
@@ -59,7 +52,7 @@ inline SimulatedDrive::Model plainModel(double time_constant = 0.002, double cou
 class MovingBench : public Bench {
  public:
   MovingBench() : Bench(plainModel()) {
-    set(true);
+    asked.enable = true;
     for (int axis = 0; axis < kAxisCount; ++axis) command(axis, 0.01 * (axis + 1));
     run(3);
   }

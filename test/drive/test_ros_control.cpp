@@ -19,9 +19,6 @@ namespace test_ros_control {
 using Clock = SignalInput::Clock;
 using std::chrono::milliseconds;
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Signals
-
 const Clock::time_point kNow = Clock::time_point(std::chrono::hours(100));
 
 TEST(SignalInput, IsWhatWasStated) {
@@ -53,9 +50,6 @@ TEST(SignalInput, WithoutATimeoutALastMessageStays) {
     EXPECT_EQ(signal.at(kNow + std::chrono::hours(1000)), !safe);
   }
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Commands
 
 /// Another program: it takes what it is sent, refuses it, throws, or hangs until it is no longer wanted.
 class Receiver {
@@ -188,9 +182,6 @@ TEST(TriggerOutput, IsGivenUp) {
   EXPECT_TRUE(output.hasFailed());
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Switching
-
 struct Hardware {
   std::string calls;
   ModeSwitch::Result result = ModeSwitch::Result::kDone;
@@ -248,9 +239,6 @@ TEST(ModeSwitch, ThatFailsIsNotTriedAgainUntilItWasTakenBack) {
   EXPECT_TRUE(mode.isOn());
   EXPECT_EQ(hardware.calls, "on result off on result ");
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Parameters
 
 class Parameters : public testing::Test {
  protected:

@@ -1,4 +1,3 @@
-#include "control/fixtures.h"
 #include "drive/simulated_bench.h"
 
 #include <cmath>
@@ -8,136 +7,82 @@
 namespace grinder::test_support {
 namespace test_simulated_homing {
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Spindle and coolant
-
-DriveCommand spindleOn() {
-  DriveCommand command;
-  command.spindle = true;
-  return command;
-}
-
-DriveCommand coolantOn() {
-  DriveCommand command;
-  command.coolant = true;
-  return command;
-}
-
-/// With a spindle that reaches its speed in 7.5 periods.
+/// With a spindle that reaches its speed in 7.5 periods, and turns.
 class SpindleBench : public Bench {
  public:
-  SpindleBench() : Bench(plainModel(), 0.001, {true, 0.0075}) {}
-};
-
-TEST(SimulatedDriveSpindle, RunsUpInItsTime) {
-  SpindleBench bench;
-  bench.set(spindleOn());
-  for (int i = 1; i <= 7; ++i) {
-    bench.run(1);
-    EXPECT_FALSE(bench.status().spindle_at_speed) << "after " << i << " periods";
+  SpindleBench() : Bench(plainModel(), 0.001, {true, 0.0075}) {
+    expectToRunUp();
+    run(50);
+    EXPECT_TRUE(status().spindle_at_speed);
   }
-  bench.run(1);
-  EXPECT_TRUE(bench.status().spindle_at_speed);
-  bench.run(100);
-  EXPECT_TRUE(bench.status().spindle_at_speed);
-}
-
-TEST(SimulatedDriveSpindle, IsNotAtSpeedOnceItIsSwitchedOff) {
-  SpindleBench bench;
-  bench.set(spindleOn());
-  bench.run(50);
-  bench.set(DriveCommand{});
-  bench.run(1);
-  EXPECT_FALSE(bench.status().spindle_at_speed);
-}
+  /// From rest.
+  void expectToRunUp() {
+    asked.spindle = true;
+    for (int i = 1; i <= 8; ++i) {
+      run(1);
+      EXPECT_EQ(status().spindle_at_speed, i == 8) << "after " << i << " periods";
+    }
+  }
+};
 
 TEST(SimulatedDriveSpindle, RunsDownAsItRanUp) {
   SpindleBench bench;
-  bench.set(spindleOn());
-  bench.run(50);
-  bench.set(DriveCommand{});
-  bench.run(3);
+  bench.asked.spindle = false;
+  bench.run(1);
+  EXPECT_FALSE(bench.status().spindle_at_speed);
+  bench.run(2);
   // Three periods down are three periods up again.
-  bench.set(spindleOn());
+  bench.asked.spindle = true;
   bench.run(2);
   EXPECT_FALSE(bench.status().spindle_at_speed);
   bench.run(2);
   EXPECT_TRUE(bench.status().spindle_at_speed);
-}
-
-TEST(SimulatedDriveSpindle, WithoutATimeIsThereAtOnceAndGoneAtOnce) {
-  Bench bench(plainModel());
-  bench.run(5);
-  EXPECT_FALSE(bench.status().spindle_at_speed);
-  bench.set(spindleOn());
-  bench.run(1);
-  EXPECT_TRUE(bench.status().spindle_at_speed);
-  bench.set(DriveCommand{});
-  bench.run(1);
-  EXPECT_FALSE(bench.status().spindle_at_speed);
 }
 
 TEST(SimulatedDriveSpindle, ThatIsLostRunsUpAnew) {
   SpindleBench bench;
-  bench.set(spindleOn());
-  bench.run(50);
   bench.drive.inject(Fault::kSpindleLost);
   bench.run(20);
   EXPECT_FALSE(bench.status().spindle_at_speed);
   bench.drive.inject(Fault::kNone);
-  bench.run(7);
-  EXPECT_FALSE(bench.status().spindle_at_speed);
-  bench.run(1);
-  EXPECT_TRUE(bench.status().spindle_at_speed);
+  bench.expectToRunUp();
 }
 
-TEST(SimulatedDriveCoolant, FlowsWhileItIsAskedFor) {
+TEST(SimulatedDriveSpindle, AndCoolantWithoutATimeAreThereAtOnceAndGoneAtOnce) {
   Bench bench(plainModel());
-  bench.run(1);
-  EXPECT_FALSE(bench.status().coolant_on);
-  bench.set(coolantOn());
-  bench.run(1);
-  EXPECT_TRUE(bench.status().coolant_on);
-  EXPECT_FALSE(bench.status().spindle_at_speed) << "the one is not the other";
-  bench.set(DriveCommand{});
-  bench.run(1);
-  EXPECT_FALSE(bench.status().coolant_on);
-}
-
-TEST(SimulatedDriveCoolant, ThatIsLostFlowsAgainWhenItIsTakenBack) {
-  Bench bench(plainModel());
-  bench.set(coolantOn());
+  const auto expectAfterACycle = [&](bool spindle, bool coolant) {
+    bench.run(1);
+    EXPECT_EQ(bench.status().spindle_at_speed, spindle);
+    EXPECT_EQ(bench.status().coolant_on, coolant);
+  };
+  bench.run(5);
+  expectAfterACycle(false, false);
+  bench.asked.spindle = true;
+  expectAfterACycle(true, false);
+  bench.asked.spindle = false;
+  bench.asked.coolant = true;
+  expectAfterACycle(false, true);
   bench.drive.inject(Fault::kCoolantLost);
-  bench.run(3);
-  EXPECT_FALSE(bench.status().coolant_on);
+  expectAfterACycle(false, false);
   bench.drive.inject(Fault::kNone);
-  bench.run(1);
-  EXPECT_TRUE(bench.status().coolant_on);
+  expectAfterACycle(false, true);
+  bench.asked.coolant = false;
+  expectAfterACycle(false, false);
 }
 
-TEST(SimulatedDriveSwivel, IsNotMeasuredUnlessItHasAnEncoder) {
-  Bench bench(plainModel());
-  bench.run(2);
-  EXPECT_TRUE(std::isnan(bench.status().swivel));
-  bench.drive.inject(Fault::kSwivelSlipped);
-  bench.run(1);
-  EXPECT_TRUE(std::isnan(bench.status().swivel));
+TEST(SimulatedDriveSwivel, ThatSlipsReadsMoreUntilItIsTakenBackAndNothingWithoutAnEncoder) {
+  Bench measured(plainModel(), 0.001, {true, 0, -0.4});
+  Bench bare(plainModel());
+  for (const auto& [fault, reading] :
+       {std::pair(Fault::kNone, -0.4), {Fault::kSwivelSlipped, -0.398}, {Fault::kNone, -0.4}}) {
+    measured.drive.inject(fault);
+    measured.run(3);
+    EXPECT_DOUBLE_EQ(measured.status().swivel, reading);
+    bare.drive.inject(fault);
+    bare.run(1);
+    EXPECT_TRUE(std::isnan(bare.status().swivel));
+  }
 }
-
-TEST(SimulatedDriveSwivel, ThatSlipsReadsMoreUntilItIsTakenBack) {
-  Bench bench(plainModel(), 0.001, {true, 0, -0.4});
-  bench.run(1);
-  EXPECT_EQ(bench.status().swivel, -0.4);
-  bench.drive.inject(Fault::kSwivelSlipped);
-  bench.run(3);
-  EXPECT_DOUBLE_EQ(bench.status().swivel, -0.398);
-  bench.drive.inject(Fault::kNone);
-  bench.run(1);
-  EXPECT_EQ(bench.status().swivel, -0.4);
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Reference and homing
 
 /// Every axis 10 mm and more from home, and as many periods as millimetres to go.
 SimulatedDrive::Model farModel() {
@@ -152,35 +97,28 @@ SimulatedDrive::Model farModel() {
 
 class HomingBench : public Bench {
  public:
-  explicit HomingBench(bool absolute = false) : Bench(farModel(), 0.001, {absolute, 0}) {
-    set(DriveCommand{true, false});
+  explicit HomingBench(bool absolute = false, const SimulatedDrive::Model& model = farModel())
+      : Bench(model, 0.001, {absolute, 0}) {
+    asked.enable = true;
     run(2);
   }
 
-  void home(bool on = true) {
-    DriveCommand command;
-    command.enable = true;
-    command.home = on;
-    set(command);
+  void home(int cycles) {
+    asked.home = true;
+    run(cycles);
+  }
+  void expectAtHome() const {
+    EXPECT_FALSE(status().homing);
+    EXPECT_TRUE(status().homed);
+    EXPECT_TRUE((positions() == Axes(0.5, 1.5, 2.5, 3.5)).all()) << positions().transpose();
   }
 };
 
-TEST(SimulatedDriveHoming, IncrementalEncodersReadZeroAndKnowNoReference) {
+TEST(SimulatedDriveHoming, IncrementalEncodersCountFromWhereTheAxesStoodAndKnowNoReference) {
   HomingBench bench;
   EXPECT_FALSE(bench.status().homed);
   EXPECT_FALSE(bench.status().homing);
   EXPECT_TRUE((bench.positions() == 0).all()) << bench.positions().transpose();
-}
-
-TEST(SimulatedDriveHoming, AbsoluteEncodersReadWhereTheAxesStand) {
-  HomingBench bench(true);
-  EXPECT_TRUE(bench.status().homed);
-  EXPECT_NEAR(bench.position(kX), 0.513, 1e-12);
-  EXPECT_NEAR(bench.position(kY), 1.488, 1e-12);
-}
-
-TEST(SimulatedDriveHoming, IncrementalEncodersCountFromWhereTheAxesStood) {
-  HomingBench bench;
   bench.command(kZ, 0.004);
   bench.run(100);
   EXPECT_NEAR(bench.position(kZ), 0.004, 1e-12);
@@ -188,8 +126,7 @@ TEST(SimulatedDriveHoming, IncrementalEncodersCountFromWhereTheAxesStood) {
 
 TEST(SimulatedDriveHoming, GoesHomeWithTheHomingVelocity) {
   HomingBench bench;
-  bench.home();
-  bench.run(6);
+  bench.home(6);
   EXPECT_TRUE(bench.status().homing);
   EXPECT_FALSE(bench.status().homed);
   // The first reading only shows that it has begun.
@@ -201,8 +138,7 @@ TEST(SimulatedDriveHoming, GoesHomeWithTheHomingVelocity) {
 
 TEST(SimulatedDriveHoming, TakesOneAxisAfterTheOtherAndFirstTheWheelFromTheWork) {
   HomingBench bench;
-  bench.home();
-  bench.run(1);
+  bench.home(1);
   std::vector<int> order;
   Axes last = bench.positions();
   while (bench.status().homing) {
@@ -216,47 +152,17 @@ TEST(SimulatedDriveHoming, TakesOneAxisAfterTheOtherAndFirstTheWheelFromTheWork)
   EXPECT_EQ(order, (std::vector<int>{kY, kX, kZ, kA}));
 }
 
-TEST(SimulatedDriveHoming, EndsAtHomeWhenTheLastAxisIsThere) {
+TEST(SimulatedDriveHoming, EndsAtHomeWhateverIsCommandedAndFollowsTheCommandsFromThere) {
   HomingBench bench;
-  bench.home();
-  bench.run(46);
+  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, 9);
+  bench.home(46);
   EXPECT_TRUE(bench.status().homing) << "it has 46 periods to go";
   EXPECT_NEAR(bench.position(kX), -0.013, 1e-12) << "X is there, and waits";
   bench.run(6);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_TRUE(bench.status().homed);
-  EXPECT_TRUE((bench.positions() == Axes(0.5, 1.5, 2.5, 3.5)).all()) << bench.positions().transpose();
-}
-
-TEST(SimulatedDriveHoming, ShowsInOneReadingHoweverShortTheWay) {
-  SimulatedDrive::Model model = farModel();
-  for (auto& axis : model) axis.start_position = axis.home_position;
-  Bench bench(model, 0.001, {false, 0});
-  DriveCommand command;
-  command.enable = command.home = true;
-  bench.set(command);
-  bench.run(1);
-  EXPECT_TRUE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
-  bench.run(2);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_TRUE(bench.status().homed);
-}
-
-TEST(SimulatedDriveHoming, DoesNotFollowCommandsMeanwhileNorBeginAnewByItself) {
-  HomingBench bench;
-  bench.home();
-  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, 9);
-  bench.run(80);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_TRUE((bench.positions() == Axes(0.5, 1.5, 2.5, 3.5)).all()) << bench.positions().transpose();
-}
-
-TEST(SimulatedDriveHoming, CommandsReferToTheReferenceAfterwards) {
-  HomingBench bench;
-  bench.home();
-  bench.run(50);
-  bench.home(false);
+  bench.expectAtHome();
+  bench.run(30);
+  bench.expectAtHome();
+  bench.asked.home = false;
   bench.command(kX, 0.45);
   bench.command(kY, 1.5);
   bench.run(100);
@@ -264,12 +170,33 @@ TEST(SimulatedDriveHoming, CommandsReferToTheReferenceAfterwards) {
   EXPECT_NEAR(bench.position(kY), 1.5, 1e-12);
 }
 
+TEST(SimulatedDriveHoming, ShowsInOneReadingHoweverShortTheWay) {
+  SimulatedDrive::Model model = farModel();
+  for (auto& axis : model) axis.start_position = axis.home_position;
+  HomingBench bench(false, model);
+  bench.home(1);
+  EXPECT_TRUE(bench.status().homing);
+  EXPECT_FALSE(bench.status().homed);
+  bench.run(2);
+  bench.expectAtHome();
+}
+
+TEST(SimulatedDriveHoming, LosesTheReferenceThatItHadUntilItHasItAnew) {
+  HomingBench bench(true);
+  EXPECT_TRUE(bench.status().homed);
+  EXPECT_NEAR(bench.position(kX), 0.513, 1e-12);
+  EXPECT_NEAR(bench.position(kY), 1.488, 1e-12);
+  bench.home(5);
+  EXPECT_FALSE(bench.status().homed);
+  bench.run(50);
+  EXPECT_TRUE(bench.status().homed);
+}
+
 TEST(SimulatedDriveHoming, EndsUnhomedWhenTheCommandIsTakenBack) {
   HomingBench bench;
-  bench.home();
-  bench.run(5);
+  bench.home(5);
   for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, bench.position(axis));
-  bench.home(false);
+  bench.asked.home = false;
   const Axes before = bench.positions();
   bench.run(20);
   EXPECT_FALSE(bench.status().homing);
@@ -277,30 +204,17 @@ TEST(SimulatedDriveHoming, EndsUnhomedWhenTheCommandIsTakenBack) {
   EXPECT_TRUE(((bench.positions() - before).abs() < 1e-12).all());
 }
 
-TEST(SimulatedDriveHoming, LosesTheReferenceThatItHadUntilItHasItAnew) {
-  HomingBench bench(true);
-  bench.home();
-  bench.run(5);
-  EXPECT_FALSE(bench.status().homed);
-  bench.run(50);
-  EXPECT_TRUE(bench.status().homed);
-}
-
-TEST(SimulatedDriveHoming, NeedsPower) {
+TEST(SimulatedDriveHoming, NeedsPowerEndsWithItAndDoesNotGoOnWithIt) {
   HomingBench bench;
-  DriveCommand command;
-  command.home = true;
-  bench.set(command);
-  bench.run(50);
+  bench.asked.enable = false;
+  bench.home(50);
   EXPECT_FALSE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
   EXPECT_TRUE((bench.positions() == 0).all());
-}
-
-TEST(SimulatedDriveHoming, EndsWithThePowerAndDoesNotGoOnWithIt) {
-  HomingBench bench;
-  bench.home();
-  bench.run(5);
+  bench.asked.home = false;
+  bench.asked.enable = true;
+  bench.run(1);
+  bench.home(5);
+  EXPECT_TRUE(bench.status().homing);
   bench.drive.inject(Fault::kEmergencyStop);
   bench.run(1);
   const Axes before = bench.positions();
@@ -321,8 +235,7 @@ TEST(SimulatedDriveFault, ALostReferenceStaysLostUntilHomed) {
   bench.drive.inject(Fault::kNone);
   bench.run(20);
   EXPECT_FALSE(bench.status().homed);
-  bench.home();
-  bench.run(80);
+  bench.home(80);
   EXPECT_TRUE(bench.status().homed);
 }
 

@@ -22,7 +22,7 @@ SimulatedDrive::Blank blank() {
 bool touches(const SimulatedDrive::Blank& blank, const Axes& at) {
   Bench bench(plainModel(0));
   bench.drive.clamp(blank);
-  bench.set(true);
+  bench.asked.enable = true;
   for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, at[axis]);
   bench.run(3);
   return bench.status().probe_contact;
@@ -88,7 +88,7 @@ TEST(SimulatedProbe, ThatFlickersTouchesBeforeTheSurfaceToo) {
   Bench bench(plainModel(0));
   bench.drive.clamp(blank());
   bench.drive.inject(SimulatedDrive::Fault::kProbeFlickers);
-  bench.set(true);
+  bench.asked.enable = true;
   const auto touches_at = [&](double x) {
     bench.command(kX, x);
     bench.run(1);

@@ -43,11 +43,19 @@ class TestShop(CommandLine):
 
     def test_all_are_in_one_list_by_time_and_what_is_broken_is_named(self):
         self.folders.append(self.path('none'))
-        hours, said = self.hours(2)
-        self.assertEqual(hours, [7, 8, 9, 10])
-        broken, missing = sorted(said.splitlines(), reverse=True)
-        self.assertIn(self.path('old/20261122T060000.000Z.json') + ': is no record of a job: it is cut off', broken)
-        self.assertIn(self.path('none') + ': cannot be read: No such file or directory', missing)
+        self.write('old/notes.json', 'not ours')
+        with open(self.path('old/20261122T070000.000Z.json')) as file:
+            other = file.read().replace('"cutter"', '"knife"')
+        for text, reason in (('{"record": 1, "machine": {', 'is no record of a job: it is cut off'), ('', 'is no record of a job: '),
+                             ('[]', 'is no record of a job: '), (other, 'is no record of a job: '),
+                             ('{"record": 2}', 'is no record of a job that this program knows; allowed: "record": 1')):
+            with self.subTest(text[:30]):
+                self.keep('old', 6, text)
+                hours, said = self.hours(2)
+                self.assertEqual(hours, [7, 8, 9, 10])
+                broken, missing = sorted(said.splitlines(), reverse=True)
+                self.assertIn(self.path('old/20261122T060000.000Z.json') + ': ' + reason, broken)
+                self.assertIn(self.path('none') + ': cannot be read: No such file or directory', missing)
 
     def test_table_says_whose_it_is(self):
         lines = self.grind(2, 'history', '--from', *self.folders).stdout.splitlines()

@@ -141,13 +141,6 @@ class TestMachine(CommandLine):
         with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
             self.assertRegex(self.grind(2, 'run', job).stderr, re.escape(missing) + r'secondary \([-0-9]{10} [:0-9]{8}\)\n')
 
-    def test_home(self):
-        self.assertEqual(self.grind(0, 'home').stdout, 'homed\n')
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^homed +yes$')
-        home = rospy.get_param('/grinder/hardware')
-        for joint, position in zip(gc.JOINTS, grinder().wait_rest()):
-            self.assertAlmostEqual(position, home[joint]['home_position'], delta=1e-6)
-
     def test_override(self):
         self.addCleanup(grinder().set_feed_override, 1)
         for percent in ('50', '0', '120', '12.5'):

@@ -263,29 +263,6 @@ class TestCommand(Kept):
             self.assertRegex(last[1], text)
             self.assertRegex(last[2], '^FAILED: the job ended as canceled')
 
-    def test_what_cannot_be_read_is_named_and_the_rest_is_listed(self):
-        folder = os.path.join(self.home, 'other')
-        shutil.copytree(self.folder, folder)
-        with open(os.path.join(folder, self.first['file'])) as file:
-            whole = file.read()
-        broken = {'20200101T000000.000Z.json': whole[:len(whole) // 2], '20200101T000000.001Z.json': '',
-                  '20200101T000000.002Z.json': '{"record": 2}', '20200101T000000.003Z.json': '[]',
-                  '20200101T000000.004Z.json': whole.replace('"cutter"', '"knife"')}
-        for name, text in broken.items():
-            with open(os.path.join(folder, name), 'w') as file:
-                file.write(text)
-        with open(os.path.join(folder, 'notes.json'), 'w') as file:
-            file.write('not ours')
-        done = self.grind('--from', folder)
-        self.assertEqual(done.returncode, 2)
-        self.assertEqual(done.stdout, self.grind().stdout)
-        lines = done.stderr.splitlines()
-        for name in broken:
-            self.assertTrue(any(os.path.join(folder, name) in line for line in lines), (name, lines))
-        self.assertNotIn('notes', done.stderr)
-        done = self.grind('--from', folder, '--json')
-        self.assertEqual((done.returncode, len(json.loads(done.stdout))), (2, 2))
-
     def test_empty_folder(self):
         folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, folder)

@@ -36,8 +36,9 @@ class TestHoming(gc.OwnNode):
         self.assertEqual(set(g.positions_over(0.2)), {(0, 0, 0, 0)}, 'it does not home by itself')
 
         home = self.grind('home')
-        self.assertEqual((home.returncode, home.stderr), (0, ''))
+        self.assertEqual((home.returncode, home.stdout, home.stderr), (0, 'homed\n', ''))
         self.assertTrue(g.fresh_state().homed)
+        self.assertRegex(self.grind('status').stdout, r'(?m)^homed +yes$')
         for joint, position in zip(gc.JOINTS, g.wait_rest()):
             self.assertAlmostEqual(position, hardware[joint]['home_position'], delta=1e-6)
         run = g.run(gc.SHORT)

@@ -54,7 +54,16 @@ def add_sub_test(result, _test, sub_test, error):
         result.addFailure(sub_test, (AssertionError, AssertionError('%s: %s' % (sub_test.id(), error[1])), error[2]))
 
 
+def add_error(result, test, error):
+    """rosunit counts what fails in setUpClass, which is no test, and would write nothing of it."""
+    unittest.TestResult.addError(result, test, error)
+    result._error = error
+    if not isinstance(test, unittest.TestCase):
+        result._tests.append(rosunit.xmlrunner._TestInfo.create_error(test, 0, error))
+
+
 rosunit.xmlrunner._XMLTestResult.addSubTest = add_sub_test
+rosunit.xmlrunner._XMLTestResult.addError = add_error
 
 
 def goal_of(job, **fields):

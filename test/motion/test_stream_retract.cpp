@@ -315,7 +315,10 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
 TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
   PaperStroke ride(10e-3);
   SetpointStream& stream = ride.stream();
-  ride.holdAndRetract();
+  stream.hold();
+  ride.runToRest();
+  stream.retract();
+  ride.runToRest();
   const Axes lifted = ride.last().position;
   for (int cycles = 50; cycles < 400; cycles += 50) {
     Setpoint last = ride.last();

@@ -31,15 +31,6 @@ std::string errorOf(const CutterGeometry& geometry) {
   return "";
 }
 
-TEST(ConicalCutter, IsThePapers) {
-  const ConicalCutter cutter(paperCutter());
-  EXPECT_NEAR(cutter.radius(0), 5e-3, 1e-18);
-  EXPECT_NEAR(cutter.radius(30e-3), 7.62466e-3, 5e-9);  // 5 + 30 * 0.0874887
-  EXPECT_NEAR(cutter.y(30e-3), 2.62466e-3, 5e-9);
-  EXPECT_NEAR(cutter.z(30e-3), 0.365282e-3, 5e-9);       // times sin 8 deg = 0.139173
-  EXPECT_NEAR(cutter.edgePerTravel(), 1.1580102, 5e-8);  // sqrt(1 + 1/3 + 0.0076543)
-}
-
 RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
   const CutterGeometry g = *test_support::cutterGeometry();
   const ConicalCutter cutter(g);

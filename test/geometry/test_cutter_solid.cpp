@@ -58,20 +58,6 @@ TEST(CutterSolid, IsClosedAndHasTheVolumeOfTheSections) {
   }
 }
 
-TEST(CutterSolid, OfAnySpiralHasTheVolumeOfTheSections) {
-  for (const double spiral : {-60.0, 0.0, 45.0}) {
-    SCOPED_TRACE(spiral);
-    Case c = cylinder();
-    c.spiral = spiral;
-    c.swivel = spiral;
-    const GroundCutter ground = c.ground(3);
-    const CutterSolid solid = cutterSolid(ground, {0, 0.02});
-    EXPECT_EQ(openEdges(solid), 0u);
-    const double expected = blankVolume(ground.cutter(), 0, 0.02) - ground.volumeRemoved(0, 0.02, 10);
-    EXPECT_NEAR(solid.volume(), expected, 1e-3 * expected);
-  }
-}
-
 TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
   Case c = cylinder();
   c.to = 15;

@@ -1,4 +1,4 @@
-// The ground cutter against closed forms, an explicit edge circle, and membership by brute force.
+// The ground cutter against closed forms, and membership by brute force.
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_cutter.h"
@@ -19,35 +19,6 @@ using test_support::faceFor;
 using units::kDegree;
 using units::kMillimetre;
 constexpr double kMicrodegree = 1e-6 * kDegree;
-
-// Documented, each computed by two other programs.
-TEST(GroundCutter, ACylinderSwivelledToItsSpiralAngleHasThriceTheRake) {
-  Case c;
-  c.face = faceFor(10, 8);
-  EXPECT_NEAR(c.rakeAt(20), 25.420, 0.001);
-  c.swivel = 38;
-  EXPECT_NEAR(c.rakeAt(20), 7.886, 0.001);
-}
-
-TEST(GroundCutter, ThePapersCutterKeepsItsRakeInOneSetUp) {
-  Case c;
-  c.cone = 5;
-  c.width = 3;
-  c.from = -56;
-  c.swivel = 31.769;
-  c.face = 4.552;
-  EXPECT_NEAR(c.rakeAt(1), 7.999, 0.001);
-  EXPECT_NEAR(c.rakeAt(17), 8.019, 0.001);
-  EXPECT_NEAR(c.rakeAt(29), 7.999, 0.001);
-  const GroundCutter ground = c.ground();
-  EXPECT_NEAR(ground.section(0.002).core_radius, 3.72e-3, 5e-6);
-  EXPECT_NEAR(ground.section(0.015).core_radius, 4.86e-3, 5e-6);
-  EXPECT_NEAR(ground.section(0.028).core_radius, 6.01e-3, 5e-6);
-  c.swivel = 36;
-  c.face = faceFor(10, 8);
-  EXPECT_NEAR(c.rakeAt(1), 17.5, 0.05);
-  EXPECT_NEAR(c.rakeAt(29), 10.8, 0.05);
-}
 
 TEST(GroundCutter, AStraightFluteIsAsTheWheelIs) {
   std::mt19937 random(7);
@@ -88,39 +59,6 @@ TEST(GroundCutter, AtTheStrokesEndTheFloorIsTheWheelsCircle) {
     EXPECT_NEAR(s.core_radius, expected * kMillimetre, 2e-9);
     EXPECT_EQ(s.teeth[0].complete, beyond == 0) << beyond;
   }
-}
-
-TEST(GroundCutter, TheEdgeCircleFormsTheWallThatItTouchesLast) {
-  Case c;
-  c.face = faceFor(10, 8);
-  const double r = 5 * kMillimetre, rw = 50 * kMillimetre, half = 3 * kMillimetre;
-  const double sn = std::sin(c.swivel * kDegree), cs = std::cos(c.swivel * kDegree);
-  const double k = std::tan(30 * kDegree) / r;
-  const WheelSetup setup = c.setup();
-  const double centre_y = (5 - 1.6 + 50) * kMillimetre;
-  // Points of the upper edge, each moved along X by the screw to where it crosses the section: the maximum angle wins.
-  double greatest = -10;
-  for (int i = -200000; i <= 200000; ++i) {
-    const double angle = i * 2e-6;
-    const double along = rw * std::sin(angle);
-    const double dx = -half * sn + along * cs;
-    const double y = centre_y - rw * std::cos(angle);
-    const double z = setup.height + half * cs + along * sn;
-    if (y * y + z * z > r * r) continue;
-    // Only where the circle of the section's radius is met is the point on it; linear between neighbours.
-    const double angle_b = angle + 2e-6;
-    const double along_b = rw * std::sin(angle_b);
-    const double y_b = centre_y - rw * std::cos(angle_b), z_b = setup.height + half * cs + along_b * sn;
-    const double ra = std::hypot(y, z), rb = std::hypot(y_b, z_b);
-    if ((ra - r) * (rb - r) > 0) continue;
-    const double f = (r - ra) / (rb - ra);
-    const double phi = std::atan2(z, y) + f * (std::atan2(z_b, y_b) - std::atan2(z, y));
-    const double dx_at = dx + f * (along_b - along) * cs;
-    greatest = std::max(greatest, phi + k * (0.02 - dx_at));
-  }
-  const auto arc = c.sweep().arc(0.02, r);
-  ASSERT_TRUE(arc.has_value());
-  EXPECT_NEAR(arc->high, greatest, 1e-8);
 }
 
 /// Whether a point is in the wheel at a pose.

@@ -1,9 +1,6 @@
 // Outlines against areas, edges and walls that are measured in another way.
 
-#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/section_outline.h"
-#include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/job_file.h"
 
 #include "geometry/solid_cases.h"
 
@@ -46,16 +43,6 @@ TEST(SectionOutline, EnclosesWhatIsLeftOfTheBlank) {
       const double blank = units::kPi * section.radius * section.radius;
       EXPECT_NEAR(area(outlineOf(c.ground, x, grid)), blank - c.ground.areaRemoved(section), 3e-4 * blank);
     }
-  }
-}
-
-TEST(SectionOutline, OfARelievedToolEnclosesWhatIsLeftOfTheBlank) {
-  for (const char* file : {"jobs/end_mill_d10_t4.yaml", "jobs/taper_reamer_d6_t6.yaml"}) {
-    const GroundCutter ground = groundCutterOf(withLaws(ValidJob(readJobFile(file, {}, "secondary"))));
-    const OutlineGrid grid{ground.teeth().size(), 64, 200};
-    const GroundSection section = ground.section(8e-3);
-    const double blank = units::kPi * section.radius * section.radius;
-    EXPECT_NEAR(area(outlineOf(ground, 8e-3, grid)), blank - ground.areaRemoved(section), 3e-4 * blank) << file;
   }
 }
 

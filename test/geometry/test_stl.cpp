@@ -67,12 +67,5 @@ TEST(Stl, IsSoundToAnotherProgram) {
   }
 }
 
-TEST(Stl, OfACutterWithAShankIsSound) {
-  for (const double diameter : {12.0, 10.0, 8.0}) {
-    SCOPED_TRACE(diameter);
-    expectSound(cutterSolid(cylinder().ground(4), {0, 0.02, diameter * kMillimetre, 0.03}, {20, 32, 72}));
-  }
-}
-
 }  // namespace test_stl
 }  // namespace grinder

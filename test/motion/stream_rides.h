@@ -230,13 +230,6 @@ class PaperStroke {
     while (next()) {
     }
   }
-  /// Holds it, and lifts the wheel off the work.
-  void holdAndRetract() {
-    stream_.hold();
-    runToRest();
-    stream_.retract();
-    runToRest();
-  }
 
  private:
   SetpointStream stream_;

@@ -336,21 +336,6 @@ TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
   }
 }
 
-TEST(FeedSchedule, IsTheSameEitherWay) {
-  Machine machine = plainMachine();
-  machine.limits.max_velocity[kA] = 5;
-  FeedSchedule::Stroke back = plainStroke();
-  std::swap(back.from, back.to);
-  const FeedSchedule there(ConicalCutter(thinCutter()), plainStroke(), machine);
-  const FeedSchedule here(ConicalCutter(thinCutter()), back, machine);
-  EXPECT_NEAR(there.length(), here.length(), 1e-15);
-  for (int i = 0; i <= 20; ++i) {
-    const double s = there.length() * i / 20;
-    EXPECT_NEAR(there.x(s), here.x(here.length() - s), 1e-15);
-    EXPECT_NEAR(there.rate(s), here.rate(here.length() - s), 1e-12);
-  }
-}
-
 TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   const double x_speed = 0.01 / test_support::edgePerTravel(thinCutter());
   const struct {
@@ -372,19 +357,6 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   FeedSchedule::Stroke tight = plainStroke();
   tight.tolerance = 1e-9;
   EXPECT_EQ(causeOf(FeedSchedule(ConicalCutter(thinCutter()), tight, boundless())), "interpolation tolerance");
-}
-
-TEST(FeedSchedule, OfACylinderIsNotBentByA) {
-  CutterGeometry cylinder = thinCutter();
-  cylinder.cone_angle = 0;
-  Machine machine = boundless();
-  machine.limits.max_velocity[kA] = 2;
-  const FeedSchedule schedule(ConicalCutter(cylinder), plainStroke(), machine);
-  // k = 2000 tan 45 deg = 2000 rad/m: 1 mm/s
-  EXPECT_NEAR(schedule.limits().velocity, 1e-3, 1e-12);
-  EXPECT_NEAR(schedule.length(), 20.5e-3, 1e-15);
-  EXPECT_EQ(schedule.rate(0), 1);
-  EXPECT_EQ(causeOf(schedule), "axis A velocity");
 }
 
 TEST(FeedSchedule, KeepsTheOddPointsWithinTheTolerance) {

@@ -1,4 +1,3 @@
-#include "curve/reference.h"
 #include "plans.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -16,17 +14,6 @@ namespace grinder {
 namespace test_job_plan {
 
 using namespace test_support;
-
-TEST(JobPlan, OfThePapersJobIsGoodAndHasNoReasons) {
-  const JobPlan plan = planOf(paperJob());
-  EXPECT_TRUE(plan.good());
-  EXPECT_EQ(plan.fault, PlanFault::kNone);
-  EXPECT_TRUE(plan.reasons.empty());
-  ASSERT_NE(plan.program, nullptr);
-  EXPECT_EQ(causesOf(plan), "");
-  EXPECT_NEAR(plan.statistics.min_feed, 0.01, 1e-8);
-  EXPECT_NEAR(plan.statistics.max_feed, 0.01, 1e-8);
-}
 
 TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
   Machine machine = plainMachine();
@@ -192,28 +179,6 @@ TEST(JobPlan, NamesTheControlRateWhereTheApexIsTooNear) {
   EXPECT_TRUE(contains(textOf(plan), "at X = -2.985")) << textOf(plan);
 }
 
-TEST(JobPlan, RefusesAToleranceThatNoFeedMeets) {
-  GrindJob job = paperJob();
-  job.interpolation.tolerance = 1e-15;
-  const JobPlan plan = planOf(job);
-  EXPECT_FALSE(plan.good());
-  EXPECT_TRUE(contains(textOf(plan), "tolerance")) << textOf(plan);
-}
-
-TEST(JobPlan, RefusesPublishedWhereItDriftsOffTheTolerance) {
-  // The even points of `published` drift by half of the odd points' error, in rad; six times the radius makes it too
-  // much.
-  GrindJob job = steepJob();
-  job.process.feed = 0.1;
-  job.interpolation.tolerance = 0.2e-6;
-  const JobPlan published = planOf(job, strongMachine());
-  EXPECT_EQ(published.fault, PlanFault::kTolerance) << textOf(published);
-  EXPECT_EQ(published.reasons.size(), 1u);
-  EXPECT_TRUE(contains(textOf(published), "interpolation.tolerance_um = 0.2 um")) << textOf(published);
-  EXPECT_EQ(causesOf(published), "interpolation tolerance");
-  EXPECT_GT(published.statistics.max_deviation, 0.2e-6);
-}
-
 TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
   GrindJob job = steepJob();
   job.process.feed = 600 * units::kMillimetrePerMinute;
@@ -279,16 +244,6 @@ TEST(JobPlan, LetsTheRoundingPassOfALead) {
     const JobPlan plan = planOf(job, machine);
     EXPECT_TRUE(plan.good()) << i << ": " << textOf(plan);
   }
-}
-
-/// Whatever the job, the feed is chosen such that no axis is asked for more than it may do.
-RC_GTEST_PROP(JobPlanProperty, NeverRefusesAJobForAxisDynamics, ()) {
-  const Work work = *test_support::work(2000);
-  const JobPlan plan = planJob(work.valid(), work.machine, work.start);
-  RC_ASSERT(reasonsWith(plan, "axis_").empty());
-  RC_ASSERT(plan.good() == plan.reasons.empty());
-  RC_ASSERT(plan.good() || plan.fault == PlanFault::kTolerance);
-  RC_ASSERT((plan.statistics.max_velocity <= work.machine.limits.max_velocity * (1 + 1e-6)).all());
 }
 
 RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {

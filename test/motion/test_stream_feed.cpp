@@ -13,7 +13,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -37,6 +36,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeedAsOverridden, 
   const double rounding = roundingOf(setpoints)[kX];
   for (const SeenPair& s : pairsOf(setpoints)) {
     RC_ASSERT(s.odd.at_feed == s.even.at_feed);
+    RC_ASSERT(s.even.feed <= speed * edge * (1 + 1e-9));
     if (!s.odd.at_feed) continue;
     RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.start.position[kX]) - pair) <= 1e-6 * pair + 2 * rounding);
     RC_ASSERT(std::abs(s.even.feed - speed * edge) <= 1e-9 * speed * edge);
@@ -84,33 +84,7 @@ Work gentleWork(double feed) {
   return work;
 }
 
-class EvenFeed : public ::testing::TestWithParam<int> {};  // [mm/min]
-
-TEST_P(EvenFeed, IsHeldOverTheMiddleHalfOfTheStroke) {
-  const Work work = gentleWork(GetParam() * units::kMillimetrePerMinute);
-  double slowest_pair = 1e9;
-  double fastest_pair = 0;
-  double slowest_step = 1e9;
-  double fastest_step = 0;
-  for (const SeenPair& s : pairsOf(all(work))) {
-    const double x[]{s.start.position[kX], s.odd.position[kX], s.even.position[kX]};
-    if (x[0] < 7e-3 || x[2] > 23e-3) continue;  // of -1 mm to 31 mm
-    slowest_pair = std::min(slowest_pair, x[2] - x[0]);
-    fastest_pair = std::max(fastest_pair, x[2] - x[0]);
-    for (const double step : {x[1] - x[0], x[2] - x[1]}) {
-      slowest_step = std::min(slowest_step, step);
-      fastest_step = std::max(fastest_step, step);
-    }
-  }
-  ASSERT_GT(fastest_pair, 0);
-  RecordProperty("pairs", ::testing::PrintToString(fastest_pair / slowest_pair - 1));
-  RecordProperty("steps", ::testing::PrintToString(fastest_step / slowest_step - 1));
-  EXPECT_LT(fastest_pair / slowest_pair, 1.000001);
-  EXPECT_LT(fastest_step / slowest_step, 1.0001);
-}
-
-TEST_P(EvenFeed, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
-  const Work work = gentleWork(GetParam() * units::kMillimetrePerMinute);
+void expectHardlyLongerThanTheQuickest(const Work& work) {
   // The quickest way from rest to rest over 32 mm that X's limits allow: full acceleration is reached at both feeds or
   // not by v j against a^2. The other axes' limits can only make it slower.
   const double v = work.job.process.feed / edgePerTravel(work.job.cutter);
@@ -122,12 +96,16 @@ TEST_P(EvenFeed, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
   std::size_t cycles = 0;
   for (const Setpoint& p : all(work)) cycles += p.step != StepKind::kNone ? 1 : 0;
   const double duration = static_cast<double>(cycles) * work.machine.period;
-  RecordProperty("excess", ::testing::PrintToString(duration / quickest - 1));
   EXPECT_GE(duration, quickest * (1 - 1e-9));
   EXPECT_LE(duration, quickest * 1.01);
 }
 
-INSTANTIATE_TEST_SUITE_P(MillimetresPerMinute, EvenFeed, ::testing::Values(600, 1800));
+TEST(SetpointStream, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
+  for (const int feed : {600, 1800}) {
+    SCOPED_TRACE(feed);
+    expectHardlyLongerThanTheQuickest(gentleWork(feed * units::kMillimetrePerMinute));
+  }
+}
 
 /// Of the paper's job where nothing cuts the feed, in X. [m/s]
 double paperSpeed() { return 0.01 / edgePerTravel(paperJob().cutter); }
@@ -250,58 +228,6 @@ RC_GTEST_PROP(SetpointStreamProperty, RapidsKeepTheirSpeedWhateverTheFeed, ()) {
   SetpointStream stream(work.program());
   stream.setFeedOverride(*uniform(0.1, 1.2));
   RC_ASSERT(rapidsOf(all(stream)) == rapidsOf(all(work)));
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, WhereNoAxisHindersTheFeedItGoesAsFastAsAskedFor, ()) {
-  Work work = *test_support::work(kCycles);
-  work.machine.limits.max_velocity.setConstant(1e3);
-  work.machine.limits.max_acceleration.setConstant(1e6);
-  work.machine.limits.max_jerk.setConstant(1e9);
-  work.job.interpolation.tolerance = 1e-3;
-  SetpointStream stream(work.program());
-  RC_PRE(stream.program().schedule().feedLimits().empty());
-  const double fraction = *uniform(0.1, 1.2);
-  stream.setFeedOverride(fraction);
-  const double feed = fraction * work.job.process.feed;
-  int at_feed = 0;
-  double fastest = 0;
-  for (const Setpoint& p : all(stream)) {
-    if (p.step == StepKind::kNone) continue;
-    fastest = std::max(fastest, p.feed);
-    if (!p.at_feed) continue;
-    ++at_feed;
-    RC_ASSERT(std::abs(p.feed - feed) <= 1e-9 * feed);
-  }
-  RC_ASSERT(at_feed > 0);
-  RC_ASSERT(fastest <= feed * (1 + 1e-9));
-}
-
-TEST(SetpointStream, WhereACutsTheFeedNoOverrideMakesItFaster) {
-  Work work{paperJob(), plainMachine(), plainMachine().park};
-  work.machine.limits.max_velocity[kA] = 0.95;  // 8.637 mm/s ask for 1.015 rad/s at X = -1 mm, and for 0.653 at 31 mm
-  const auto maxTurn = [&](double fraction) {
-    SetpointStream stream(work.program());
-    stream.setFeedOverride(fraction);
-    double turn = 0;
-    double speed = 0;
-    Setpoint p;
-    while (stream.next(p)) {
-      if (p.step == StepKind::kNone) continue;
-      turn = std::max(turn, std::abs(p.velocity[kA]));
-      speed = std::max(speed, p.velocity[kX]);
-    }
-    return std::make_pair(turn, speed);
-  };
-  const auto [turn, speed] = maxTurn(1);
-  EXPECT_LE(turn, 0.95);
-  EXPECT_GT(turn, 0.94);
-  EXPECT_NEAR(speed, paperSpeed(), 1e-4 * paperSpeed());
-  const auto [faster_turn, faster_speed] = maxTurn(1.2);
-  EXPECT_LE(faster_turn, 0.95);
-  EXPECT_NEAR(faster_speed, speed, 1e-9);
-  const auto [slower_turn, slower_speed] = maxTurn(0.5);
-  EXPECT_LE(slower_turn, 0.95 / 2 * (1 + 1e-3));
-  EXPECT_NEAR(slower_speed, speed / 2, 1e-4 * speed);
 }
 
 TEST(SetpointStream, GoesAsFarTowardTheOverrideAsAnAxisAllows) {

@@ -27,41 +27,6 @@ TEST(SetpointStream, HeldBeforeItBeginsDoesNotMove) {
   EXPECT_TRUE((setpoints[0].position == plainMachine().park).all());
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, HeldInTheStrokeItStaysInTheStroke, ()) {
-  const Work work = *test_support::work(kCycles);
-  const GrindProgram program = work.program();
-  const auto undisturbed = all(work);
-  std::size_t first = 0;
-  while (undisturbed[first].step == StepKind::kNone) ++first;
-  std::size_t last = first;
-  while (undisturbed[last].step != StepKind::kNone) ++last;
-  const auto hold_at = first + static_cast<std::size_t>(static_cast<double>(last - first) * *uniform(0, 1));
-  SetpointStream stream(program);
-  Setpoint p;
-  for (std::size_t i = 0; i < hold_at; ++i) {
-    stream.next(p);
-    RC_ASSERT((p.position == undisturbed[i].position).all());
-  }
-  stream.hold();
-  const double direction = program.strokeTo() > program.strokeFrom() ? 1 : -1;
-  double x = hold_at > first ? p.position[kX] : program.strokeFrom();
-  // The acceleration is taken back, and then it is braked, as from full speed at the most.
-  const MotionLimits l = program.schedule().limits();
-  const double back = l.acceleration / l.jerk;
-  const double full = l.velocity * l.jerk > l.acceleration * l.acceleration ? l.velocity / l.acceleration + back
-                                                                            : 2 * std::sqrt(l.velocity / l.jerk);
-  const double cycles = (std::min(back, std::sqrt(2 * l.velocity / l.jerk)) + full) / work.machine.period + 4;
-  int count = 0;
-  while (stream.next(p)) {
-    RC_ASSERT(++count <= cycles);
-    if (hold_at == first) continue;  // in front of the stroke it rests already
-    RC_ASSERT(p.move == MoveKind::kStroke);
-    RC_ASSERT(direction * (p.position[kX] - x) >= -1e-15);
-    RC_ASSERT(direction * (program.strokeTo() - p.position[kX]) >= -1e-15);
-    x = p.position[kX];
-  }
-}
-
 TEST(SetpointStream, HeldItRestsAsSoonAsTheLimitsAllow) {
   PaperStroke ride(10e-3);
   const MotionLimits limits = ride.stream().program().schedule().limits();

@@ -162,43 +162,6 @@ RC_GTEST_PROP(SetpointStreamProperty, ARetractWhileItMovesIsNotTaken, ()) {
 /// Y at which the wheel is clear of all of the paper's work.
 const double kPaperClearance = 31e-3 * std::tan(5 * units::kDegree) + 5e-3;
 
-TEST(SetpointStream, LiftsToTheClearanceAndComesBackAboveTheWorkThenDownAtFeedThenAlong) {
-  PaperStroke ride(10e-3);
-  ride.stream().hold();
-  ride.runToRest();
-  const Setpoint held = ride.last();
-  EXPECT_EQ(held.move, MoveKind::kStroke);
-  EXPECT_TRUE(ride.stream().onPath());
-  ride.stream().retract();
-  ride.runToRest();
-  EXPECT_FALSE(ride.stream().onPath());
-  EXPECT_FALSE(ride.stream().finished());
-  EXPECT_EQ(ride.last().move, MoveKind::kLift);
-  EXPECT_EQ(ride.last().move_index, held.move_index);
-  EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15);
-  for (const int axis : {kX, kZ, kA}) EXPECT_EQ(ride.last().position[axis], held.position[axis]);
-
-  ride.stream().resume();
-  std::vector<MoveKind> kinds;
-  double fastest_plunge = 0;
-  double entry = 0;
-  while (ride.next()) {
-    const Setpoint& p = ride.last();
-    if (kinds.empty() || kinds.back() != p.move) kinds.push_back(p.move);
-    if (kinds.size() == 2) {
-      fastest_plunge = std::max(fastest_plunge, p.feed);
-      entry = p.position[kX];
-    }
-  }
-  EXPECT_EQ(kinds, (std::vector<MoveKind>{MoveKind::kPosition, MoveKind::kInfeed, MoveKind::kStroke, MoveKind::kRetract,
-                                          MoveKind::kReturn}));
-  EXPECT_NEAR(fastest_plunge, 0.01, 1e-12);
-  // 600 mm/min along the edge are v = 8.637 mm/s in X. A's jerk, 5000 rad/s^3, leaves X some 40 m/s^3 on this cone: the
-  // feed is reached in 2 sqrt(v/j) = 29 ms, over v sqrt(v/j) = 0.13 mm.
-  EXPECT_NEAR(held.position[kX] - entry, 0.13e-3, 0.02e-3);
-  EXPECT_TRUE(ride.stream().finished());
-}
-
 TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
   PaperStroke ride(10e-3);
   ride.stream().setFeedOverride(0);
@@ -214,37 +177,6 @@ TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
   ride.stream().setFeedOverride(1);
   ride.runToRest();
   EXPECT_TRUE(ride.stream().finished());
-}
-
-TEST(SetpointStream, AWayThatWasInterruptedInTheAirIsBegunAgain) {
-  for (const MoveKind kind : {MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed, MoveKind::kReturn}) {
-    SCOPED_TRACE(toString(kind));
-    Axes start = plainMachine().park;
-    start[kX] = -0.1;
-    SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
-    Setpoint p;
-    while (p.move != kind || p.move_fraction < 0.3) ASSERT_TRUE(stream.next(p));
-    stream.hold();
-    while (stream.next(p)) {
-    }
-    const Setpoint held = p;
-    ASSERT_LT(held.move_fraction, 1);
-    stream.retract();
-    while (stream.next(p)) {
-    }
-    EXPECT_EQ(p.position[kX], held.position[kX]);
-    EXPECT_GE(p.position[kY], kPaperClearance - 1e-15);
-    stream.resume();
-    ASSERT_TRUE(stream.next(p));
-    EXPECT_TRUE(stream.onPath());
-    EXPECT_EQ(p.move, kind);
-    EXPECT_EQ(p.move_index, held.move_index);
-    EXPECT_LT(p.move_fraction, 0.1);
-    while (stream.next(p)) {
-    }
-    EXPECT_TRUE(stream.finished());
-    EXPECT_TRUE((p.position == plainMachine().park).all());
-  }
 }
 
 /// Moves an axis by a distance, as by hand.
@@ -383,7 +315,10 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
 TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
   PaperStroke ride(10e-3);
   SetpointStream& stream = ride.stream();
-  ride.holdAndRetract();
+  stream.hold();
+  ride.runToRest();
+  stream.retract();
+  ride.runToRest();
   const Axes lifted = ride.last().position;
   for (int cycles = 50; cycles < 400; cycles += 50) {
     Setpoint last = ride.last();

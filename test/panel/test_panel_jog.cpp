@@ -7,6 +7,7 @@
 #include <QTabWidget>
 
 #include <cmath>
+#include <map>
 
 namespace grinder::test_panel_jog {
 
@@ -172,7 +173,7 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   WAIT_FOR(offset().empty());
 }
 
-TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
+TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThem) {
   const Names switches{"spindle_on", "spindle_off", "coolant_on", "coolant_off"};
   const auto enabled = [&] {
     Names names;
@@ -199,15 +200,13 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   EXPECT_TRUE(enabled().empty());
   stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
-}
-
-TEST_F(Jogging, WhatTheDriveCannotDoIsGrey) {
-  WAIT_FOR(panel.enabled("home") && panel.enabled("spindle_on") && panel.enabled("coolant_on"));
-  flute_grinder::MachineInfo machine;
-  machine.coolant = 1;
-  stage.publishMachine(machine);
-  WAIT_FOR(!panel.enabled("home") && !panel.enabled("spindle_on"));
-  EXPECT_TRUE(panel.enabled("coolant_on"));
+  stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 0; });
+  stage.be("ready", panel);
+  EXPECT_TRUE(panel.enabled("home"));
+  flute_grinder::MachineInfo without;
+  without.coolant = 1;
+  stage.publishMachine(without);
+  WAIT_FOR(enabled() == Names{"coolant_on"} && !panel.enabled("home"));
 }
 
 TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
@@ -232,29 +231,26 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
   WAIT_FOR(panel.enabled("jog_x_plus"));
   choose("while pressed");
   auto& button = panel.the<QPushButton>("jog_x_plus");
-  struct Way {
-    const char* how;
-    std::function<void()> end;
-  };
-  const std::vector<Way> ways{{"another tab is shown", [&] { panel.the<QTabWidget>("tabs").setCurrentIndex(0); }},
-                              {"the window loses the focus",
-                               [&] {
-                                 QFocusEvent out(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
-                                 QCoreApplication::sendEvent(&button, &out);
-                               }},
-                              {"the mouse is moved away",
-                               [&] {
-                                 QTest::mouseMove(&button, QPoint(-100, -100));
-                                 QMouseEvent away(QEvent::MouseMove, QPointF(-100, -100), Qt::NoButton, Qt::LeftButton,
-                                                  Qt::NoModifier);
-                                 QCoreApplication::sendEvent(&button, &away);
-                               }},
-                              {"the grinder stops", [&] { stage.be("fault"); }}};
-  for (const Way& way : ways) {
-    SCOPED_TRACE(way.how);
+  const std::map<std::string, std::function<void()>> ways{
+      {"another tab is shown", [&] { panel.the<QTabWidget>("tabs").setCurrentIndex(0); }},
+      {"the window loses the focus",
+       [&] {
+         QFocusEvent out(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
+         QCoreApplication::sendEvent(&button, &out);
+       }},
+      {"the mouse is moved away",
+       [&] {
+         QTest::mouseMove(&button, QPoint(-100, -100));
+         QMouseEvent away(QEvent::MouseMove, QPointF(-100, -100), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+         QCoreApplication::sendEvent(&button, &away);
+       }},
+      {"the grinder reports a fault", [&] { stage.be("fault"); }}};
+  for (const auto& [how, end] : ways) {
+    SCOPED_TRACE(how);
+    stage.be("ready", panel);
     panel.openTab("Jog");
     ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-    way.end();
+    end();
     ASSERT_NO_FATAL_FAILURE(expectStopped());
     QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
   }

@@ -169,8 +169,6 @@ TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   WAIT_FOR(!red("touch_at") && panel.enabled("touch_off"));
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-
 /// Stops the job that has begun meanwhile, beside whatever is open.
 class BesideADialog : public OnStage {
  protected:
@@ -215,15 +213,16 @@ TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
   expectHoldWorks();
 }
 
-TEST_F(BesideADialog, HoldWorksBesideAQuestion) {
+TEST_F(BesideADialog, HoldStaysAndWorksBesideAQuestionWhateverTabIsOpen) {
   publish([&] { stage.state.swivel = 0; });
   panel.plan();
+  const QPoint place = panel.the<QWidget>("hold").pos();
   panel.openTab("Section");
+  WAIT_FOR(panel.shows("section_figures", "Rake "));
+  EXPECT_EQ(panel.the<QWidget>("hold").pos(), place);
   startAndBeAsked("confirm_swivel");
   expectHoldWorks();
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 /// With a job that is planned, and three questions before its start: an unfinished job, zero points that were never
 /// set, and the swivel.
@@ -381,8 +380,6 @@ TEST_F(OnStage, ADoubleClickOnWhatClosesADialogPressesNothingBelow) {
   WAIT_FOR(goals().size() == 1);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-
 void turnWheel(QWidget& over, int notches) {
   const QPointF at = over.rect().center();
   for (int i = 0; i < std::abs(notches); ++i) {
@@ -419,8 +416,6 @@ TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAlone) {
   turnWheel(slider, -1);
   EXPECT_LT(slider.value(), 100);
 }
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 class Focus : public OnStage {
  protected:

@@ -122,6 +122,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndShownWithWhatTheyWereBesideANewPlan) {
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("Y, Z"));
   EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
   panel.press("fit_offsets");
+  WAIT_FOR(stage.get(&Stage::plans).size() == 2);
   WAIT_FOR(panel.text("messages").size() > 9 && panel.text("verdict").find("Takes 12.0 s.") == 0);
   EXPECT_EQ(panel.text("messages").substr(9),
             "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");

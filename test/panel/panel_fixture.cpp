@@ -7,7 +7,6 @@
 #include <QFile>
 #include <QLayout>
 #include <QMouseEvent>
-#include <QProgressBar>
 #include <QTabBar>
 #include <QTabWidget>
 
@@ -112,7 +111,7 @@ void Panel::plan() {
   WAIT_FOR(enabled("start"));
 }
 
-void Panel::answer(const char* name) {
+void Panel::press(const char* name) {
   EXPECT_TRUE(QTest::qWaitFor([&] { return the<QPushButton>(name).isVisible() && enabled(name); }, kPatience)) << name;
   click(name);
 }
@@ -153,6 +152,38 @@ void Panel::openTab(const QString& title) {
     if (bar.tabText(tab) == title) QTest::mouseClick(&bar, Qt::LeftButton, {}, bar.tabRect(tab).center());
   }
   EXPECT_EQ(bar.tabText(bar.currentIndex()), title);
+}
+
+void Panel::tick(const char* name) {
+  auto& box = the<QCheckBox>(name);
+  QTest::mouseClick(&box, Qt::LeftButton, {}, QPoint(8, box.height() / 2));
+}
+
+void Panel::enterNode(const QString& name) {
+  openTab("View");
+  auto& node = the<QLineEdit>("node");
+  node.clear();
+  QTest::keyClicks(&node, name);
+  QTest::keyClick(&node, Qt::Key_Return);
+}
+
+QFileDialog* Panel::fileDialog() {
+  click("choose");
+  QFileDialog* dialog = nullptr;
+  EXPECT_TRUE(QTest::qWaitFor([&] { return dialog = panel_->findChild<QFileDialog*>(); }, kPatience));
+  return dialog;
+}
+
+void Panel::enter(QFileDialog& dialog, const QString& file) {
+  auto* name = dialog.findChild<QLineEdit*>("fileNameEdit");
+  ASSERT_TRUE(name);
+  name->setText(file);
+  QTest::keyClick(name, Qt::Key_Return);
+}
+
+::testing::AssertionResult Panel::has(const std::string& whole, const std::string& part) {
+  const bool found = whole.find(part) != std::string::npos;
+  return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << '\'' << part << "' in: " << whole;
 }
 
 void Panel::picture(const std::string& name) {

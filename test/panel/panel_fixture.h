@@ -1,10 +1,19 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <ros/package.h>
+#include <ros/ros.h>
 #include <rviz/panel.h>
+#include <QCheckBox>
+#include <QComboBox>
+#include <QDoubleSpinBox>
+#include <QFileDialog>
 #include <QLabel>
+#include <QLineEdit>
 #include <QPlainTextEdit>
+#include <QProgressBar>
 #include <QPushButton>
+#include <QTemporaryDir>
 #include <QtTest>
 #include <pluginlib/class_loader.hpp>
 
@@ -22,6 +31,9 @@ constexpr int kPatience = 60000;
 
 /// Waits for a condition, and lets the panel live meanwhile.
 #define WAIT_FOR(condition) ASSERT_TRUE(QTest::qWaitFor([&] { return bool(condition); }, kPatience)) << #condition
+
+inline const QString kPackage = QString::fromStdString(ros::package::getPath("flute_grinder"));
+inline const QString kPaper = kPackage + "/test/jobs/paper.yaml";
 
 using Names = std::set<std::string>;
 
@@ -52,21 +64,17 @@ class Panel {
   void click(const char* name) { QTest::mouseClick(&the<QPushButton>(name), Qt::LeftButton); }
   /// Plans the job, once it may, and waits until it may be started.
   void plan();
-  /// Answers a question, once it takes answers.
-  void answer(const char* name);
+  /// Clicks a button, once it takes clicks.
+  void press(const char* name);
   /// Clicks a button, and once more at the same place, whatever is there by then. @param pause between them, as the
   /// events have it [ms]. @param between what happens meanwhile.
   void doubleClick(
       QAbstractButton& button, int pause, const std::function<void()>& between = [] {});
-  void doubleClick(
-      const char* name, int pause, const std::function<void()>& between = [] {}) {
-    doubleClick(the<QPushButton>(name), pause, between);
-  }
   std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
   std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
   /// Whether a text of the panel, or a label of it, has this in it.
-  bool says(const char* name, const std::string& part) { return text(name).find(part) != std::string::npos; }
-  bool shows(const char* name, const std::string& part) { return label(name).find(part) != std::string::npos; }
+  ::testing::AssertionResult says(const char* name, const std::string& part) { return has(text(name), part); }
+  ::testing::AssertionResult shows(const char* name, const std::string& part) { return has(label(name), part); }
   bool isVisible(const char* name) { return the<QWidget>(name).isVisible(); }
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
   std::string state() { return label("state"); }
@@ -79,7 +87,16 @@ class Panel {
   /// the environment.
   void picture(const std::string& name);
 
+  /// Clicks the tick of a check box.
+  void tick(const char* name);
+  /// Enters the name of a grinder's node.
+  void enterNode(const QString& name);
+  /// Opens the dialog for a job file.
+  QFileDialog* fileDialog();
+  static void enter(QFileDialog& dialog, const QString& file);
+
  private:
+  static ::testing::AssertionResult has(const std::string& whole, const std::string& part);
   void clickAt(QPoint place, QEvent::Type press);
 
   std::unique_ptr<rviz::Panel> panel_;

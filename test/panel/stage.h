@@ -17,6 +17,7 @@
 #include "flute_grinder/WorkOffsets.h"
 
 #include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 
 #include <ros/ros.h>
@@ -47,22 +48,56 @@ class Stage {
     job_ = nh_.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
     jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
-    services_.push_back(nh_.advertiseService("plan", &Stage::onPlan, this));
-    services_.push_back(nh_.advertiseService("resume", &Stage::onResume, this));
-    services_.push_back(nh_.advertiseService("lift", &Stage::onLift, this));
-    services_.push_back(nh_.advertiseService("spindle_on", &Stage::onSpindleOn, this));
-    services_.push_back(nh_.advertiseService("spindle_off", &Stage::onSpindleOff, this));
-    for (const char* name : {"enable", "home", "reset_fault", "retract", "coolant_on", "coolant_off"}) {
-      services_.push_back(nh_.advertiseService(name, &Stage::onTrigger, this));
+    serve<flute_grinder::Plan>(
+        "plan",
+        [this](const auto& request, auto& response) {
+          plans.push_back(request.goal);
+          response = plan;
+        },
+        &Stage::plan_hangs);
+    serve<std_srvs::Trigger>(
+        "resume", [this](const auto&, auto&) { ++resumes; }, &Stage::resume_hangs);
+    serve<std_srvs::Trigger>("lift", [this](const auto&, auto& response) {
+      ++lifts;
+      answer(response, "");
+    });
+    for (const bool on : {true, false}) {
+      serve<std_srvs::Trigger>(on ? "spindle_on" : "spindle_off", [this, on](const auto&, auto& response) {
+        state.spindle_commanded = on;
+        answer(response, "");
+      });
     }
-    services_.push_back(nh_.advertiseService("jog_step", &Stage::onJogStep, this));
-    services_.push_back(nh_.advertiseService("touch_off", &Stage::onTouchOff, this));
-    services_.push_back(nh_.advertiseService("set_offset", &Stage::onSetOffset, this));
-    services_.push_back(nh_.advertiseService("set_feed_override", &Stage::onOverride, this));
-    services_.push_back(nh_.advertiseService("confirm_swivel", &Stage::onConfirmSwivel, this));
-    goals_ = nh_.subscribe("grind/goal", 10, &Stage::onGoal, this);
-    stops_ = nh_.subscribe("stop", 10, &Stage::onStop, this);
-    jogs_ = nh_.subscribe("jog", 100, &Stage::onJog, this);
+    for (const char* name : {"enable", "home", "reset_fault", "retract", "coolant_on", "coolant_off"}) {
+      serve<std_srvs::Trigger>(name, [this](const auto&, auto& response) { answer(response, trigger_refusal); });
+    }
+    serve<flute_grinder::JogStep>("jog_step", [this](const auto& request, auto& response) {
+      steps.push_back(request);
+      answer(response, step_refusal);
+    });
+    serve<flute_grinder::TouchOff>("touch_off", [this](const auto& request, auto& response) {
+      touches.push_back(request);
+      answer(response, touch_refusal);
+      response.large_change = large_change;
+    });
+    serve<flute_grinder::SetOffset>("set_offset", [this](const auto& request, auto& response) {
+      offsets_set.push_back(request);
+      answer(response, "");
+    });
+    serve<flute_grinder::SetFeedOverride>("set_feed_override", [this](const auto& request, auto& response) {
+      overrides.push_back(request.fraction);
+      state.override = request.fraction;
+      answer(response, "");
+    });
+    serve<flute_grinder::ConfirmSwivel>("confirm_swivel", [this](const auto& request, auto& response) {
+      swivels.push_back(request.swivel);
+      answer(response, swivel_refusal);
+      if (response.success) state.swivel = request.swivel;
+    });
+    goals_ = listen("grind/goal", goals);
+    jogs_ = listen("jog", jogs);
+    stops_ = nh_.subscribe<flute_grinder::Stop>("stop", 10, [this](const flute_grinder::Stop::ConstPtr& stop) {
+      change([&] { stops.push_back(stop->request); });
+    });
     state.homed = 1;
     state.override = 1;
     state.swivel = 31.769 * M_PI / 180;  // as test/jobs/paper.yaml needs it
@@ -166,83 +201,28 @@ class Stage {
     if (!without_feedback) feedback_.publish(feedback);
     joint_states_.publish(joints);
   }
-  bool onPlan(flute_grinder::Plan::Request& request, flute_grinder::Plan::Response& response) {
-    change([&] { plans.push_back(request.goal); });
-    while (get([&] { return plan_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
-    change([&] { response = plan; });
-    return true;
+  template <typename Response>
+  static void answer(Response& response, const std::string& refusal) {
+    response.success = static_cast<std::uint8_t>(refusal.empty());
+    response.message = refusal;
   }
-  bool onResume(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&) {
-    change([&] { ++resumes; });
-    while (get([&] { return resume_hangs; }) && ros::ok()) ros::WallDuration(0.01).sleep();
-    return true;
+  /// Offers a service. @param hangs whether its answers wait.
+  template <typename Service, typename Handle>
+  void serve(const char* name, Handle handle, bool Stage::*hangs = nullptr) {
+    using Request = typename Service::Request;
+    using Response = typename Service::Response;
+    const boost::function<bool(Request&, Response&)> call = [=](Request& request, Response& response) {
+      change([&] { handle(request, response); });
+      while (hangs && get(hangs) && ros::ok()) ros::WallDuration(0.01).sleep();
+      return true;
+    };
+    services_.push_back(nh_.advertiseService(name, call));
   }
-  bool onLift(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-    change([&] { ++lifts; });
-    response.success = 1;
-    return true;
-  }
-  bool onSpindleOn(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-    change([&] { response.success = state.spindle_commanded = 1; });
-    return true;
-  }
-  bool onSpindleOff(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-    change([&] { response.success = 1, state.spindle_commanded = 0; });
-    return true;
-  }
-  bool onTrigger(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-    change([&] {
-      response.success = static_cast<std::uint8_t>(trigger_refusal.empty());
-      response.message = trigger_refusal;
+  template <typename Message>
+  ros::Subscriber listen(const char* topic, std::vector<Message>& heard) {
+    return nh_.subscribe<Message>(topic, 100, [this, &heard](const boost::shared_ptr<const Message>& message) {
+      change([&] { heard.push_back(*message); });
     });
-    return true;
-  }
-  bool onJogStep(flute_grinder::JogStep::Request& request, flute_grinder::JogStep::Response& response) {
-    change([&] {
-      steps.push_back(request);
-      response.success = static_cast<std::uint8_t>(step_refusal.empty());
-      response.message = step_refusal;
-    });
-    return true;
-  }
-  bool onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response) {
-    change([&] {
-      touches.push_back(request);
-      response.success = static_cast<std::uint8_t>(touch_refusal.empty());
-      response.message = touch_refusal;
-      response.large_change = static_cast<std::uint8_t>(large_change);
-    });
-    return true;
-  }
-  bool onSetOffset(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response) {
-    change([&] { offsets_set.push_back(request); });
-    response.success = 1;
-    return true;
-  }
-  void onJog(const flute_grinder::Jog::ConstPtr& jog) {
-    change([&] { jogs.push_back(*jog); });
-  }
-  bool onOverride(flute_grinder::SetFeedOverride::Request& request,
-                  flute_grinder::SetFeedOverride::Response& response) {
-    change([&] { overrides.push_back(request.fraction), state.override = request.fraction; });
-    response.success = 1;
-    return true;
-  }
-  bool onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,
-                       flute_grinder::ConfirmSwivel::Response& response) {
-    change([&] {
-      swivels.push_back(request.swivel);
-      response.success = static_cast<std::uint8_t>(swivel_refusal.empty());
-      response.message = swivel_refusal;
-      if (response.success) state.swivel = request.swivel;
-    });
-    return true;
-  }
-  void onGoal(const flute_grinder::GrindActionGoal::ConstPtr& goal) {
-    change([&] { goals.push_back(*goal); });
-  }
-  void onStop(const flute_grinder::Stop::ConstPtr& stop) {
-    change([&] { stops.push_back(stop->request); });
   }
 
   std::mutex mutex_;
@@ -251,6 +231,41 @@ class Stage {
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;
+};
+
+/// What the stage has received, in short words.
+class Staged : public ::testing::Test {
+ protected:
+  std::vector<flute_grinder::GrindActionGoal> goals() { return stage.get(&Stage::goals); }
+  std::vector<int> stops() { return stage.get(&Stage::stops); }
+  std::vector<double> swivels() { return stage.get(&Stage::swivels); }
+  std::vector<flute_grinder::TouchOff::Request> touches() { return stage.get(&Stage::touches); }
+
+  Stage stage;
+};
+
+/// With a panel that has the paper's job, which can be ground.
+class OnStage : public Staged {
+ protected:
+  OnStage() {
+    stage.change([&] { stage.plan.valid = 1; });
+    stage.be("ready");
+  }
+  /// Changes the grinder, and waits until the panel knows: what is reported later shows.
+  template <typename Change>
+  void publish(Change how) {
+    stage.change(how);
+    stage.be("lifting", panel);
+    stage.be("ready", panel);
+  }
+  /// Plans and starts the job, until a question has this answer.
+  void startAndBeAsked(const char* answer) {
+    if (!panel.enabled("start")) panel.plan();
+    panel.click("start");
+    WAIT_FOR(panel.isVisible(answer));
+  }
+
+  Panel panel{"cell/stage", kPaper};
 };
 
 }  // namespace grinder

@@ -1,19 +1,13 @@
 // What keys, the mouse wheel and clicks do in the panel, against a grinder of the test's own.
 
-#include "panel_fixture.h"
 #include "stage.h"
 
-#include <ros/package.h>
 #include <QAbstractButton>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
 #include <QClipboard>
-#include <QComboBox>
 #include <QDialog>
-#include <QDoubleSpinBox>
-#include <QFileDialog>
-#include <QLineEdit>
 #include <QLocale>
 #include <QScreen>
 #include <QScrollBar>
@@ -21,33 +15,33 @@
 #include <QWindow>
 
 #include <cmath>
-#include <cstdint>
 #include <limits>
-#include <set>
-#include <string>
-#include <utility>
-#include <vector>
 
-namespace grinder {
-namespace test_panel_input {
+namespace grinder::test_panel_input {
 
-const QString kJobs = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/";
+/// Makes a window take the keys.
+void activate(Panel& panel) {
+  panel.widget().activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
+}
 
-class Input : public ::testing::Test {
- protected:
-  Input() { stage.be("ready"); }
-  ~Input() override { QLocale::setDefault(QLocale::c()); }
+std::string focused() {
+  return QApplication::focusWidget() ? QApplication::focusWidget()->objectName().toStdString() : "";
+}
 
-  std::vector<int> stops() { return stage.get(&Stage::stops); }
-  /// As the operator's hand does it: what blocks the window blocks the click.
-  static void clickInWindow(Panel& panel, const char* name) {
-    auto& button = panel.the<QPushButton>(name);
-    QTest::mouseClick(panel.widget().windowHandle(), Qt::LeftButton, {},
-                      button.mapTo(&panel.widget(), button.rect().center()));
+/// Presses the keys that could press a button, wherever they go.
+void pressKeys(Panel& panel) {
+  for (const Qt::Key key : {Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter}) {
+    QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
   }
+}
 
-  Stage stage;
-};
+/// As the operator's hand does it: what blocks the window blocks the click.
+void clickInWindow(Panel& panel, const char* name) {
+  auto& button = panel.the<QPushButton>(name);
+  QTest::mouseClick(panel.widget().windowHandle(), Qt::LeftButton, {},
+                    button.mapTo(&panel.widget(), button.rect().center()));
+}
 
 /// Everything in which numbers are entered, however it is made. Touch-off has another range for each axis.
 template <typename Check>
@@ -65,8 +59,10 @@ void forEachBox(Panel& panel, Check check) {
   EXPECT_GE(boxes, 4 * axes.count());
 }
 
-double valueOf(QAbstractSpinBox& box) {
-  auto* numbers = qobject_cast<QDoubleSpinBox*>(&box);
+double valueOf(QWidget& widget) {
+  if (auto* slider = qobject_cast<QAbstractSlider*>(&widget)) return slider->value();
+  if (auto* choice = qobject_cast<QComboBox*>(&widget)) return choice->currentIndex();
+  auto* numbers = qobject_cast<QDoubleSpinBox*>(&widget);
   EXPECT_TRUE(numbers) << "whole numbers alone would take 6,203 for 6203";
   return numbers ? numbers->value() : std::numeric_limits<double>::quiet_NaN();
 }
@@ -86,52 +82,53 @@ double pasted(QAbstractSpinBox& box, const QString& text) {
   return valueOf(box);
 }
 
-TEST_F(Input, CommaAndPointAreTheDecimalSignInEveryBox) {
-  for (const QLocale& locale : {QLocale::c(), QLocale(QLocale::English), QLocale(QLocale::German)}) {
-    SCOPED_TRACE(locale.name().toStdString());
-    QLocale::setDefault(locale);
-    Panel panel("cell/stage", kJobs + "paper.yaml");
-    WAIT_FOR(panel.enabled("section_x") && panel.state() == "Ready");
-    panel.openTab("Jog");
-    forEachBox(panel, [](QAbstractSpinBox& box) {
-      EXPECT_DOUBLE_EQ(typed(box, "6,25"), 6.25);
-      EXPECT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
-      EXPECT_DOUBLE_EQ(typed(box, "12,5"), 12.5);
-      EXPECT_EQ(box.text().count(','), 0) << box.text().toStdString();
-    });
-    panel.the<QComboBox>("touch_axis").setCurrentText("X");
-    EXPECT_DOUBLE_EQ(typed(panel.the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
+/// The same in the operator's language, whatever it is.
+class InALanguage : public Staged, public ::testing::WithParamInterface<QLocale::Language> {
+ protected:
+  void SetUp() override {
+    QLocale::setDefault(QLocale(GetParam()));
+    panel = std::make_unique<Panel>("cell/stage", kPaper);
+    stage.be("ready", *panel);
+    WAIT_FOR(panel->enabled("section_x"));
+    panel->openTab("Jog");
   }
+  ~InALanguage() override { QLocale::setDefault(QLocale::c()); }
+
+  std::unique_ptr<Panel> panel;
+};
+INSTANTIATE_TEST_SUITE_P(Of, InALanguage, ::testing::Values(QLocale::C, QLocale::English, QLocale::German));
+
+TEST_P(InALanguage, CommaAndPointAreTheDecimalSignInEveryBox) {
+  forEachBox(*panel, [](QAbstractSpinBox& box) {
+    EXPECT_DOUBLE_EQ(typed(box, "6,25"), 6.25);
+    EXPECT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
+    EXPECT_DOUBLE_EQ(typed(box, "12,5"), 12.5);
+    EXPECT_EQ(box.text().count(','), 0) << box.text().toStdString();
+  });
+  panel->the<QComboBox>("touch_axis").setCurrentText("X");
+  EXPECT_DOUBLE_EQ(typed(panel->the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
 }
 
-TEST_F(Input, WhatIsNoNumberInRangeStaysAsItWasTyped) {
-  for (const QLocale& locale : {QLocale::c(), QLocale(QLocale::English), QLocale(QLocale::German)}) {
-    SCOPED_TRACE(locale.name().toStdString());
-    QLocale::setDefault(locale);
-    Panel panel("cell/stage", kJobs + "paper.yaml");
-    WAIT_FOR(panel.enabled("section_x") && panel.state() == "Ready");
-    panel.openTab("Jog");
-    forEachBox(panel, [](QAbstractSpinBox& box) {
-      ASSERT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
-      for (const char* text : {"1.234,5", "1,234.5", "1.2.5", "1 000", "1'000", "1e9", "nan", "inf", "0x10", "abc", "-",
-                               "500000", "-20000", "1.23456"}) {
-        SCOPED_TRACE(text);
-        for (const auto enter : {typed, pasted}) {
-          enter(box, text);
-          QFocusEvent left(QEvent::FocusOut, Qt::TabFocusReason);
-          QApplication::sendEvent(&box, &left);
-          EXPECT_EQ(qobject_cast<QDoubleSpinBox*>(&box)->cleanText(), text);
-          EXPECT_FALSE(box.hasAcceptableInput());
-        }
+TEST_P(InALanguage, WhatIsNoNumberInRangeStaysAsItWasTyped) {
+  forEachBox(*panel, [](QAbstractSpinBox& box) {
+    ASSERT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
+    for (const char* text : {"1.234,5", "1,234.5", "1.2.5", "1 000", "1'000", "1e9", "nan", "inf", "0x10", "abc", "-",
+                             "500000", "-20000", "1.23456"}) {
+      SCOPED_TRACE(text);
+      for (const auto enter : {typed, pasted}) {
+        enter(box, text);
+        QFocusEvent left(QEvent::FocusOut, Qt::TabFocusReason);
+        QApplication::sendEvent(&box, &left);
+        EXPECT_EQ(qobject_cast<QDoubleSpinBox*>(&box)->cleanText(), text);
+        EXPECT_FALSE(box.hasAcceptableInput());
       }
-      EXPECT_DOUBLE_EQ(pasted(box, "8,25"), 8.25);
-      EXPECT_TRUE(box.hasAcceptableInput());
-    });
-  }
+    }
+    EXPECT_DOUBLE_EQ(pasted(box, "8,25"), 8.25);
+    EXPECT_TRUE(box.hasAcceptableInput());
+  });
 }
 
-TEST_F(Input, AUnitThatIsDeletedInPartComesBack) {
-  Panel panel("cell/stage");
+TEST_F(OnStage, AUnitThatIsDeletedInPartComesBack) {
   panel.openTab("Jog");
   auto& box = panel.the<QAbstractSpinBox>("touch_at");
   typed(box, "5");
@@ -143,8 +140,7 @@ TEST_F(Input, AUnitThatIsDeletedInPartComesBack) {
   EXPECT_EQ(box.text(), whole);
 }
 
-TEST_F(Input, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
-  Panel panel("cell/stage", kJobs + "paper.yaml");
+TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   panel.openTab("Jog");
   WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus"));
   const auto enter = [&](const char* box, const char* text) { typed(panel.the<QAbstractSpinBox>(box), text); };
@@ -173,27 +169,10 @@ TEST_F(Input, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   WAIT_FOR(!red("touch_at") && panel.enabled("touch_off"));
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-
 /// Stops the job that has begun meanwhile, beside whatever is open.
-class BesideADialog : public Input {
+class BesideADialog : public OnStage {
  protected:
-  void SetUp() override {
-    stage.change([&] { stage.plan.valid = 1; });
-    WAIT_FOR(panel.enabled("plan"));
-  }
-  /// Changes the grinder, and waits until the panel knows: what is reported later shows.
-  template <typename Change>
-  void publish(Change how) {
-    stage.change(how);
-    stage.be("lifting", panel);
-    stage.be("ready", panel);
-    WAIT_FOR(panel.enabled("plan"));
-  }
-  void plan() {
-    panel.click("plan");
-    WAIT_FOR(panel.enabled("start"));
-  }
+  void SetUp() override { WAIT_FOR(panel.enabled("plan")); }
   void expectHoldWorks() {
     EXPECT_EQ(QGuiApplication::modalWindow(), nullptr);
     const auto& hold = panel.the<QPushButton>("hold");
@@ -208,37 +187,19 @@ class BesideADialog : public Input {
     clickInWindow(panel, "hold");
     WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
   }
-  QFileDialog* fileDialog() {
-    panel.click("choose");
-    EXPECT_TRUE(QTest::qWaitFor([&] { return panel.widget().findChild<QFileDialog*>(); }, kPatience));
-    return panel.widget().findChild<QFileDialog*>();
-  }
-  static void enter(QFileDialog& dialog, const QString& file) {
-    auto* name = dialog.findChild<QLineEdit*>("fileNameEdit");
-    ASSERT_TRUE(name);
-    name->setText(file);
-    QTest::keyClick(name, Qt::Key_Return);
-  }
-
-  Panel panel{"cell/stage", kJobs + "paper.yaml"};
 };
 
-TEST_F(BesideADialog, HoldWorksWhileAJobFileIsChosen) {
-  ASSERT_TRUE(fileDialog());
+TEST_F(BesideADialog, HoldWorksWhileAJobFileIsChosenInTheOneDialog) {
+  ASSERT_TRUE(panel.fileDialog());
+  panel.click("choose");
+  EXPECT_EQ(panel.widget().findChildren<QFileDialog*>().size(), 1);
   expectHoldWorks();
 }
 
-TEST_F(BesideADialog, OneDialogIsOpenAtATime) {
-  QFileDialog* dialog = fileDialog();
-  ASSERT_TRUE(dialog);
-  panel.click("choose");
-  EXPECT_EQ(panel.widget().findChildren<QFileDialog*>().size(), 1);
-}
-
 TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
-  QFileDialog* dialog = fileDialog();
+  QFileDialog* dialog = panel.fileDialog();
   ASSERT_TRUE(dialog);
-  enter(*dialog, "/nowhere/job.yaml");
+  Panel::enter(*dialog, "/nowhere/job.yaml");
   WAIT_FOR(panel.says("verdict", "job.yaml"));
   expectHoldWorks();
 }
@@ -252,55 +213,32 @@ TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
   expectHoldWorks();
 }
 
-TEST_F(BesideADialog, HoldWorksBesideTheSetUp) {
-  panel.click("setup");
-  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
-  expectHoldWorks();
-}
-
-TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheSwivel) {
+TEST_F(BesideADialog, HoldStaysAndWorksBesideAQuestionWhateverTabIsOpen) {
   publish([&] { stage.state.swivel = 0; });
-  plan();
-  panel.click("start");
-  WAIT_FOR(panel.isVisible("confirm_swivel"));
+  panel.plan();
+  const QPoint place = panel.the<QWidget>("hold").pos();
+  panel.openTab("Section");
+  WAIT_FOR(panel.shows("section_figures", "Rake "));
+  EXPECT_EQ(panel.the<QWidget>("hold").pos(), place);
+  startAndBeAsked("confirm_swivel");
   expectHoldWorks();
 }
-
-TEST_F(BesideADialog, HoldWorksBesideTheQuestionForTheUnfinishedJob) {
-  publish([&] {
-    stage.state.progress.job_digest = std::string(64, 'a');
-    stage.state.progress.cutter.tooth_angles = {0};
-  });
-  plan();
-  panel.click("start");
-  WAIT_FOR(panel.isVisible("discard"));
-  expectHoldWorks();
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
 
 /// With a job that is planned, and three questions before its start: an unfinished job, zero points that were never
 /// set, and the swivel.
-class Asked : public Input {
+class Asked : public OnStage {
  protected:
   void SetUp() override {
-    panel.widget().activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
-    stage.change([&] {
-      stage.plan.valid = 1;
+    activate(panel);
+    stage.publishOffsets({});
+    publish([&] {
       stage.state.swivel = 0;
       stage.state.progress.job_digest = std::string(64, 'a');
       stage.state.progress.cutter.tooth_angles = {0};
-      // Later than anything before, so that the panel knows the rest once it shows this.
       stage.state.override = 0.5;
     });
-    stage.publishOffsets({});
-    WAIT_FOR(panel.label("override_value") == "50 %");
-    WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z" && panel.enabled("plan"));
-    panel.click("plan");
-    WAIT_FOR(panel.enabled("start"));
-    panel.click("start");
-    WAIT_FOR(shown("unfinished"));
+    WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+    startAndBeAsked("discard");
   }
   bool shown(const std::string& question) {
     return panel.the<QPlainTextEdit>((question + "_question").c_str()).isVisible();
@@ -308,30 +246,26 @@ class Asked : public Input {
   /// Double clicks an answer, once it is taken. @param next question.
   void answerTwice(const char* answer, int pause, const std::string& next) {
     WAIT_FOR(panel.enabled(answer));
-    panel.doubleClick(answer, pause, [&] { EXPECT_TRUE(shown(next)); });
+    panel.doubleClick(panel.the<QPushButton>(answer), pause, [&] { EXPECT_TRUE(shown(next)); });
     EXPECT_TRUE(shown(next));
   }
-  std::size_t goals() { return stage.get(&Stage::goals).size(); }
-
-  Panel panel{"cell/stage", kJobs + "paper.yaml"};
 };
 
 TEST_F(Asked, ADoubleClickAnswersOneQuestion) {
   for (const int pause : {100, 250, 400, 500}) {
     SCOPED_TRACE(pause);
-    panel.doubleClick("start", pause);
+    panel.doubleClick(panel.the<QPushButton>("start"), pause);
     ASSERT_NO_FATAL_FAILURE(answerTwice("discard", pause, "offsets"));
     ASSERT_NO_FATAL_FAILURE(answerTwice("ignore_offset_check", pause, "swivel"));
-    panel.answer("decline_swivel");
+    panel.press("decline_swivel");
   }
-  EXPECT_EQ(goals(), 0U);
-  EXPECT_TRUE(stage.get(&Stage::swivels).empty());
+  EXPECT_EQ(goals().size(), 0U);
+  EXPECT_TRUE(swivels().empty());
 }
 
 TEST_F(Asked, AQuestionTakesNoClickAtFirst) {
   // Far from the button that asks, long after it in the events' time, but not in the operator's.
-  WAIT_FOR(panel.enabled("discard"));
-  panel.click("discard");
+  panel.press("discard");
   for (const char* answer : {"ignore_offset_check", "decline_offsets"}) panel.click(answer);
   EXPECT_TRUE(shown("offsets"));
   WAIT_FOR(panel.enabled("decline_offsets"));
@@ -346,50 +280,46 @@ TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
     return QRect(button.mapTo(&panel.widget(), QPoint()), button.size());
   };
   const QRect discard = place("discard"), not_yet = place("decline_unfinished");
-  panel.answer("discard");
+  panel.press("discard");
   WAIT_FOR(panel.enabled("ignore_offset_check"));
   const QRect right = place("ignore_offset_check");
   EXPECT_EQ(place("decline_offsets"), not_yet);
   EXPECT_FALSE(right.intersects(discard));
-  panel.answer("ignore_offset_check");
+  panel.press("ignore_offset_check");
   WAIT_FOR(panel.enabled("confirm_swivel"));
   EXPECT_EQ(place("decline_swivel"), not_yet);
   for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
 }
 
 TEST_F(Asked, NoKeyStartsAnything) {
-  const auto press_keys = [&] {
-    for (const Qt::Key key : {Qt::Key_Return, Qt::Key_Enter, Qt::Key_Space}) {
-      QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
-    }
-  };
   const std::vector<std::pair<const char*, std::string>> ways{
       {"discard", "unfinished"}, {"ignore_offset_check", "offsets"}, {"confirm_swivel", "swivel"}};
   for (std::size_t asked = 0; asked < ways.size(); ++asked) {
     SCOPED_TRACE(ways[asked].second);
-    for (std::size_t before = 0; before < asked; ++before) panel.answer(ways[before].first);
-    press_keys();
+    for (std::size_t before = 0; before < asked; ++before) panel.press(ways[before].first);
+    pressKeys(panel);
     const std::string decline = "decline_" + ways[asked].second;
     WAIT_FOR(panel.the<QWidget>(decline.c_str()).hasFocus());
     for (int i = 0; i < 40; ++i) {
       QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
       ASSERT_TRUE(QApplication::focusWidget());
-      EXPECT_NE(QApplication::focusWidget()->objectName().toStdString(), ways[asked].first);
-      EXPECT_NE(QApplication::focusWidget()->objectName(), "start");
+      EXPECT_NE(focused(), ways[asked].first);
+      EXPECT_NE(focused(), "start");
     }
     panel.the<QWidget>(decline.c_str()).setFocus();
-    press_keys();
+    pressKeys(panel);
     EXPECT_FALSE(shown(ways[asked].second)) << "Space answers Not yet";
     panel.click("start");
   }
-  EXPECT_EQ(goals(), 0U);
-  EXPECT_TRUE(stage.get(&Stage::swivels).empty());
+  EXPECT_EQ(goals().size(), 0U);
+  EXPECT_TRUE(swivels().empty());
 }
 
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
-  for (const char* answer : {"discard", "ignore_offset_check", "confirm_swivel"}) panel.answer(answer);
-  WAIT_FOR(goals() == 1);
-  EXPECT_TRUE(stage.get(&Stage::goals).at(0).goal.discard);
+  for (const char* answer : {"discard", "ignore_offset_check", "confirm_swivel"}) panel.press(answer);
+  WAIT_FOR(goals().size() == 1);
+  EXPECT_TRUE(goals().at(0).goal.discard);
+  WAIT_FOR(panel.says("messages", "The job begins at a feed override of 50 %"));
   // From the goal on: a job that is still planned begins held.
   WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
   stage.be("running", panel);
@@ -397,37 +327,15 @@ TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
   WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
 }
 
-TEST_F(Input, SpaceHoldsAJobOfSomebodyElse) {
-  Panel panel("cell/stage", kJobs + "paper.yaml");
-  panel.widget().activateWindow();
-  ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
-  panel.openTab("Jog");
-  panel.the<QWidget>("jog_speed").setFocus();
-  WAIT_FOR(panel.state() == "Ready");
-  stage.be("starting");
-  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
-}
-
-/// How often the buttons of a panel are clicked, the stops aside, since they may well be sent twice.
-class Clicks {
- public:
-  explicit Clicks(Panel& panel) {
-    for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
-      const std::string name = button->objectName().toStdString();
-      if (name == "hold" || name == "cancel" || name == "disable") continue;
-      QObject::connect(button, &QAbstractButton::clicked, &receiver_, [this] { ++count_; });
-    }
+TEST_F(OnStage, ADoubleClickPressesAButtonOnce) {
+  QObject receiver;
+  int clicks = 0;
+  for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
+    // A stop may well be sent twice.
+    if (Names{"hold", "cancel", "disable"}.count(button->objectName().toStdString())) continue;
+    QObject::connect(button, &QAbstractButton::clicked, &receiver, [&] { ++clicks; });
   }
-  int count() const { return count_; }
-
- private:
-  QObject receiver_;
-  int count_ = 0;
-};
-
-TEST_F(Input, ADoubleClickPressesAButtonOnce) {
-  Panel panel("cell/stage", kJobs + "paper.yaml");
-  std::set<std::string> clicked;
+  Names clicked;
   for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
     stage.be(state, panel);
     for (const char* tab : {"Job", "Section", "Jog", "View"}) {
@@ -438,9 +346,9 @@ TEST_F(Input, ADoubleClickPressesAButtonOnce) {
           const bool opens_a_dialog = name == "choose" || name == "setup";
           if (!button->isVisible() || !button->isEnabled() || opens_a_dialog) continue;
           SCOPED_TRACE(std::to_string(pause) + " ms on " + button->objectName().toStdString());
-          const Clicks clicks(panel);
+          clicks = 0;
           panel.doubleClick(*button, pause);
-          EXPECT_LE(clicks.count(), 1);
+          EXPECT_LE(clicks, 1);
           clicked.insert(button->objectName().toStdString());
         }
       }
@@ -452,9 +360,7 @@ TEST_F(Input, ADoubleClickPressesAButtonOnce) {
   }
 }
 
-TEST_F(Input, ADoubleClickOnWhatClosesADialogPressesNothingBelow) {
-  stage.change([&] { stage.plan.valid = 1; });
-  Panel panel("cell/stage", kJobs + "paper.yaml");
+TEST_F(OnStage, ADoubleClickOnWhatClosesADialogPressesNothingBelow) {
   panel.plan();
   QDialog dialog(&panel.widget());
   QPushButton close("Close", &dialog);
@@ -471,25 +377,7 @@ TEST_F(Input, ADoubleClickOnWhatClosesADialogPressesNothingBelow) {
   panel.click("start");
   EXPECT_TRUE(panel.enabled("start"));
   panel.click("start");
-  WAIT_FOR(stage.get(&Stage::goals).size() == 1);
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-
-/// All whose value the mouse wheel could change.
-std::vector<QWidget*> wheeled(QWidget& panel) {
-  std::vector<QWidget*> found;
-  for (auto* widget : panel.findChildren<QWidget*>()) {
-    const bool slides = qobject_cast<QAbstractSlider*>(widget) && !qobject_cast<QScrollBar*>(widget);
-    if (slides || qobject_cast<QAbstractSpinBox*>(widget) || qobject_cast<QComboBox*>(widget)) found.push_back(widget);
-  }
-  return found;
-}
-
-double valueOf(QWidget& widget) {
-  if (auto* slider = qobject_cast<QAbstractSlider*>(&widget)) return slider->value();
-  if (auto* choice = qobject_cast<QComboBox*>(&widget)) return choice->currentIndex();
-  return qobject_cast<QDoubleSpinBox*>(&widget)->value();
+  WAIT_FOR(goals().size() == 1);
 }
 
 void turnWheel(QWidget& over, int notches) {
@@ -501,16 +389,16 @@ void turnWheel(QWidget& over, int notches) {
   }
 }
 
-TEST_F(Input, TheMouseWheelChangesWhatHasTheFocusAlone) {
+TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAlone) {
   stage.be("running");
-  stage.change([&] { stage.plan.valid = 1; });
-  Panel panel("cell/stage", kJobs + "paper.yaml");
   WAIT_FOR(panel.label("override_value") == "100 %");
   panel.click("setup");
   WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
-  const std::vector<QWidget*> all = wheeled(panel.widget());
-  EXPECT_GE(all.size(), 7U);
-  for (QWidget* widget : all) {
+  int wheeled = 0;
+  for (auto* widget : panel.widget().findChildren<QWidget*>()) {
+    const bool slides = qobject_cast<QAbstractSlider*>(widget) && !qobject_cast<QScrollBar*>(widget);
+    if (!slides && !qobject_cast<QAbstractSpinBox*>(widget) && !qobject_cast<QComboBox*>(widget)) continue;
+    ++wheeled;
     SCOPED_TRACE(widget->objectName().toStdString());
     if (widget->hasFocus()) widget->clearFocus();
     EXPECT_FALSE(widget->focusPolicy() & Qt::WheelFocus & ~Qt::StrongFocus) << "the wheel would give it the focus";
@@ -519,6 +407,7 @@ TEST_F(Input, TheMouseWheelChangesWhatHasTheFocusAlone) {
     turnWheel(*widget, 2);
     EXPECT_EQ(valueOf(*widget), before);
   }
+  EXPECT_GE(wheeled, 7);
   panel.click("close_setup");
   panel.widget().activateWindow();
   auto& slider = panel.the<QAbstractSlider>("override");
@@ -528,35 +417,23 @@ TEST_F(Input, TheMouseWheelChangesWhatHasTheFocusAlone) {
   EXPECT_LT(slider.value(), 100);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-
-class Focus : public Input {
+class Focus : public OnStage {
  protected:
-  void SetUp() override {
-    panel.widget().activateWindow();
-    ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
-  }
-  static std::string focused() {
-    return QApplication::focusWidget() ? QApplication::focusWidget()->objectName().toStdString() : "";
-  }
-  /// Presses the keys that could press a button, wherever they go.
-  void pressKeys() {
-    for (const Qt::Key key : {Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter}) {
-      QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
-    }
-  }
-
-  Panel panel{"cell/stage", kJobs + "paper.yaml"};
+  void SetUp() override { activate(panel); }
 };
 
-TEST_F(Focus, StaysOnHoldAndNoKeyCancelsOrResumes) {
+TEST_F(Focus, GoesToHoldAndStaysAndNoKeyCancelsOrResumes) {
+  panel.openTab("Jog");
+  panel.the<QWidget>("jog_speed").setFocus();
+  stage.be("starting");
+  WAIT_FOR(focused() == "hold");  // with the job of somebody else
   stage.be("running", panel);
   clickInWindow(panel, "hold");
   WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
   for (const char* state : {"holding", "held"}) {
     stage.be(state, panel);
     EXPECT_EQ(focused(), "hold");
-    pressKeys();
+    pressKeys(panel);
   }
   // Hold again holds what is held.
   clickInWindow(panel, "resume");
@@ -564,7 +441,7 @@ TEST_F(Focus, StaysOnHoldAndNoKeyCancelsOrResumes) {
   for (const char* state : {"resuming", "running"}) {
     stage.be(state, panel);
     EXPECT_EQ(focused(), "hold");
-    pressKeys();
+    pressKeys(panel);
   }
   for (const int stop : stops()) EXPECT_EQ(stop, flute_grinder::Stop::HOLD);
   EXPECT_EQ(stage.get(&Stage::resumes), 1);
@@ -585,25 +462,23 @@ TEST_F(Focus, NoKeyReachesCancelOrDisable) {
 }
 
 TEST_F(Focus, DoesNotMoveToAButtonByItself) {
-  stage.change([&] { stage.plan.valid = 1; });
   WAIT_FOR(panel.enabled("plan"));
   // Disabled while it plans, which takes the focus from it.
   stage.change([&] { stage.plan_hangs = true; });
   clickInWindow(panel, "plan");
   WAIT_FOR(!panel.enabled("plan"));
   EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
-  pressKeys();
+  pressKeys(panel);
   stage.release();
   WAIT_FOR(panel.enabled("start"));
   EXPECT_TRUE(stops().empty());
   clickInWindow(panel, "start");
-  WAIT_FOR(stage.get(&Stage::goals).size() == 1);
+  WAIT_FOR(goals().size() == 1);
   stage.be("running", panel);
   EXPECT_EQ(focused(), "hold") << "Space stops what Start has begun";
-  stage.end(stage.get(&Stage::goals).at(0).goal_id.id, flute_grinder::GrindResult());
+  stage.end(goals().at(0).goal_id.id, flute_grinder::GrindResult());
   stage.be("ready", panel);
   EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
 }
 
-}  // namespace test_panel_input
-}  // namespace grinder
+}  // namespace grinder::test_panel_input

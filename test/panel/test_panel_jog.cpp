@@ -1,29 +1,21 @@
 // The jog buttons of the panel, against a grinder of the test's own.
 
 #include "flute_grinder/job/axes.h"
-#include "panel_fixture.h"
 #include "stage.h"
 
-#include <ros/package.h>
-#include <QComboBox>
 #include <QDateTime>
-#include <QDoubleSpinBox>
 #include <QTabWidget>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <map>
 
-namespace grinder {
-namespace test_panel_jog {
+namespace grinder::test_panel_jog {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
 const Names kButtons{"jog_x_plus", "jog_x_minus", "jog_y_plus", "jog_y_minus",
                      "jog_z_plus", "jog_z_minus", "jog_a_plus", "jog_a_minus"};
 
-class Jogging : public ::testing::Test {
+/// Without a job.
+class Jogging : public Staged {
  protected:
   Jogging() {
     stage.be("ready");
@@ -44,7 +36,6 @@ class Jogging : public ::testing::Test {
   }
   std::vector<flute_grinder::Jog> jogs() { return stage.get(&Stage::jogs); }
   std::vector<flute_grinder::JogStep::Request> steps() { return stage.get(&Stage::steps); }
-  std::vector<flute_grinder::TouchOff::Request> touches() { return stage.get(&Stage::touches); }
   /// Presses a button until some messages have come.
   void hold(const char* name) {
     const std::size_t before = jogs().size();
@@ -59,28 +50,32 @@ class Jogging : public ::testing::Test {
     EXPECT_EQ(jogs().size(), count);
   }
 
-  Stage stage;
   Panel panel{"cell/stage"};
 };
 
-TEST_F(Jogging, ButtonsAreEnabledWhereAnAxisMayBeJogged) {
-  for (const auto& [state, allowed] : {std::pair{"ready", true},
-                                       {"held", false},
-                                       {"retracted", true},
-                                       {"running", false},
-                                       {"jogging", true},
-                                       {"disabled", false},
-                                       {"jogging_retracted", true}}) {
-    stage.be(state);
-    WAIT_FOR(panel.enabled("jog_x_plus") == allowed);
-    WAIT_FOR(enabledButtons() == (allowed ? kButtons : Names()));
+TEST_F(Jogging, AxesMayBeJoggedAndTouchedOffWhereTheStateAllows) {
+  struct Row {
+    const char* state;
+    bool jogged, touched_off;
+  };
+  for (const Row& row : {Row{"ready", true, true},
+                         {"held", false, false},
+                         {"retracted", true, false},
+                         {"running", false, false},
+                         {"jogging", true, false},
+                         {"disabled", false, true},
+                         {"jogging_retracted", true, false}}) {
+    SCOPED_TRACE(row.state);
+    stage.be(row.state, panel);
+    EXPECT_EQ(enabledButtons(), row.jogged ? kButtons : Names());
+    EXPECT_EQ(panel.enabled("touch_off"), row.touched_off);
   }
-  WAIT_FOR(panel.state() == "Jogging retracted");
   stage.be("ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
   WAIT_FOR(enabledButtons().empty());
+  EXPECT_FALSE(panel.enabled("touch_off"));
 }
 
 TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
@@ -119,6 +114,7 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   WAIT_FOR(touches().size() == 2);
   EXPECT_EQ(touches()[0].axis, kX);
   EXPECT_DOUBLE_EQ(touches()[0].position, 1.5e-3);
+  EXPECT_EQ(touches()[0].basis.wheel_digest, "") << "without a job";
   EXPECT_EQ(touches()[1].axis, kA);
   EXPECT_DOUBLE_EQ(touches()[1].position, -M_PI / 6);
   for (const flute_grinder::TouchOff::Request& touch : touches()) {
@@ -130,27 +126,18 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   WAIT_FOR(panel.says("messages", "Touch-off: the axes are not homed"));
 }
 
-TEST_F(Jogging, TouchOffOfYNeedsTheJobAndItsHeight) {
-  panel.the<QComboBox>("touch_axis").setCurrentText("Y");
-  auto& diameter = panel.the<QDoubleSpinBox>("touch_at");
+TEST_F(Jogging, TouchOffOfYAndZNeedsTheJob) {
+  auto& axes = panel.the<QComboBox>("touch_axis");
+  axes.setCurrentText("Y");
   WAIT_FOR(panel.enabled("jog_x_plus"));
   EXPECT_FALSE(panel.enabled("touch_off")) << "without a diameter";
-  diameter.setValue(12.02);
-  WAIT_FOR(panel.enabled("touch_off"));
-  panel.click("touch_off");
-  WAIT_FOR(panel.says("messages", "open the job first"));
-
-  Panel with_job("cell/stage", kPaper);
-  with_job.the<QComboBox>("touch_axis").setCurrentText("Y");
-  with_job.the<QDoubleSpinBox>("touch_at").setValue(12.02);
-  WAIT_FOR(with_job.enabled("touch_off"));
-  with_job.click("touch_off");
-  WAIT_FOR(with_job.text("messages").find("move Z to -2.788 mm, and touch again") != std::string::npos);
-  stage.change([&] { stage.state.work_position[kZ] = -2.788e-3; });
-  // The job's end diameter is 10 mm.
-  WAIT_FOR((with_job.click("touch_off"), !touches().empty()));
-  EXPECT_EQ(touches()[0].axis, kY);
-  EXPECT_NEAR(touches()[0].position, 1.01e-3, 1e-12);
+  panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);
+  panel.press("touch_off");
+  WAIT_FOR(panel.says("messages", "the small end of a job's cutter; open the job first"));
+  axes.setCurrentText("Z");
+  panel.press("touch_off");
+  WAIT_FOR(panel.says("messages", "the height of a job's set-up; open the job first"));
+  EXPECT_TRUE(touches().empty());
 }
 
 TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
@@ -173,10 +160,9 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   WAIT_FOR(offset() == "Work offset of A: -90.0000 deg, never set");
   axes.setCurrentText("Y");
   panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);
+  stage.standAt({-0.0295, 0.0025, -0.0015, -M_PI / 2});
   stage.change([&] {
-    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
-    stage.joints.position = {-0.0295, 0.0025, -0.0015, -M_PI / 2};
-    std::copy(stage.joints.position.begin(), stage.joints.position.end(), stage.state.position.begin());
+    stage.state.position = {-0.0295, 0.0025, -0.0015, -M_PI / 2};
     stage.state.work_position = {0.022, 0.00101, 0.001184, 0};
   });
   WAIT_FOR(panel.label("position_y") == "Y     1.010 mm");
@@ -187,19 +173,7 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   WAIT_FOR(offset().empty());
 }
 
-TEST_F(Jogging, TouchOffIsEnabledWhereOffsetsAreSet) {
-  for (const auto& [state, allowed] :
-       {std::pair{"ready", true}, {"jogging", false}, {"disabled", true}, {"retracted", false}}) {
-    stage.be(state);
-    WAIT_FOR(panel.enabled("touch_off") == allowed);
-  }
-  stage.be("ready");
-  WAIT_FOR(panel.enabled("touch_off"));
-  stage.change([&] { stage.state.homed = 0; });
-  WAIT_FOR(!panel.enabled("touch_off"));
-}
-
-TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
+TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThem) {
   const Names switches{"spindle_on", "spindle_off", "coolant_on", "coolant_off"};
   const auto enabled = [&] {
     Names names;
@@ -226,29 +200,13 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllows) {
   EXPECT_TRUE(enabled().empty());
   stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
-}
-
-TEST_F(Jogging, WhatTheDriveCannotDoIsGrey) {
-  WAIT_FOR(panel.enabled("home") && panel.enabled("spindle_on") && panel.enabled("coolant_on"));
-  flute_grinder::MachineInfo machine;
-  machine.coolant = 1;
-  stage.publishMachine(machine);
-  WAIT_FOR(!panel.enabled("home") && !panel.enabled("spindle_on"));
-  EXPECT_TRUE(panel.enabled("coolant_on"));
-}
-
-TEST_F(Jogging, TheDistanceToGoIsShownWhileSomethingMoves) {
-  WAIT_FOR(panel.enabled("jog_x_plus"));
-  EXPECT_EQ(panel.label("to_go_x"), "");
-  stage.change([&] {
-    stage.joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"};
-    stage.joints.position = {0, 0, 0, 0};
-    stage.state.distance_to_go = {-0.0125, 0, 0, M_PI};
-  });
-  WAIT_FOR(panel.label("to_go_x") == "X -12.500");
-  EXPECT_EQ(panel.label("to_go_y"), "Y 0.000");
-  EXPECT_EQ(panel.label("to_go_a"), "A 180.0");
-  panel.picture("to_go");
+  stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 0; });
+  stage.be("ready", panel);
+  EXPECT_TRUE(panel.enabled("home"));
+  flute_grinder::MachineInfo without;
+  without.coolant = 1;
+  stage.publishMachine(without);
+  WAIT_FOR(enabled() == Names{"coolant_on"} && !panel.enabled("home"));
 }
 
 TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
@@ -273,29 +231,29 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
   WAIT_FOR(panel.enabled("jog_x_plus"));
   choose("while pressed");
   auto& button = panel.the<QPushButton>("jog_x_plus");
-  auto& tabs = panel.the<QTabWidget>("tabs");
-  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  const int tab = tabs.currentIndex();
-  tabs.setCurrentIndex(0);
-  expectStopped();
-  QTest::mouseRelease(&button, Qt::LeftButton);
-  tabs.setCurrentIndex(tab);
-  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  QFocusEvent out(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
-  QCoreApplication::sendEvent(&button, &out);
-  expectStopped();
-  QTest::mouseRelease(&button, Qt::LeftButton);
-  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  QTest::mouseMove(&button, QPoint(-100, -100));
-  QMouseEvent away(QEvent::MouseMove, QPointF(-100, -100), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
-  QCoreApplication::sendEvent(&button, &away);
-  expectStopped();
-  QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
-  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
-  stage.be("fault");
-  expectStopped();
-  QTest::mouseRelease(&button, Qt::LeftButton);
+  const std::map<std::string, std::function<void()>> ways{
+      {"another tab is shown", [&] { panel.the<QTabWidget>("tabs").setCurrentIndex(0); }},
+      {"the window loses the focus",
+       [&] {
+         QFocusEvent out(QEvent::FocusOut, Qt::ActiveWindowFocusReason);
+         QCoreApplication::sendEvent(&button, &out);
+       }},
+      {"the mouse is moved away",
+       [&] {
+         QTest::mouseMove(&button, QPoint(-100, -100));
+         QMouseEvent away(QEvent::MouseMove, QPointF(-100, -100), Qt::NoButton, Qt::LeftButton, Qt::NoModifier);
+         QCoreApplication::sendEvent(&button, &away);
+       }},
+      {"the grinder reports a fault", [&] { stage.be("fault"); }}};
+  for (const auto& [how, end] : ways) {
+    SCOPED_TRACE(how);
+    stage.be("ready", panel);
+    panel.openTab("Jog");
+    ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
+    end();
+    ASSERT_NO_FATAL_FAILURE(expectStopped());
+    QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
+  }
 }
 
-}  // namespace test_panel_jog
-}  // namespace grinder
+}  // namespace grinder::test_panel_jog

@@ -1,36 +1,18 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/messages/offset_basis.h"
-#include "panel_fixture.h"
 #include "stage.h"
 
-#include <ros/package.h>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QTextBlock>
 #include <QTextCursor>
 
-#include <string>
-#include <utility>
-#include <vector>
-
-namespace grinder {
-namespace test_panel_offsets {
-
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
+namespace grinder::test_panel_offsets {
 
 /// With the paper's job, of D 10 mm, planned.
-class ZeroPoints : public ::testing::Test {
+class ZeroPoints : public OnStage {
  protected:
   void SetUp() override {
-    stage.change([&] {
-      stage.plan.valid = 1;
-      stage.plan.duration = 12;
-    });
-    stage.be("ready");
-    panel.widget().show();
+    stage.change([&] { stage.plan.duration = 12; });
     panel.plan();
   }
 
@@ -51,15 +33,12 @@ class ZeroPoints : public ::testing::Test {
     stage.publishOffsets(offsets);
   }
   bool asks() { return panel.isVisible("ignore_offset_check"); }
-  void startAndBeAsked() {
-    panel.click("start");
-    WAIT_FOR(asks());
+  /// Waits until the panel shows which axes do not fit, and starts.
+  void startAndBeAskedFor(const std::string& axes) {
+    WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: " + axes);
+    startAndBeAsked("ignore_offset_check");
   }
-  std::vector<flute_grinder::GrindActionGoal> goals() { return stage.get(&Stage::goals); }
   std::vector<flute_grinder::SetOffset::Request> offsetsSet() { return stage.get(&Stage::offsets_set); }
-
-  Stage stage;
-  Panel panel{"cell/stage", kPaper};
 };
 
 TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
@@ -76,8 +55,7 @@ TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
     offsets.basis[i].wheel_width = 0.0041234;
   }
   stage.publishOffsets(offsets);
-  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
-  startAndBeAsked();
+  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   const auto& text = panel.the<QPlainTextEdit>("offsets_question");
   std::string shown;
   for (QTextBlock line = text.document()->begin(); line.isValid(); line = line.next()) {
@@ -87,7 +65,7 @@ TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
     shown += line.text()[0].toLatin1();
   }
   EXPECT_EQ(shown, "SXYZ");
-  const std::string whole = panel.the<QPlainTextEdit>("offsets_question").parentWidget()->toolTip().toStdString();
+  const std::string whole = text.parentWidget()->toolTip().toStdString();
   EXPECT_NE(whole.find("(a_roughing_cutter_of_last_week.yaml); this job has height 2.788 mm, swivel 31.769 deg"),
             std::string::npos)
       << whole;
@@ -105,12 +83,11 @@ TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
 TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
   setFor(0.006);
   stage.change([&] { stage.state.progress.job_digest = digestOf(kPaper); });
-  auto& go_on = panel.the<QCheckBox>("continue");
-  WAIT_FOR(go_on.isEnabled() && panel.label("zero_points") == "Zero points: not of this job: Y");
+  WAIT_FOR(panel.enabled("continue") && panel.label("zero_points") == "Zero points: not of this job: Y");
   const auto& zeros = panel.the<QLabel>("zero_points");
   const auto room = [&] { return std::pair(zeros.geometry(), panel.the<QWidget>("verdict").geometry()); };
   const auto before = room();
-  QTest::mouseClick(&go_on, Qt::LeftButton, {}, QPoint(8, go_on.height() / 2));
+  panel.tick("continue");
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: Y");
   EXPECT_EQ(room(), before) << "it moves";
   panel.picture("zero_points_of_a_continued_job");
@@ -125,64 +102,53 @@ TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
 
 TEST_F(ZeroPoints, OfAnotherDiameterAreAskedForWithBothFigures) {
   setFor(0.006);
-  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
-  startAndBeAsked();
-  EXPECT_NE(panel.text("offsets_question")
-                .find("Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"),
-            std::string::npos)
-      << panel.text("offsets_question");
+  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("Y"));
+  EXPECT_TRUE(panel.says("offsets_question",
+                         "Y was touched off for D 6 mm, wheel D 100 mm (other.yaml); this job has D 10 mm"));
+  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
   panel.picture("offset_question");
-  panel.answer("decline_offsets");
+  panel.press("decline_offsets");
   WAIT_FOR(!asks());
   EXPECT_TRUE(goals().empty());
-  startAndBeAsked();
-  panel.answer("ignore_offset_check");
+  startAndBeAsked("ignore_offset_check");
+  panel.press("ignore_offset_check");
   WAIT_FOR(goals().size() == 1);
   EXPECT_TRUE(goals()[0].goal.ignore_offset_check);
   EXPECT_TRUE(offsetsSet().empty());
 }
 
-TEST_F(ZeroPoints, AreFittedByOneKeyAndTheJobIsPlannedAgain) {
-  setFor(0.006);
-  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y");
-  startAndBeAsked();
-  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y");
-  panel.answer("fit_offsets");
-  WAIT_FOR(offsetsSet().size() == 1 && panel.enabled("start"));
+TEST_F(ZeroPoints, AreFittedByOneKeyAndShownWithWhatTheyWereBesideANewPlan) {
+  setFor(0.006, 0.001788);
+  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("Y, Z"));
+  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
+  panel.press("fit_offsets");
+  WAIT_FOR(stage.get(&Stage::plans).size() == 2);
+  WAIT_FOR(panel.text("messages").size() > 9 && panel.text("verdict").find("Takes 12.0 s.") == 0);
+  EXPECT_EQ(panel.text("messages").substr(9),
+            "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");
+  panel.picture("fitted");
+  ASSERT_EQ(offsetsSet().size(), 2U);
   const flute_grinder::SetOffset::Request set = offsetsSet()[0];
   EXPECT_EQ(set.axis, kY);
   EXPECT_NEAR(set.value, 0.004, 1e-15);
   EXPECT_EQ(set.basis.job_name, "paper.yaml");
   EXPECT_EQ(set.basis.end_diameter, 0.01);
   EXPECT_EQ(set.basis.method, flute_grinder::OffsetBasis::COMPUTED);
+  EXPECT_TRUE(panel.enabled("start"));
   EXPECT_TRUE(goals().empty()) << "only planned";
-}
-
-TEST_F(ZeroPoints, ThatAreFittedAreShownWithWhatTheyWereBesideThePlan) {
-  setFor(0.006, 0.001788);
-  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: Y, Z");
-  startAndBeAsked();
-  EXPECT_EQ(panel.the<QPushButton>("fit_offsets").text(), "Fit Y and Z");
-  panel.answer("fit_offsets");
-  WAIT_FOR(panel.text("messages").size() > 9 && panel.text("verdict").find("Takes 12.0 s.") == 0);
-  EXPECT_EQ(panel.text("messages").substr(9),
-            "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");
-  panel.picture("fitted");
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   stage.publishOffsets({});
-  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
-  startAndBeAsked();
+  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   EXPECT_FALSE(panel.isVisible("fit_offsets"));
-  EXPECT_TRUE(panel.says("offsets_question", "Y was never set")) << panel.text("offsets_question");
+  EXPECT_TRUE(panel.says("offsets_question", "Y was never set"));
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!asks());
 }
 
 TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
-  const auto touches = [&] { return stage.get(&Stage::touches); };
   const auto large = [&](bool is) {
     stage.change([&] { stage.touch_refusal = is ? "it would change by much" : "", stage.large_change = is; });
   };
@@ -192,10 +158,10 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   WAIT_FOR(panel.enabled("touch_off"));
   large(true);
   for (const int pause : {100, 250, 400, 500}) {
-    panel.doubleClick("touch_off", pause, [&] { WAIT_FOR(asks()); });
+    panel.doubleClick(panel.the<QPushButton>("touch_off"), pause, [&] { WAIT_FOR(asks()); });
     EXPECT_TRUE(asks());
     EXPECT_EQ(panel.text("touch_question"), "Touch-off: it would change by much");
-    panel.answer("decline_touch");
+    panel.press("decline_touch");
   }
   ASSERT_EQ(touches().size(), 4U);
   EXPECT_EQ(touches()[0].basis.job_name, "paper.yaml");
@@ -209,25 +175,25 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   WAIT_FOR(panel.enabled("touch_off_anyway"));
   for (const flute_grinder::TouchOff::Request& touch : touches()) EXPECT_FALSE(touch.large_change_ok);
   large(false);
-  panel.answer("touch_off_anyway");
+  panel.press("touch_off_anyway");
   WAIT_FOR(touches().size() == 7);
   EXPECT_TRUE(touches()[6].large_change_ok);
   EXPECT_FALSE(asks());
 }
 
-TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
-  const auto touches = [&] { return stage.get(&Stage::touches); };
-  // The wheel's middle at the height of the axis, where it touches.
-  stage.change([&] { stage.state.work_position[kZ] = -0.002788, stage.state.override = 0.5; });
-  WAIT_FOR(panel.label("override_value") == "50 %");
+TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
   panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Y");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");
-  // The cone ends with D 15.249 mm; the shank has D 16 mm.
   at.setValue(16.9);
-  WAIT_FOR(panel.enabled("touch_off"));
-  panel.click("touch_off");
+  panel.press("touch_off");
+  WAIT_FOR(panel.says("messages", "move Z to -2.788 mm, and touch again"));
+  // The wheel's middle at the height of the axis, where it touches.
+  publish([&] { stage.state.work_position[kZ] = -0.002788; });
+  // The cone ends with D 15.249 mm; the shank has D 16 mm.
+  panel.press("touch_off");
   WAIT_FOR(touches().size() == 1);
+  EXPECT_EQ(touches()[0].axis, kY);
   EXPECT_NEAR(touches()[0].position, 0.00345, 1e-12);
   at.setValue(110);
   panel.click("touch_off");
@@ -235,25 +201,12 @@ TEST_F(ZeroPoints, OfYAreAskedForWhereTheDiameterIsFarFromTheJobs) {
   EXPECT_EQ(panel.text("touch_question"),
             "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm.");
   panel.picture("touch_off_diameter");
-  panel.answer("decline_touch");
+  panel.press("decline_touch");
   panel.click("touch_off");
-  panel.answer("touch_off_anyway");
+  panel.press("touch_off_anyway");
   WAIT_FOR(touches().size() == 2);
   EXPECT_NEAR(touches()[1].position, 0.05, 1e-12);
   EXPECT_FALSE(touches()[1].large_change_ok) << "the limit of a change is another question";
 }
 
-TEST_F(ZeroPoints, OfYAndZNeedAJob) {
-  Panel without("cell/stage");
-  without.the<QComboBox>("touch_axis").setCurrentText("Z");
-  WAIT_FOR(without.enabled("touch_off"));
-  without.click("touch_off");
-  WAIT_FOR(without.text("messages").find("open the job first") != std::string::npos);
-  without.the<QComboBox>("touch_axis").setCurrentText("X");
-  without.click("touch_off");
-  WAIT_FOR(stage.get(&Stage::touches).size() == 1);
-  EXPECT_EQ(stage.get(&Stage::touches).at(0).basis.wheel_digest, "");
-}
-
-}  // namespace test_panel_offsets
-}  // namespace grinder
+}  // namespace grinder::test_panel_offsets

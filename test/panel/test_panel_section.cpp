@@ -1,34 +1,20 @@
 // The panel's section of the ground cutter, against figures in closed form.
 
-#include "flute_grinder/messages/offset_basis.h"
-#include "panel_fixture.h"
 #include "stage.h"
 
-#include <ros/package.h>
-#include <QCheckBox>
-#include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QRegularExpression>
-#include <QTemporaryDir>
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
-#include <vector>
 
-namespace grinder {
-namespace test_panel_section {
+namespace grinder::test_panel_section {
 
-const QString kPaper = QString::fromStdString(ros::package::getPath("flute_grinder")) + "/test/jobs/paper.yaml";
-const char* const kRed = "color:#b00020";
+const std::string kRed = "<span style=\"color:#b00020\">";
 
 // A cylinder of 10 mm with a straight flute of 1.6 mm depth: the wheel's upper face passes the axis at 5 mm sin 8 deg,
 // its surface leaves a flat floor, which ends on the cutter's circle or at the wheel's lower face.
 constexpr double kRadius = 5, kDepth = 1.6;  // [mm]
 const double kFace = kRadius * std::sin(8 * M_PI / 180);
-
-/// The core that test/jobs/paper.yaml asks for at X [mm].
-double paperCore(double x) { return 7.1 + (12.4 - 7.1) * x / 30; }
 
 /// The closed form of the flute's angle that a wheel leaves [deg].
 double flute(double width) {
@@ -36,11 +22,7 @@ double flute(double width) {
   return 8 + std::min(half_floor, std::asin(std::min(1.0, (width - kFace) / kRadius))) * 180 / M_PI;
 }
 
-QByteArray straight(double width) {
-  return "setup: {swivel_deg: 0, height_mm: " + QByteArray::number(kFace - width / 2, 'g', 12) + "}";
-}
-
-class SectionOnStage : public ::testing::Test {
+class SectionOnStage : public Staged {
  protected:
   /// A copy of test/jobs/paper.yaml with a cylinder and a straight flute in it.
   QString cylinder(double width, int teeth) {
@@ -52,7 +34,8 @@ class SectionOnStage : public ::testing::Test {
                        {"teeth: 1", "teeth: " + QByteArray::number(teeth)},
                        {"width_mm: 3", "width_mm: " + QByteArray::number(width)},
                        {"overtravel_mm: [1, 7]", "overtravel_mm: [20, 20]"},
-                       {"setup: {swivel_deg: 31.769, height_mm: 2.788}", straight(width)}});
+                       {"swivel_deg: 31.769, height_mm: 2.788",
+                        "swivel_deg: 0, height_mm: " + QByteArray::number(kFace - width / 2, 'g', 12)}});
   }
   static void openSection(Panel& panel) {
     panel.openTab("Section");
@@ -61,13 +44,12 @@ class SectionOnStage : public ::testing::Test {
   static double x(Panel& panel) { return panel.the<QDoubleSpinBox>("section_x").value(); }
   /// Switches it on or off.
   static void follow(Panel& panel, bool on = true) {
-    auto& box = panel.the<QCheckBox>("follow_wheel");
-    QTest::mouseClick(&box, Qt::LeftButton, {}, QPoint(8, box.height() / 2));
-    ASSERT_EQ(box.isChecked(), on);
+    panel.tick("follow_wheel");
+    ASSERT_EQ(panel.the<QCheckBox>("follow_wheel").isChecked(), on);
   }
   void standAt(double x) { stage.standAt({x, 0, 0, 0}); }
-  static bool shows(Panel& panel, const std::string& text) {
-    return panel.label("section_figures").find(text) != std::string::npos;
+  static ::testing::AssertionResult shows(Panel& panel, const std::string& text) {
+    return panel.shows("section_figures", text);
   }
   /// The numbers of the text, in their order.
   static std::vector<double> numbers(Panel& panel) {
@@ -78,7 +60,6 @@ class SectionOnStage : public ::testing::Test {
     return found;
   }
 
-  Stage stage;
   const QTemporaryDir folder;
 };
 
@@ -90,14 +71,13 @@ TEST_F(SectionOnStage, FiguresOfAStraightFluteAreThoseOfTheClosedForm) {
   // The rake face is a plane, so that the chord has its angle.
   EXPECT_TRUE(shows(panel,
                     "Rake 8.00 deg, asked 7.50 to 8.50 deg, chordal 8.00 deg<br>"
-                    "Core 6.800 mm, asked 6.800 within 0.1 mm<br>Spiral "))
-      << panel.label("section_figures");
+                    "Core 6.800 mm, asked 6.800 within 0.1 mm<br>Spiral "));
   const double land = 360 - flute(3);
   const std::vector<double> shown = numbers(panel);
   ASSERT_EQ(shown.size(), 11U) << panel.label("section_figures");
   EXPECT_NEAR(shown[9], land, 0.0051);
   EXPECT_NEAR(shown[10], kRadius * land * M_PI / 180, 0.0051);
-  EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+  EXPECT_FALSE(shows(panel, kRed));
 }
 
 TEST_F(SectionOnStage, AReliefHasItsClearanceAndWidth) {
@@ -121,7 +101,7 @@ TEST_F(SectionOnStage, AReliefHasItsClearanceAndWidth) {
   // As wide as asked at the small end, and wider with the diameter.
   const double width = 0.3 * (6 + 2 * 8 * std::tan(2 * M_PI / 180)) / 6;
   EXPECT_NEAR(numbers(panel).at(3), width, 0.0051) << panel.label("section_figures");
-  EXPECT_FALSE(shows(panel, kRed)) << panel.label("section_figures");
+  EXPECT_FALSE(shows(panel, kRed));
   panel.picture("section_secondary");
 }
 
@@ -141,42 +121,39 @@ TEST_F(SectionOnStage, WhatIsNotAsAskedIsRed) {
   ASSERT_GT(flute(8), 45);
   Panel narrow("cell/stage", cylinder(8, 8));
   openSection(narrow);
-  WAIT_FOR(shows(narrow, "<span style=\"color:#b00020\">No land on tooth 1</span>"));
+  WAIT_FOR(shows(narrow, kRed + "No land on tooth 1</span>"));
   narrow.picture("section_without_land");
   // Another swivel than the one that makes the rake.
   Panel panel("cell/stage", changedJob(kPaper, folder.filePath("swivel.yaml"),
                                        {{"swivel_deg: 31.769", "swivel_deg: 20"}, {"teeth: 1", "teeth: 2"}}));
   openSection(panel);
-  WAIT_FOR(shows(panel, "<span style=\"color:#b00020\">Rake "));
+  WAIT_FOR(shows(panel, kRed + "Rake "));
   EXPECT_GT(std::abs(numbers(panel).at(0) - 8), 0.5) << panel.label("section_figures");
   panel.picture("section_wrong_rake");
 }
 
 TEST_F(SectionOnStage, CoreSpiralAndChordHaveTheirTolerances) {
-  const auto job = [&](const QString& name, const QByteArray& core, const QByteArray& spiral, const QByteArray& chord) {
-    return changedJob(kPaper, folder.filePath(name),
-                      {{"core_diameter_mm: 7.1", "core_diameter_mm: " + core},
-                       {"spiral_tolerance_deg: 4", "spiral_tolerance_deg: " + spiral},
-                       {"chordal_rake_tolerance_deg: 6", "chordal_rake_tolerance_deg: " + chord}});
+  const auto at_small_end = [&](Panel& panel) {
+    openSection(panel);
+    WAIT_FOR(shows(panel, "Core "));
+    panel.the<QDoubleSpinBox>("section_x").setValue(0);
   };
   {
-    Panel good("cell/stage", job("good.yaml", "7.1", "5", "6"));
-    openSection(good);
-    WAIT_FOR(shows(good, "Core "));
-    good.the<QDoubleSpinBox>("section_x").setValue(0);
+    Panel good("cell/stage", changedJob(kPaper, folder.filePath("good.yaml"),
+                                        {{"spiral_tolerance_deg: 4", "spiral_tolerance_deg: 5"}}));
+    ASSERT_NO_FATAL_FAILURE(at_small_end(good));
     WAIT_FOR(shows(good, "mm, asked 7.100 within 0.1 mm"));
-    EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5 deg")) << good.label("section_figures");
-    EXPECT_FALSE(shows(good, kRed)) << good.label("section_figures");
+    EXPECT_TRUE(shows(good, " deg, asked 30.00 within 5 deg"));
+    EXPECT_FALSE(shows(good, kRed));
     good.picture("section_with_tolerances");
   }
-  Panel off("cell/stage", job("off.yaml", "7.4", "0.001", "1"));
-  openSection(off);
-  WAIT_FOR(shows(off, "Core "));
-  off.the<QDoubleSpinBox>("section_x").setValue(0);
+  Panel off("cell/stage", changedJob(kPaper, folder.filePath("off.yaml"),
+                                     {{"core_diameter_mm: 7.1", "core_diameter_mm: 7.4"},
+                                      {"spiral_tolerance_deg: 4", "spiral_tolerance_deg: 0.001"},
+                                      {"chordal_rake_tolerance_deg: 6", "chordal_rake_tolerance_deg: 1"}}));
+  ASSERT_NO_FATAL_FAILURE(at_small_end(off));
   WAIT_FOR(shows(off, "asked 7.400 within 0.1 mm"));
-  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Core 7.0")) << off.label("section_figures");
-  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">Spiral ")) << off.label("section_figures");
-  EXPECT_TRUE(shows(off, std::string("<span style=\"") + kRed + "\">, chordal ")) << off.label("section_figures");
+  for (const char* figure : {"Core 7.0", "Spiral ", ", chordal "}) EXPECT_TRUE(shows(off, kRed + figure));
   off.picture("section_core_off");
 }
 
@@ -189,7 +166,8 @@ TEST_F(SectionOnStage, ItFollowsTheWheel) {
   follow(panel);
   WAIT_FOR(x(panel) == 12.35 || x(panel) == 12.34);
   EXPECT_FALSE(panel.enabled("section_x"));
-  WAIT_FOR(numbers(panel).size() == 11 && std::abs(numbers(panel)[5] - paperCore(12.345)) < 0.003);
+  const double core = 7.1 + (12.4 - 7.1) * 12.345 / 30;  // that the job asks for
+  WAIT_FOR(numbers(panel).size() == 11 && std::abs(numbers(panel)[5] - core) < 0.003);
   standAt(-0.05);
   WAIT_FOR(x(panel) == 0);
   standAt(0.2);
@@ -226,21 +204,4 @@ TEST_F(SectionOnStage, ItSaysWhatItCannotShow) {
   WAIT_FOR(shows(panel, "Rake "));
 }
 
-TEST_F(SectionOnStage, AQuestionAtTheStartIsSeen) {
-  stage.change([&] {
-    stage.plan.valid = 1;
-    stage.state.progress.job_digest = std::string(64, 'a');
-  });
-  stage.be("ready");
-  Panel panel("cell/stage", kPaper);
-  panel.plan();
-  const QPoint place = panel.the<QWidget>("hold").pos();
-  openSection(panel);
-  WAIT_FOR(shows(panel, "Rake "));
-  EXPECT_EQ(panel.the<QWidget>("hold").pos(), place);
-  panel.click("start");
-  WAIT_FOR(panel.isVisible("discard"));
-}
-
-}  // namespace test_panel_section
-}  // namespace grinder
+}  // namespace grinder::test_panel_section

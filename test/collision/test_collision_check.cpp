@@ -8,8 +8,8 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <stdexcept>
+#include <utility>
 
 namespace grinder {
 namespace test_collision_check {
@@ -57,10 +57,7 @@ TEST(CollisionCheck, ReportsATenthOfAMillimetreFromTheClearanceAndFromAHit) {
 
 /// The wheel stands at (X, D1/2 + Dw/2 + Y, h + Z) of the cutter's frame, its axis along (-sin s, 0, cos s).
 TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
-  std::mt19937 random(5);
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  auto between = numbers(5);
   Shape collet;
   collet.pose = Translation3d(0.0735, 0, 0) * AngleAxisd(90 * kDegree, Vector3d::UnitY());
   collet.radius = 0.021;
@@ -88,10 +85,7 @@ TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
 
 /// Many legs, all pairs of the shipped machine, angled wheels: the closest of close positions all along the path.
 TEST(CollisionCheck, AgreesWithManyPositionsOfAPath) {
-  std::mt19937 random(9);
-  const auto between = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
+  auto between = numbers(9);
   const MachineShapes machine(shippedUrdf());
   int apart = 0;
   for (int i = 0; i < 6; ++i) {
@@ -123,20 +117,18 @@ TEST(CollisionCheck, AgreesWithManyPositionsOfAPath) {
   EXPECT_GT(apart, 2);
 }
 
-TEST(CollisionCheck, TheTableIsInTheWayOfALowWheel) {
-  SmallMachine small;
-  small.table = SmallMachine::box("table", "0.15 0 -0.15", "0.46 0.14 0.05");
-  const ClosestPlace place = closestOf(small.urdf(), plainJob(0, -0.08), {axes(0, 0), axes(0.01, 0, -0.04)});
-  EXPECT_NEAR(place.distance, 0.125 - 0.123, kAccuracy);
-  EXPECT_EQ(place.first + " and " + place.second, "wheel and table");
-}
-
-TEST(CollisionCheck, TheFlangeIsInTheWayOfTheCutter) {
+TEST(CollisionCheck, TheFlangeIsInTheWayOfCutterAndShank) {
   SmallMachine small;
   small.wheel = SmallMachine::cylinder("flange", "0 0 0.0065", "0 0 0", 0.049, 0.006);
-  const ClosestPlace place = closestOf(small.urdf(), plainJob(), {axes(0.01, 0.05), axes(0.01, -0.0008)});
-  EXPECT_NEAR(place.distance, std::hypot(0.055 - 0.0008 - 0.049, 0.0035) - 0.005, kAccuracy);
-  EXPECT_EQ(place.first + " and " + place.second, "flange and cutter");
+  CollisionJob job = plainJob();
+  job.wheel = WheelProfile::straight(0.09, 0.006);
+  for (const auto& [flute_end, body] : {std::pair{0.02, "cutter"}, {0.001, "shank"}}) {
+    job.cutter.flute_length = flute_end;
+    job.shank_from = flute_end;
+    const ClosestPlace place = closestOf(small.urdf(), job, {axes(0.01, 0.05), axes(0.01, -0.0008)});
+    EXPECT_NEAR(place.distance, std::hypot(0.055 - 0.0008 - 0.049, 0.0035) - 0.005, kAccuracy);
+    EXPECT_EQ(place.first + " and " + place.second, std::string("flange and ") + body);
+  }
 }
 
 TEST(CollisionCheck, AWheelMayBeTooLargeForItsOwnHead) {
@@ -168,7 +160,7 @@ TEST(CollisionCheck, TheRunOutEndsWhereTheWheelIsClearOfTheShank) {
   }
 }
 
-TEST(CollisionCheck, RefusesWhatIsNoFigure) {
+TEST(CollisionCheck, RefusesWhatIsNoFigureAndAMachineThatDoesNotHoldTheCutter) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MachineShapes machine(SmallMachine().urdf());
   const auto broken = [&](const auto& change) {
@@ -187,12 +179,9 @@ TEST(CollisionCheck, RefusesWhatIsNoFigure) {
   const CollisionCheck check(machine, plainJob());
   EXPECT_THROW(check.closest({}), std::invalid_argument);
   EXPECT_THROW(check.closest({axes(0, 0), axes(nan, 0)}), std::invalid_argument);
-}
-
-TEST(CollisionCheck, RefusesAMachineThatDoesNotHoldTheCutter) {
-  SmallMachine small;
-  small.cutter = "";
-  EXPECT_THROW(CollisionCheck(MachineShapes(small.urdf()), plainJob()), std::invalid_argument);
+  SmallMachine without_holder;
+  without_holder.cutter = "";
+  EXPECT_THROW(CollisionCheck(MachineShapes(without_holder.urdf()), plainJob()), std::invalid_argument);
 }
 
 }  // namespace test_collision_check

@@ -55,14 +55,6 @@ TEST(MachineShapes, XMovesTheWorkAndYAndZTheWheel) {
   EXPECT_TRUE(partOf(parts, "bed_y").motion.isZero());
 }
 
-TEST(MachineShapes, KnowsWhatCarriesALink) {
-  const auto parts = MachineShapes(shippedUrdf()).parts(0.055, 0);
-  EXPECT_EQ(partOf(parts, "table").carrier, "base");
-  EXPECT_EQ(partOf(parts, "column").carrier, "base") << "y_datum has no shape";
-  EXPECT_EQ(partOf(parts, "arbor").carrier, "wheel_head");
-  EXPECT_EQ(partOf(parts, "bed_x").carrier, "");
-}
-
 TEST(MachineShapes, WhatTurnsWithTheCutterCountsAsWhatItSweeps) {
   SmallMachine small;
   small.cutter = SmallMachine::box("driver", "0.07 0.03 0", "0.01 0.02 0.02");

@@ -3,6 +3,8 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/grind_job.h"
 
+#include "temp_folder.h"
+
 #include <gtest/gtest.h>
 
 #include <sys/wait.h>
@@ -12,7 +14,6 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
-#include <ostream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -138,57 +139,50 @@ TEST(JobFile, TurnsEveryFigureIntoSi) {
   EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.0015);
 }
 
+GrindJob jobWith(const std::string& piece, const std::string& replacement,
+                 const std::vector<std::string>& unsolved = {}) {
+  return parseJob(with(piece, replacement), "job.yaml", unsolved);
+}
+
 TEST(JobFile, ReadsWhatMayBeLeftOut) {
   const GrindJob plain = parseJob(kGood, "job.yaml");
   EXPECT_EQ(plain.process.depth_end, 0);
   EXPECT_EQ(plain.process.depthEnd(), plain.process.depth);
   EXPECT_FALSE(plain.process.incomplete_ok);
   EXPECT_TRUE(plain.spiral_angles.empty());
-  EXPECT_EQ(parseJob(with("    corner_radius_mm: [0.1, 0.2]\n", ""), "f").process.wheel_corner_radius_upper, 0);
-  EXPECT_DOUBLE_EQ(
-      parseJob(with("  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_end_mm: 1.75\n"), "f").process.depthEnd(), 0.00175);
-  EXPECT_TRUE(parseJob(with("  order:", "  incomplete_ok: true\n  order:"), "f").process.incomplete_ok);
+  EXPECT_EQ(plain.process.wheel_wear_per_pass, 0);
+  EXPECT_EQ(jobWith("    corner_radius_mm: [0.1, 0.2]\n", "").process.wheel_corner_radius_upper, 0);
+  EXPECT_DOUBLE_EQ(jobWith("  infeed_mm", "  depth_end_mm: 1.75\n  infeed_mm").process.depthEnd(), 0.00175);
+  EXPECT_TRUE(jobWith("  order:", "  incomplete_ok: true\n  order:").process.incomplete_ok);
+  const GrindProcess wearing = jobWith("wear_mm: 0.3\n", "wear_mm: 0.3\n    wear_per_pass_mm: 0.004\n").process;
+  EXPECT_DOUBLE_EQ(wearing.wheel_wear_per_pass, 4e-6);
+  EXPECT_DOUBLE_EQ(wearing.wheel_wear, 0.0003);
 }
 
-const std::vector<std::string> kUnsolved{"process.setup_swivel", "process.setup_height", "process.depth"};
-
-TEST(JobFile, LeavesOutTheSetUpThatIsYetToBeFound) {
-  const std::string setup = "  setup: {swivel_deg: -46, height_mm: 1.25}\n";
-  GrindJob job = parseJob(with(setup, ""), "job.yaml", kUnsolved);
-  EXPECT_EQ(job.process.setup_swivel, 0);
-  EXPECT_EQ(job.process.setup_height, 0);
-  EXPECT_DOUBLE_EQ(job.process.depth, 0.0015);
-  job = parseJob(with(", height_mm: 1.25", ""), "job.yaml", kUnsolved);
-  EXPECT_DOUBLE_EQ(job.process.setup_swivel, -46 * kPi / 180);
-  EXPECT_THROW(parseJob(with(", height_mm: 1.25", ""), "job.yaml", {"process.setup_swivel"}), JobFileError);
-}
-
-TEST(JobFile, LeavesOutADepthThatIsToBeFound) {
-  const std::string text = with("  depth_mm: 1.5\n", "");
-  EXPECT_DOUBLE_EQ(parseJob(text, "job.yaml", kUnsolved).process.depth, 0.00125);
-  EXPECT_THROW(parseJob(text, "job.yaml"), JobFileError);
-}
-
-TEST(JobFile, NamesTheKeyThatIsNearestToAnUnknownOne) {
-  EXPECT_NE(errorOf(with("  depth_mm: 1.5\n", "  detph_mm: 1.5\n"))
-                .find("process.detph_mm is not a key of a job file; did you mean 'process.depth_mm'?"),
-            std::string::npos);
-  EXPECT_NE(errorOf(with("  depth_mm: 1.5\n", "  depth_mm: 1.5\n  colour: red\n"))
-                .find("process.colour is not a key of a job file; allowed: process."),
-            std::string::npos);
+TEST(JobFile, LeavesOutWhatIsYetToBeFound) {
+  const std::vector<std::string> unsolved{"process.setup_swivel", "process.setup_height", "process.depth"};
+  GrindProcess found = jobWith("  setup: {swivel_deg: -46, height_mm: 1.25}\n", "", unsolved).process;
+  EXPECT_EQ(found.setup_swivel, 0);
+  EXPECT_EQ(found.setup_height, 0);
+  EXPECT_DOUBLE_EQ(found.depth, 0.0015);
+  found = jobWith(", height_mm: 1.25", "", unsolved).process;
+  EXPECT_DOUBLE_EQ(found.setup_swivel, -46 * kPi / 180);
+  EXPECT_THROW(jobWith(", height_mm: 1.25", "", {"process.setup_swivel"}), JobFileError);
+  EXPECT_DOUBLE_EQ(jobWith("  depth_mm: 1.5\n", "", unsolved).process.depth, 0.00125);
+  EXPECT_THROW(jobWith("  depth_mm: 1.5\n", ""), JobFileError);
 }
 
 TEST(JobFile, ReadsASpiralAnglePerTooth) {
-  const GrindJob job = parseJob(with("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]"), "job.yaml");
+  const GrindJob job = jobWith("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]");
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
   ASSERT_EQ(job.spiral_angles.size(), 4u);
   for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(ValidJob(job).cutterOf(i).spiral_angle, (i - 45) * kPi / 180);
 }
 
+const char* const kAngled = "    profile: angled\n    angle_deg: 20\n    side: lower\n";
+
 TEST(JobFile, ReadsAWheelOfPoints) {
-  const GrindJob job = parseJob(with("    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                                     "    profile: points\n    points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n"),
-                                "job.yaml");
+  const GrindJob job = jobWith(kAngled, "    profile: points\n    points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n");
   ASSERT_EQ(job.wheel_points.size(), 3u);
   EXPECT_DOUBLE_EQ(job.wheel_points[0].w, -0.004);
   EXPECT_DOUBLE_EQ(job.wheel_points[2].radius, 0.0485);
@@ -196,7 +190,7 @@ TEST(JobFile, ReadsAWheelOfPoints) {
 
 TEST(JobFile, SpacesEveryAllowedCountOfTeethEvenly) {
   for (int teeth = 1; teeth <= kMaxTeeth; ++teeth) {
-    const GrindJob job = parseJob(with("teeth: 4", "teeth: " + std::to_string(teeth)), "job.yaml");
+    const GrindJob job = jobWith("teeth: 4", "teeth: " + std::to_string(teeth));
     ASSERT_EQ(job.tooth_angles.size(), static_cast<std::size_t>(teeth));
     for (int i = 0; i < teeth; ++i)
       EXPECT_NEAR(job.tooth_angles[static_cast<std::size_t>(i)], 2 * kPi * i / teeth, 1e-14);
@@ -204,125 +198,88 @@ TEST(JobFile, SpacesEveryAllowedCountOfTeethEvenly) {
 }
 
 TEST(JobFile, ReadsUnequalTeeth) {
-  const GrindJob job = parseJob(with("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]"), "job.yaml");
+  const std::vector<double> angles = jobWith("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]").tooth_angles;
   const std::vector<double> degrees{0, 88, 180, 268};
-  ASSERT_EQ(job.tooth_angles.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(job.tooth_angles[i], degrees[i] * kPi / 180);
-}
-
-TEST(JobFile, ReadsTheWearPerPassWhereItIsGiven) {
-  EXPECT_EQ(parseJob(kGood, "job.yaml").process.wheel_wear_per_pass, 0);
-  const GrindJob job = parseJob(with("wear_mm: 0.3\n", "wear_mm: 0.3\n    wear_per_pass_mm: 0.004\n"), "job.yaml");
-  EXPECT_DOUBLE_EQ(job.process.wheel_wear_per_pass, 4e-6);
-  EXPECT_DOUBLE_EQ(job.process.wheel_wear, 0.0003);
+  ASSERT_EQ(angles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(angles[i], degrees[i] * kPi / 180);
 }
 
 TEST(JobFile, ReadsEveryChoice) {
-  EXPECT_EQ(parseJob(with("pass_major", "tooth_major"), "f").process.order, GrindOrder::kToothMajor);
-  EXPECT_EQ(parseJob(with("to_end", "from_end"), "f").process.direction, StrokeDirection::kFromEnd);
-  EXPECT_EQ(parseJob(with("third_order", "published"), "f").interpolation.even_step, EvenStepRule::kPublished);
-  EXPECT_EQ(parseJob(with("third_order", "exact"), "f").interpolation.even_step, EvenStepRule::kExact);
+  EXPECT_EQ(jobWith("pass_major", "tooth_major").process.order, GrindOrder::kToothMajor);
+  EXPECT_EQ(jobWith("to_end", "from_end").process.direction, StrokeDirection::kFromEnd);
+  EXPECT_EQ(jobWith("third_order", "published").interpolation.even_step, EvenStepRule::kPublished);
+  EXPECT_EQ(jobWith("third_order", "exact").interpolation.even_step, EvenStepRule::kExact);
 }
 
-/// A mistake in a job file and what its one message must have.
-struct Mistake {
-  const char* name;
-  const char* piece;
-  const char* replacement;
-  const char* message;  ///< as for hasLine()
-};
-
-std::ostream& operator<<(std::ostream& out, const Mistake& mistake) { return out << mistake.name; }
-
-class JobFileMistake : public ::testing::TestWithParam<Mistake> {};
-
-TEST_P(JobFileMistake, IsReportedOnceWithFileLineKeyAndWhatIsAllowed) {
-  const Mistake& mistake = GetParam();
-  const std::string error = errorOf(with(mistake.piece, mistake.replacement));
-  EXPECT_TRUE(hasLine(error, mistake.message)) << "got: " << error;
-  EXPECT_EQ(linesOf(error), 1) << error;
+/// What the one message of a mistake must have, as for hasLine().
+TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
+  const struct {
+    const char *piece, *replacement, *message;
+  } rows[]{
+      {"  depth_mm: 1.5\n", "  depth_mm: 1.5\n  detph_mm: 1.5\n",
+       "job.yaml:19 ... process.detph_mm is not a key of a job file; did you mean 'process.depth_mm'?"},
+      {"  teeth: 4\n", "  teeth: 4\n  colour: red\n",
+       "job.yaml:8 ... cutter.colour is not a key of a job file; allowed: cutter."},
+      {"interpolation:", "paint: 3\ninterpolation:", "job.yaml:35 ... paint"},
+      {"  teeth: 4\n", "  teeth: 4\n  colour: {}\n", "job.yaml:8 ... cutter.colour"},
+      {"  teeth: 4\n", "  teeth: 4\n  colour: []\n", "job.yaml:8 ... cutter.colour"},
+      {"  teeth: 4\n", "  teeth: 4\n  colour:\n", "job.yaml:8 ... cutter.colour"},
+      {"[1, 2]", "[1, 2, 3]", "job.yaml:23 ... process.overtravel_mm[2]"},
+      {"  depth_mm: 1.5\n", "", "job.yaml ... process.depth_mm ... missing ... 0.001 to 50 mm"},
+      {"  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.6\n", "job.yaml:19 ... process.depth_mm ... appears twice"},
+      {"feed_mm_min: 200", "feed_mm_min:", "job.yaml:17 ... process.feed_mm_min ... (nothing) ... 0.1 to 10000 mm/min"},
+      {"teeth: 4", "teeth: 4.5", "job.yaml:7 ... cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"},
+      {"spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
+       "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
+      {"teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
+      {"teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
+      {"teeth: 4", "teeth: 0o10", "job.yaml:7 ... cutter.teeth = 0o10 ... octal"},
+      {"teeth: 4", "teeth: 0x10", "job.yaml:7 ... cutter.teeth = 0x10 ... hexadecimal"},
+      {"teeth: 4", "teeth: 99999999999", "job.yaml:7 ... cutter.teeth = 99999999999 is out of range ... 1 to 64"},
+      {"depth_mm: 1.5", "depth_mm: 0x1", "job.yaml:18 ... process.depth_mm = 0x1 ... 0.001 to 50 mm"},
+      {"interpolation:", "---\ninterpolation:", "job.yaml:35 ... a second document begins here ... allowed: one"},
+      {"rotary_scale_mm_per_rad: 1.5\n", "rotary_scale_mm_per_rad: 1.5\n---\n",
+       "job.yaml:39 ... a second document begins here"},
+      {"depth_mm: 1.5", "depth_mm: &deep 1.5", "job.yaml:18 ... anchor ... allowed: none"},
+      {"cutter:", "cutter: &cutter", "job.yaml: ... anchor ... allowed: none"},
+      {"depth_mm: 1.5", "depth_mm: *deep", "job.yaml:18 ... anchor"},
+      {"pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass?major"},
+      {"depth_mm: 1.5", "depth_mm: .nan", "job.yaml:18 ... process.depth_mm ... nan ... 0.001 to 50 mm"},
+      {"depth_mm: 1.5", "depth_mm: 1e999", "job.yaml:18 ... process.depth_mm ... 0.001 to 50 mm"},
+      {"  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
+       "job.yaml:7 ... cutter.teeth ... cutter.tooth_angles_deg ... one of the two"},
+      {"  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n", "job.yaml: ... cutter.t"},
+      {"teeth: 4", "tooth_angles_deg: [0, half]", "job.yaml:7 ... cutter.tooth_angles_deg[1] ... half ... ascending"},
+      {"    profile: angled\n    angle_deg: 20\n", "    profile: straight\n",
+       "job.yaml:31 ... process.wheel.side ... not a key"},
+      {kAngled, "    profile: straight\n    angle_deg: 20\n",
+       "job.yaml:31 ... process.wheel.angle_deg ... 20 deg ... 0 for this profile"},
+      {"    angle_deg: 20\n", "", "job.yaml ... process.wheel.angle_deg ... 0 deg ... more than 0 for this profile"},
+      {"[0.1, 0.2]", "[4, 4.5]",
+       "job.yaml:33 ... process.wheel.corner_radius_mm[0] ... 8.5 mm ... wheel's width ... 8 mm"},
+      {kAngled, "    profile: full_radius\n",
+       "job.yaml:31 ... process.wheel.corner_radius_mm[0] ... 0.3 mm ... allowed: 0 for this profile"},
+      {"[0.1, 0.2]", "[0.1]", "job.yaml ... process.wheel.corner_radius_mm[1] ... missing"},
+      {kAngled, "    profile: points\n", "job.yaml ... process.wheel.points_mm ... [w, radius]"},
+      {kAngled, "    profile: points\n    points_mm: [[-3, 50], [3, 49]]\n",
+       "job.yaml:28 ... process.wheel.width_mm ... 8 mm ... its points ... 6 mm"},
+      {kAngled, "    profile: points\n    points_mm: [[-4, 50], [-4, 49], [4, 50]]\n",
+       "job.yaml:31 ... process.wheel.points_mm ... -4 mm ... ascending"},
+      {kAngled, "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
+       "job.yaml:31 ... process.wheel.points_mm[1] ... not a pair"},
+      {"  spiral_angle_deg: -45\n", "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
+       "job.yaml:4 ... cutter.spiral_angle_deg ... cutter.spiral_angles_deg ... one of the two"},
+      {"spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44]",
+       "job.yaml:4 ... cutter.spiral_angles_deg ... 2 ... as many as teeth, 4"},
+      {"spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -61, -44]",
+       "job.yaml:4 ... cutter.spiral_angles_deg ... -61 deg ... -60 to 60 deg"}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.replacement);
+    const std::string error = errorOf(with(row.piece, row.replacement));
+    EXPECT_TRUE(hasLine(error, row.message)) << "got: " << error << "\nwanted: " << row.message;
+    EXPECT_EQ(linesOf(error), 1) << error;
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(
-    All, JobFileMistake,
-    ::testing::Values(
-        Mistake{"UnknownKey", "  teeth: 4\n", "  teeth: 4\n  colour: red\n", "job.yaml:8 ... cutter.colour"},
-        Mistake{"UnknownSection", "interpolation:", "paint: 3\ninterpolation:", "job.yaml:35 ... paint"},
-        Mistake{"UnknownEmptyMap", "  teeth: 4\n", "  teeth: 4\n  colour: {}\n", "job.yaml:8 ... cutter.colour"},
-        Mistake{"UnknownEmptyList", "  teeth: 4\n", "  teeth: 4\n  colour: []\n", "job.yaml:8 ... cutter.colour"},
-        Mistake{"UnknownEmptyValue", "  teeth: 4\n", "  teeth: 4\n  colour:\n", "job.yaml:8 ... cutter.colour"},
-        Mistake{"ThirdOvertravel", "[1, 2]", "[1, 2, 3]", "job.yaml:23 ... process.overtravel_mm[2]"},
-        Mistake{"MissingKey", "  depth_mm: 1.5\n", "", "job.yaml ... process.depth_mm ... missing ... 0.001 to 50 mm"},
-        Mistake{"DuplicateKey", "  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.6\n",
-                "job.yaml:19 ... process.depth_mm ... appears twice"},
-        Mistake{"DuplicateKeySameValue", "  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.5\n",
-                "job.yaml:19 ... process.depth_mm ... appears twice"},
-        Mistake{"NoValue", "feed_mm_min: 200",
-                "feed_mm_min:", "job.yaml:17 ... process.feed_mm_min ... (nothing) ... 0.1 to 10000 mm/min"},
-        Mistake{"BrokenTeeth", "teeth: 4", "teeth: 4.5",
-                "job.yaml:7 ... cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"},
-        Mistake{"DecimalComma", "spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
-                "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
-        Mistake{"OctalTeeth", "teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
-        Mistake{"OctalZeroTeeth", "teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
-        Mistake{"OctalTeethOfYaml12", "teeth: 4", "teeth: 0o10", "job.yaml:7 ... cutter.teeth = 0o10 ... octal"},
-        Mistake{"HexadecimalTeeth", "teeth: 4", "teeth: 0x10", "job.yaml:7 ... cutter.teeth = 0x10 ... hexadecimal"},
-        Mistake{"TooManyTeethToCount", "teeth: 4", "teeth: 99999999999",
-                "job.yaml:7 ... cutter.teeth = 99999999999 is out of range ... 1 to 64"},
-        Mistake{"HexadecimalFigure", "depth_mm: 1.5", "depth_mm: 0x1",
-                "job.yaml:18 ... process.depth_mm = 0x1 ... 0.001 to 50 mm"},
-        Mistake{"SecondDocument", "interpolation:", "---\ninterpolation:",
-                "job.yaml:35 ... a second document begins here ... allowed: one"},
-        Mistake{"EmptySecondDocument", "rotary_scale_mm_per_rad: 1.5\n", "rotary_scale_mm_per_rad: 1.5\n---\n",
-                "job.yaml:39 ... a second document begins here"},
-        Mistake{"Anchor", "depth_mm: 1.5", "depth_mm: &deep 1.5", "job.yaml:18 ... anchor ... allowed: none"},
-        Mistake{"AnchorOfASection", "cutter:", "cutter: &cutter", "job.yaml: ... anchor ... allowed: none"},
-        Mistake{"Alias", "depth_mm: 1.5", "depth_mm: *deep", "job.yaml:18 ... anchor"},
-        Mistake{"TwoLinesInAValue", "pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass?major"},
-        Mistake{"NotANumber", "depth_mm: 1.5", "depth_mm: .nan",
-                "job.yaml:18 ... process.depth_mm ... nan ... 0.001 to 50 mm"},
-        Mistake{"TooLargeForANumber", "depth_mm: 1.5", "depth_mm: 1e999",
-                "job.yaml:18 ... process.depth_mm ... 0.001 to 50 mm"},
-        Mistake{"TwoWaysOfTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
-                "job.yaml:7 ... cutter.teeth ... cutter.tooth_angles_deg ... one of the two"},
-        Mistake{"EmptyTeethBesideTeeth", "  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n",
-                "job.yaml: ... cutter.t"},
-        Mistake{"ToothOfAWord", "teeth: 4", "tooth_angles_deg: [0, half]",
-                "job.yaml:7 ... cutter.tooth_angles_deg[1] ... half ... ascending"},
-        Mistake{"SideOfAStraightWheel", "    profile: angled\n    angle_deg: 20\n", "    profile: straight\n",
-                "job.yaml:31 ... process.wheel.side ... not a key"},
-        Mistake{"AngleOfAStraightWheel", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: straight\n    angle_deg: 20\n",
-                "job.yaml:31 ... process.wheel.angle_deg ... 20 deg ... 0 for this profile"},
-        Mistake{"AngledWithoutAnAngle", "    angle_deg: 20\n", "",
-                "job.yaml ... process.wheel.angle_deg ... 0 deg ... more than 0 for this profile"},
-        Mistake{"CornersWiderThanTheWheel", "[0.1, 0.2]", "[4, 4.5]",
-                "job.yaml:33 ... process.wheel.corner_radius_mm[0] ... 8.5 mm ... wheel's width ... 8 mm"},
-        Mistake{"CornerOfARoundedWheel", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: full_radius\n",
-                "job.yaml:31 ... process.wheel.corner_radius_mm[0] ... 0.3 mm ... allowed: 0 for this profile"},
-        Mistake{"OneCorner", "[0.1, 0.2]", "[0.1]", "job.yaml ... process.wheel.corner_radius_mm[1] ... missing"},
-        Mistake{"PointsWithoutPoints", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: points\n", "job.yaml ... process.wheel.points_mm ... [w, radius]"},
-        Mistake{"PointsOfAnotherWidth", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: points\n    points_mm: [[-3, 50], [3, 49]]\n",
-                "job.yaml:28 ... process.wheel.width_mm ... 8 mm ... its points ... 6 mm"},
-        Mistake{"PointsNotAscending", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: points\n    points_mm: [[-4, 50], [-4, 49], [4, 50]]\n",
-                "job.yaml:31 ... process.wheel.points_mm ... -4 mm ... ascending"},
-        Mistake{"HalfAPoint", "    profile: angled\n    angle_deg: 20\n    side: lower\n",
-                "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
-                "job.yaml:31 ... process.wheel.points_mm[1] ... not a pair"},
-        Mistake{"TwoWaysOfSpirals", "  spiral_angle_deg: -45\n",
-                "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
-                "job.yaml:4 ... cutter.spiral_angle_deg ... cutter.spiral_angles_deg ... one of the two"},
-        Mistake{"SpiralsOfSomeTeeth", "spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44]",
-                "job.yaml:4 ... cutter.spiral_angles_deg ... 2 ... as many as teeth, 4"},
-        Mistake{"SpiralOutOfRange", "spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -61, -44]",
-                "job.yaml:4 ... cutter.spiral_angles_deg ... -61 deg ... -60 to 60 deg"},
-        Mistake{"DeeperThanTheCutter", "depth_mm: 1.5", "depth_mm: 2.8",
-                "job.yaml:18 ... process.depth_mm ... 2.8 mm ... less than 2.56 ... radius at the flute's end"}),
-    [](const auto& info) { return std::string(info.param.name); });
 
 TEST(JobFile, ReportsAllOfSeveralErrors) {
   std::string text = with("depth_mm: 1.5", "depth_mm: deep");
@@ -344,39 +301,33 @@ TEST(JobFile, ReportsAllFiguresOutOfRange) {
   EXPECT_TRUE(hasLine(error, "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"));
 }
 
-TEST(JobFile, RefusesASectionThatStandsTwice) {
-  const std::string error = errorOf(with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"));
-  EXPECT_TRUE(hasLine(error, "job.yaml:22 ... process")) << "got: " << error;
-}
-
-TEST(JobFile, RefusesAPathAsAKey) {
-  const std::string error = errorOf(with("process:\n  feed_mm_min: 200\n", "process.feed_mm_min: 200\nprocess:\n"));
-  EXPECT_TRUE(hasLine(error, "job.yaml ... process.feed_mm_min")) << "got: " << error;
-}
-
-TEST(JobFile, RefusesWhatIsNotAMap) {
-  for (const char* text : {"3", "[1, 2]", "just words", "", "# a comment only\n", "~"}) {
-    SCOPED_TRACE(text);
-    EXPECT_TRUE(hasLine(errorOf(text), "job.yaml:1 ... not a map"));
+TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
+  const struct {
+    std::string text;
+    const char* message;  ///< as for hasLine()
+  } rows[]{{with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"), "job.yaml:22 ... process"},
+           {with("process:\n  feed_mm_min: 200\n", "process.feed_mm_min: 200\nprocess:\n"),
+            "job.yaml ... process.feed_mm_min"},
+           {with("teeth: 4", "teeth: [4"), "job.yaml:"},
+           {"cutter:\n  teeth: 4\n bad: : :\n", "job.yaml:3"},
+           {std::string(kGood) + "? [1, 2]\n: 3\n", "job.yaml:39"},
+           {"3", "job.yaml:1 ... not a map"},
+           {"[1, 2]", "job.yaml:1 ... not a map"},
+           {"just words", "job.yaml:1 ... not a map"},
+           {"", "job.yaml:1 ... not a map"},
+           {"# a comment only\n", "job.yaml:1 ... not a map"},
+           {"~", "job.yaml:1 ... not a map"}};
+  for (const auto& row : rows) {
+    const std::string error = errorOf(row.text);
+    EXPECT_TRUE(hasLine(error, row.message)) << row.text << "\ngot: " << error << "\nwanted: " << row.message;
   }
 }
 
 TEST(JobFile, RefusesASectionThatIsNotAMap) {
-  const std::string text =
-      std::string(kGood).substr(0, std::string(kGood).find("interpolation:")) + "interpolation: exact\n";
-  const std::string error = errorOf(text);
+  const std::string good = kGood;
+  const std::string error = errorOf(good.substr(0, good.find("interpolation:")) + "interpolation: exact\n");
   EXPECT_TRUE(hasLine(error, "job.yaml:35 ... interpolation")) << error;
   EXPECT_TRUE(hasLine(error, "interpolation.tolerance_um ... missing")) << error;
-}
-
-TEST(JobFile, ReportsWhereYamlIsBroken) {
-  EXPECT_TRUE(hasLine(errorOf(with("teeth: 4", "teeth: [4")), "job.yaml:"));
-  EXPECT_TRUE(hasLine(errorOf("cutter:\n  teeth: 4\n bad: : :\n"), "job.yaml:3"));
-}
-
-TEST(JobFile, RefusesAKeyThatIsNotAWord) {
-  const std::string error = errorOf(std::string(kGood) + "? [1, 2]\n: 3\n");
-  EXPECT_EQ(error.find("job.yaml:39"), 0u) << error;
 }
 
 TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
@@ -385,23 +336,22 @@ TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
   EXPECT_EQ(errorOf(text), "");
 }
 
-/// A message of reading a file; empty where it was read.
-std::string fileErrorOf(const std::string& path) {
-  try {
-    readJobFile(path);
-  } catch (const JobFileError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-/// A file of this test, removed at its end.
+/// A file with the good text; and what is said of reading a file, nothing where it was read.
 class JobFileOnDisk : public ::testing::Test {
  protected:
-  void SetUp() override { std::ofstream(path_) << kGood; }
-  void TearDown() override { std::filesystem::remove(path_); }
+  JobFileOnDisk() { std::ofstream(path_) << kGood; }
 
-  std::string path_ = ::testing::TempDir() + "flute_grinder_job_" + std::to_string(::getpid()) + ".yaml";
+  static std::string fileErrorOf(const std::string& path) {
+    try {
+      readJobFile(path);
+    } catch (const JobFileError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  const test_support::TempFolder folder_;
+  const std::string path_ = folder_.path() / "job.yaml";
 };
 
 TEST_F(JobFileOnDisk, ThatIsNoneIsNamed) {

@@ -284,7 +284,6 @@ struct Tally {
 };
 
 TEST(JobFuzz, EveryHostileValueOfEveryFieldIsAnswered) {
-  Dice dice(1);
   Tally tally;
   for (const Number& n : numbers()) {
     for (const double value : hostileValues(n.min, n.max)) {
@@ -315,31 +314,21 @@ TEST(JobFuzz, AllowedJobsOfAllKindsAreAnswered) {
 }
 
 /// Does to a stream whatever an operator can, and more, at random moments.
-class Meddler {
- public:
-  explicit Meddler(Dice& dice) : dice_(dice) {}
-
-  void meddle(SetpointStream& stream, bool resting) {
-    if (!resting && !dice_.once(150)) return;
-    switch (resting ? dice_.below(4) : dice_.below(5)) {
-      case 0: return stream.retract();
-      case 1:
-        return stream.setFeedOverride(dice_.of({kNaN, kInf, -kInf, -1.0, -0.0, kTiny, 0.0, 1e-3, 1.2, 1.3, kHuge}));
-      case 2:
-      case 3: stream.setFeedOverride(dice_.within(0.1, kMaxFeedOverride)); return stream.resume();
-      default: return stream.hold();
-    }
+void meddle(Dice& dice, SetpointStream& stream, bool resting) {
+  if (!resting && !dice.once(150)) return;
+  switch (resting ? dice.below(4) : dice.below(5)) {
+    case 0: return stream.retract();
+    case 1: return stream.setFeedOverride(dice.of({kNaN, kInf, -kInf, -1.0, -0.0, kTiny, 0.0, 1e-3, 1.2, 1.3, kHuge}));
+    case 2:
+    case 3: stream.setFeedOverride(dice.within(0.1, kMaxFeedOverride)); return stream.resume();
+    default: return stream.hold();
   }
-
- private:
-  Dice& dice_;
-};
+}
 
 /// Runs a stream to its end, or for long enough.
 void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
   LimitCheck check(stream.program().machine().limits, stream.program().machine().period);
   check.restart(stream.program().terms());
-  Meddler meddler(dice);
   Setpoint p;
   for (int i = 0; i < 6000 && !stream.finished(); ++i) {
     const bool resting = !stream.next(p);
@@ -348,7 +337,7 @@ void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
       const auto violation = check.check(p);
       ASSERT_FALSE(violation) << text(reasonOf(*violation));
     }
-    meddler.meddle(stream, resting);
+    meddle(dice, stream, resting);
   }
 }
 

@@ -19,16 +19,16 @@ TEST(MachineState, NothingButResetLeavesFault) {
   }
 }
 
-TEST(MachineState, EveryStateCanBeDisabled) {
-  for (const StateRow& state : kMachineStates) EXPECT_TRUE(after(state.value, E::kDisable)) << state.name;
-}
-
-TEST(MachineState, OnlyReadyStartsAJobHomesOrLifts) {
+TEST(MachineState, EveryStateHasItsEvents) {
   for (const StateRow& row : kMachineStates) {
+    SCOPED_TRACE(row.name);
     const S state = row.value;
-    EXPECT_EQ(after(state, E::kStart).has_value(), state == S::kReady) << row.name;
-    EXPECT_EQ(after(state, E::kHome).has_value(), state == S::kReady) << row.name;
-    EXPECT_EQ(after(state, E::kLift).has_value(), state == S::kReady) << row.name;
+    EXPECT_TRUE(after(state, E::kDisable));
+    for (const E event : {E::kStart, E::kHome, E::kLift})
+      EXPECT_EQ(after(state, event).has_value(), state == S::kReady);
+    const bool powered = state != S::kDisabled && state != S::kFault;
+    EXPECT_EQ(isPowered(state), powered);
+    EXPECT_EQ(after(state, E::kFault).has_value(), powered);
   }
 }
 
@@ -48,15 +48,6 @@ TEST(MachineState, AJogLeadsBackToWhereItWasBegun) {
   }
   EXPECT_FALSE(isInJob(S::kJogging));
   EXPECT_TRUE(isInJob(S::kJoggingRetracted));
-}
-
-TEST(MachineState, EveryStateUnderPowerCanFault) {
-  for (const StateRow& row : kMachineStates) {
-    const S state = row.value;
-    const bool powered = state != S::kDisabled && state != S::kFault;
-    EXPECT_EQ(isPowered(state), powered) << row.name;
-    EXPECT_EQ(after(state, E::kFault).has_value(), powered) << row.name;
-  }
 }
 
 TEST(MachineState, WhatIsNoStateOrEventIsRefused) {

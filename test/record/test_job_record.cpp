@@ -9,17 +9,15 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 #include "flute_grinder/record/record_file.h"
 #include "node/job_recorder.h"
+#include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <map>
 #include <random>
 #include <string>
-#include <utility>
 #include <vector>
 
 /// @file
@@ -138,10 +136,27 @@ class JobRecordTest : public ::testing::Test {
     }
     return stroke;
   }
+  /// Gives all cycles to a recorder's job, all later by some time.
+  void give(JobRecorder& recorder, std::uint64_t id, double later = 0) const {
+    for (Cycle c : cycles_) {
+      c.sample.time += later;
+      recorder.of(id).addCycle(c.sample);
+      if (c.has_setpoint) recorder.of(id).addSetpoint(c.setpoint, c.sample);
+    }
+  }
+  /// The records that are kept.
+  std::vector<Json> kept() const {
+    std::vector<Json> records;
+    for (const std::string& file : recordFilesIn(folder_.path()).records) {
+      records.push_back(Json::parse(test_support::readFile(file)));
+    }
+    return records;
+  }
   double since(const CycleSample& sample) const { return sample.time - cycles_.front().sample.time; }
 
   void expectStroke(const Json& reported, int tooth, int pass) const;
 
+  const test_support::TempFolder folder_;
   const LoopConfig config_ = test_support::machineConfig();
   const GrindJob job_ = shortJob();
   PlannedJob plan_;
@@ -302,23 +317,16 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
   makeCycles();
   const auto in_stroke = [](const Cycle& c) { return c.setpoint.move == MoveKind::kStroke && c.setpoint.pass == 1; };
   cycles_.erase(std::find_if(cycles_.begin(), cycles_.end(), in_stroke) + 5, cycles_.end());
-  const std::string folder = std::filesystem::path(::testing::TempDir()) / "job_record_history";
-  std::filesystem::remove_all(folder);
   {
-    History history(folder, 1 << 20);
+    History history(folder_.path(), 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
     recorder.announce(7, newRecord());
     recorder.announce(8, newRecord());
-    for (const Cycle& c : cycles_) {
-      recorder.of(7).addCycle(c.sample);
-      if (c.has_setpoint) recorder.of(7).addSetpoint(c.setpoint, c.sample);
-    }
+    give(recorder, 7);
   }
-  const std::vector<std::string> files = recordFilesIn(folder).records;
-  ASSERT_EQ(files.size(), 1U);
-  EXPECT_EQ(std::filesystem::path(files[0]).filename(), recordName(cycles_.front().sample.time));
-  std::ifstream stream(files[0]);
-  const Json record = Json::parse(stream);
+  ASSERT_EQ(kept().size(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / recordName(cycles_.front().sample.time)));
+  const Json record = kept()[0];
   EXPECT_EQ(record["outcome"], "fault");
   EXPECT_EQ(record["reason"], "the grinder's program ended before the job did");
   EXPECT_FALSE(record["strokes"].back()["complete"]);
@@ -330,34 +338,22 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
   EXPECT_TRUE(zeros["y"]["set_by"].is_null());
   EXPECT_EQ(zeros["y"]["set_for"]["method"], "unknown");
   EXPECT_TRUE(zeros["y"]["set_for"]["end_diameter_mm"].is_null());
-  std::filesystem::remove_all(folder);
 }
 
 TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
-  const std::string folder = std::filesystem::path(::testing::TempDir()) / "job_record_order";
-  std::filesystem::remove_all(folder);
   makeCycles();
   for (const bool result_first : {true, false}) {
-    History history(folder, 1 << 20);
+    History history(folder_.path(), 1 << 20);
     JobRecorder recorder("/grinder", kMachine, history);
     recorder.announce(1, newRecord());
-    for (Cycle& c : cycles_) {
-      c.sample.time += result_first ? 0 : 100;
-      recorder.of(1).addCycle(c.sample);
-      if (c.has_setpoint) recorder.of(1).addSetpoint(c.setpoint, c.sample);
-    }
+    give(recorder, 1, result_first ? 0 : 100);
     if (result_first) recorder.conclude(1, {"canceled", "by hand", 9});
     recorder.end(1);
     if (!result_first) recorder.conclude(1, {"canceled", "by hand", 9});
     recorder.conclude(1, {"fault", "too late", 0});
   }
-  const std::vector<std::string> files = recordFilesIn(folder).records;
-  ASSERT_EQ(files.size(), 2U);
-  for (const std::string& file : files) {
-    std::ifstream stream(file);
-    EXPECT_EQ(Json::parse(stream)["reason"], "by hand");
-  }
-  std::filesystem::remove_all(folder);
+  ASSERT_EQ(kept().size(), 2U);
+  for (const Json& record : kept()) EXPECT_EQ(record["reason"], "by hand");
 }
 
 TEST(RecordName, SortsByTimeAndReadsBack) {

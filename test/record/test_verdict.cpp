@@ -84,9 +84,27 @@ std::vector<std::string> namesOf(const Json& judged, const std::string& result) 
   return names;
 }
 
+/// A criterion's figure, at its tolerance and beyond it.
+struct Edge {
+  const char* name;
+  const char* path;
+  double at, beyond;
+  const char* place;
+};
+
 void expectVerdict(const Json& judged, const std::string& verdict, const std::vector<std::string>& because) {
   EXPECT_EQ(judged["verdict"], verdict);
   EXPECT_EQ(judged["verdict_because"], Json(because));
+}
+
+void expectEdge(Json data, const Edge& edge) {
+  SCOPED_TRACE(edge.path);
+  at(data, edge.path) = edge.at;
+  expectVerdict(judged(data), "passed", {});
+  at(data, edge.path) = edge.beyond;
+  const Json beyond = judged(data);
+  expectVerdict(beyond, "failed", {edge.name});
+  EXPECT_EQ(criterion(beyond, edge.name)["place"], edge.place);
 }
 
 TEST(Verdict, PassedByAllCriteria) {
@@ -99,12 +117,7 @@ TEST(Verdict, PassedByAllCriteria) {
 }
 
 TEST(Verdict, EachCriterionPassesAtItsToleranceAndFailsBeyond) {
-  const struct {
-    const char* name;
-    const char* path;
-    double at, beyond;
-    const char* place;
-  } cases[]{
+  const Edge edges[]{
       {"path deviation", "/strokes/1/deviation_um", 2, 2.001, "tooth 2, pass 1, X = 4.500 mm"},
       {"rake", "/tool/sections/1/teeth/1/rake_deg", 8.5, 8.501, "tooth 2, X = 10.000 mm"},
       {"rake", "/tool/sections/1/teeth/1/rake_deg", 7.5, 7.499, "tooth 2, X = 10.000 mm"},
@@ -120,19 +133,11 @@ TEST(Verdict, EachCriterionPassesAtItsToleranceAndFailsBeyond) {
       {"feed constancy", "/strokes/1/feed_max_mm_min", 105, 105.001, "tooth 2, pass 1"},
       {"late cycles", "/late_cycles/count", 10, 11, "11 of 1000 cycles, the longest 1.250 ms"},
   };
-  for (const auto& c : cases) {
-    SCOPED_TRACE(c.path);
-    expectVerdict(judgedWith(c.path, c.at), "passed", {});
-    const Json beyond = judgedWith(c.path, c.beyond);
-    expectVerdict(beyond, "failed", {c.name});
-    EXPECT_EQ(criterion(beyond, c.name)["place"], c.place);
-  }
-}
-
-TEST(Verdict, LandsToleranceIsAMinimum) {
-  const Json line = criterion(judged(document()), "land");
-  EXPECT_EQ(line["asked"], 0.5);
-  EXPECT_TRUE(line["tolerance"].is_null());
+  for (const Edge& edge : edges) expectEdge(document(), edge);
+  // That of the land is a minimum.
+  const Json land = criterion(judged(document()), "land");
+  EXPECT_EQ(land["asked"], 0.5);
+  EXPECT_TRUE(land["tolerance"].is_null());
 }
 
 TEST(Verdict, AToolIsJudgedByTheTolerancesOfItsJob) {
@@ -190,26 +195,15 @@ TEST(Verdict, AReliefIsJudgedByClearanceAndTheWidthOfThePrimary) {
   std::vector<std::string> names = kNames;
   names.insert(names.begin() + 6, {"clearance", "primary relief"});
   EXPECT_EQ(namesOf(judged(reliefsDocument()), "passed"), names);
-  const struct {
-    const char* name;
-    const char* path;
-    double at, beyond;
-    const char* place;
-  } cases[]{{"clearance", "/tool/sections/2/teeth/1/clearance_deg", 10.5, 10.501, "tooth 2, X = 20.000 mm"},
-            {"clearance", "/tool/sections/1/teeth/0/clearance_deg", 9.5, 9.499, "tooth 1, X = 10.000 mm"},
-            {"primary relief", "/tool/sections/0/teeth/1/primary_mm", 0.42, 0.421, "tooth 2, X = 0.000 mm"},
-            {"primary relief", "/tool/sections/0/teeth/0/primary_mm", 0.385, 0.379, "tooth 1, X = 0.000 mm"}};
-  for (const auto& c : cases) {
-    SCOPED_TRACE(c.path);
+  const Edge edges[]{{"clearance", "/tool/sections/2/teeth/1/clearance_deg", 10.5, 10.501, "tooth 2, X = 20.000 mm"},
+                     {"clearance", "/tool/sections/1/teeth/0/clearance_deg", 9.5, 9.499, "tooth 1, X = 10.000 mm"},
+                     {"primary relief", "/tool/sections/0/teeth/1/primary_mm", 0.42, 0.421, "tooth 2, X = 0.000 mm"},
+                     {"primary relief", "/tool/sections/0/teeth/0/primary_mm", 0.385, 0.379, "tooth 1, X = 0.000 mm"}};
+  for (const Edge& edge : edges) {
+    expectEdge(reliefsDocument(), edge);
     Json data = reliefsDocument();
-    at(data, c.path) = c.at;
-    expectVerdict(judged(data), "passed", {});
-    at(data, c.path) = c.beyond;
-    const Json beyond = judged(data);
-    expectVerdict(beyond, "failed", {c.name});
-    EXPECT_EQ(criterion(beyond, c.name)["place"], c.place);
-    at(data, c.path) = nullptr;
-    expectVerdict(judged(data), "failed", {c.name});
+    at(data, edge.path) = nullptr;
+    expectVerdict(judged(data), "failed", {edge.name});
   }
 }
 

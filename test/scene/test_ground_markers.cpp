@@ -47,6 +47,10 @@ MarkerArray plannedMarkers(const GrindJob& asked) {
   return groundMarkers(groundCutterOf(job), job, "planned");
 }
 
+MarkerArray markersSoFar(const ValidJob& job, const Reached& reached) {
+  return groundMarkers(groundSoFar(job, reached), job, "ground", reached);
+}
+
 void expectFit(const GrindJob& job) {
   const MarkerArray array = plannedMarkers(job);
   EXPECT_LT(ros::serialization::serializationLength(array), kMaxBytes);
@@ -163,11 +167,9 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     // X between which points are coloured; none if the first is larger.
     const auto coloured = [&](const Reached& reached) {
       std::pair<double, double> x{1, -1};
-      for (const Marker& m : solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground")) {
+      for (const Marker& m : solidOf(markersSoFar(job, reached), "ground")) {
         if (!deviationOf(m)) continue;
-        for (const geometry_msgs::Point& p : m.points) {
-          x = {std::min(x.first, p.x), std::max(x.second, p.x)};
-        }
+        for (const geometry_msgs::Point& p : m.points) x = {std::min(x.first, p.x), std::max(x.second, p.x)};
       }
       return x;
     };
@@ -238,7 +240,7 @@ TEST(GroundMarkers, ColourAReliefOnlyWhereItsLastPassHasBeenAndTheRakeFacesFromT
   const ValidJob primary = withLaws(ValidJob(job));
   const int last = primary.passes().back().place.pass;
   const auto coloured = [&](const Reached& reached) {
-    const MarkerArray array = groundMarkers(groundSoFar(primary, reached), primary, "ground", reached);
+    const MarkerArray array = markersSoFar(primary, reached);
     EXPECT_GT(solidOf(array, "ground").size(), 3u) << "the flutes are there from the begin";
     return areaOf(colouredAs(array, 0));
   };
@@ -263,24 +265,11 @@ double maxRadius(const std::vector<Marker>& solid, double from, double to) {
   return max;
 }
 
-/// The corners of the shank's end.
-std::size_t cornersOfShank(const std::vector<Marker>& solid, const GrindJob& job) {
-  std::set<long> angles;
-  for (const Marker& m : solid) {
-    for (const geometry_msgs::Point& p : m.points) {
-      const bool on_rim = std::abs(std::hypot(p.y, p.z) - job.cutter.shank_diameter / 2) < 1e-7;
-      if (p.x > 65.9 * kMillimetre && on_rim) angles.insert(std::lround(std::atan2(p.z, p.y) / kDegree));
-    }
-  }
-  return angles.size();
-}
-
 TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
   for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
     const ValidJob job(jobOf(name));
     const Reached reached{job.passes().front().place, PassPhase::kBefore, 0};
-    const std::vector<Marker> solid =
-        solidOf(groundMarkers(groundSoFar(job, reached), job, "ground", reached), "ground");
+    const std::vector<Marker> solid = solidOf(markersSoFar(job, reached), "ground");
     ASSERT_EQ(solid.size(), 1U);
     const Marker& m = solid[0];
     EXPECT_NEAR(maxRadius(solid, -1e-9, 1e-9), job->cutter.end_diameter / 2, 1e-12);
@@ -291,15 +280,6 @@ TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
       if (std::hypot(p.y, p.z) > 0) angles.insert(std::lround(std::atan2(p.z, p.y) / kDegree));
     }
     EXPECT_GE(angles.size(), 180U);
-  }
-}
-
-TEST(GroundMarkers, TheShankBehindTheFlutesIsRound) {
-  for (const char* name : {"paper", "roughing_d10_t4"}) {
-    const GrindJob job = jobOf(name);
-    const std::vector<Marker> solid = solidOf(plannedMarkers(job), "planned");
-    // Three quarters of it are left by the cut.
-    EXPECT_GE(cornersOfShank(solid, job), 18U) << name;
   }
 }
 

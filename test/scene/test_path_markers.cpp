@@ -23,12 +23,19 @@ namespace test_path_markers {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-GrindProgram program() {
-  const auto machine = test_support::plainMachine();
-  return GrindProgram(ValidJob(readJobFile("test/jobs/paper.yaml")), machine, machine.park);
+GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
+
+GrindProgram programOf(const GrindJob& job, const Machine& machine = test_support::plainMachine()) {
+  return GrindProgram(ValidJob(job), machine, machine.park);
 }
 
 std::vector<GroundEdge> edgesOf(const GrindProgram& program) { return checkGroundCutter(program.job()).edges; }
+
+/// Under the wheel's centre, where the edge is the helix.
+GroundEdge centralEdge(const GrindJob& job) {
+  const double length = job.cutter.flute_length;
+  return GroundEdge({{0, 0, 0}, {length, length, 0}});
+}
 
 /// What a drive must never say, and may all the same.
 std::vector<double> hostileValues() {
@@ -48,13 +55,15 @@ void expectFinite(const MarkerArray& array) {
 /// The maximum error measured and all markers of the paper's job, with every so-many-th position of an axis replaced.
 struct Shown {
   double max = 0;
-  MarkerArray flutes, executed;
+  MarkerArray flutes, executed, errors;
 };
 
 Shown show(int every, int axis, double value) {
-  const GrindProgram job = program();
-  ToolPath flutes(job, edgesOf(job));
-  ExecutedPath executed(job, edgesOf(job));
+  const GrindProgram job = programOf(paper());
+  const std::vector<GroundEdge> edges = edgesOf(job);
+  ToolPath flutes(job, edges);
+  ExecutedPath executed(job, edges);
+  PathErrorMarkers errors(job.job(), edges);
   SetpointStream stream(job);
   Shown result;
   for (Setpoint p; stream.next(p);) {
@@ -63,9 +72,11 @@ Shown show(int every, int axis, double value) {
     if (every > 0 && p.cycle % static_cast<unsigned>(every) == 0) actual[axis] = value;
     flutes.add(p, actual);
     executed.add(p, actual);
+    errors.add(p);
   }
   result.max = flutes.maxMeasured();
   result.flutes = flutes.markers();
+  result.errors = errors.markers();
   executed.append(result.executed);
   return result;
 }
@@ -82,10 +93,10 @@ std::string looksOf(const ToolPath& flutes) {
 }
 
 TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
+  GrindJob job = paper();
   job.tooth_angles = {0, 2, 4};
   job.process.infeed = job.process.depth / 2;
-  const GrindProgram of_job(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
+  const GrindProgram of_job = programOf(job);
   ToolPath flutes(of_job, edgesOf(of_job));
   std::string done(job.tooth_angles.size(), 'p');
   EXPECT_EQ(looksOf(flutes), done);
@@ -109,10 +120,10 @@ TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
 
 // The error grows along the flute from nothing to twice the tolerance.
 TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
-  const GrindProgram job = program();
+  const GrindProgram job = programOf(paper());
   const ConicalCutter& cutter = job.cutter();
   const double length = job.job()->cutter.flute_length, tolerance = job.job()->interpolation.tolerance;
-  ToolPath flutes(job, {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  ToolPath flutes(job, {centralEdge(paper())});
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p);) {
     Axes actual = p.position;
@@ -155,7 +166,7 @@ TEST(PathMarkers, StayFiniteWhateverTheDriveSaysAndLeaveOutPositionsThatAreNone)
 TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   for (const double value : hostileValues()) {
     SCOPED_TRACE(value);
-    const GrindProgram job = program();
+    const GrindProgram job = programOf(paper());
     PathErrorMarkers errors(job.job(), edgesOf(job));
     SetpointStream stream(job);
     for (Setpoint p; stream.next(p);) {
@@ -167,28 +178,19 @@ TEST(PathMarkers, OfErrorsLeaveOutSetpointsThatAreNone) {
   }
 }
 
-/// All of a line's scale that rviz knows.
-void expectLinesOfAWidth(const MarkerArray& array) {
-  std::size_t lines = 0;
-  for (const Marker& m : array.markers) {
-    if (m.type != Marker::LINE_STRIP && m.type != Marker::LINE_LIST) continue;
-    ++lines;
-    EXPECT_GT(m.scale.x, 0) << m.ns;
-    EXPECT_EQ(m.scale.y, 0) << m.ns;
-    EXPECT_EQ(m.scale.z, 0) << m.ns;
-  }
-  EXPECT_GT(lines, 0u);
-}
-
 TEST(PathMarkers, AreLinesOfAWidth) {
   const Shown shown = show(0, kX, 0);
-  expectLinesOfAWidth(shown.flutes);
-  expectLinesOfAWidth(shown.executed);
-  const GrindProgram job = program();
-  PathErrorMarkers errors(job.job(), edgesOf(job));
-  SetpointStream stream(job);
-  for (Setpoint p; stream.next(p);) errors.add(p);
-  expectLinesOfAWidth(errors.markers());
+  for (const MarkerArray& array : {shown.flutes, shown.executed, shown.errors}) {
+    std::size_t lines = 0;
+    for (const Marker& m : array.markers) {
+      if (m.type != Marker::LINE_STRIP && m.type != Marker::LINE_LIST) continue;
+      ++lines;
+      EXPECT_GT(m.scale.x, 0) << m.ns;  // all that rviz knows
+      EXPECT_EQ(m.scale.y, 0) << m.ns;
+      EXPECT_EQ(m.scale.z, 0) << m.ns;
+    }
+    EXPECT_GT(lines, 0u);
+  }
 }
 
 /// The edge of the first tooth at a section, by the groove's wall.
@@ -208,9 +210,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     SCOPED_TRACE(name);
     GrindJob job = readJobFile(name);
     job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
-    auto machine = test_support::plainMachine();
-    machine.park << -0.02, 0.08, 0, 0;
-    const GrindProgram of_job(ValidJob(job), machine, machine.park);
+    const GrindProgram of_job = programOf(job, test_support::roomyMachine());
     const GroundCutter cutter = groundCutterOf(of_job.job());
     const std::vector<GroundEdge> edges = edgesOf(of_job);
     ToolPath flutes(of_job, edges);
@@ -267,16 +267,14 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
   };
   for (const Shape& shape : {Shape{0, 45}, Shape{5, -60}, Shape{20, 8}}) {
     SCOPED_TRACE(shape.cone);
-    GrindJob job = readJobFile("test/jobs/paper.yaml");
+    GrindJob job = paper();
     job.cutter.end_diameter = 6e-3;
     job.cutter.core_diameter = job.cutter.core_diameter_end = 4e-3;
     job.cutter.cone_angle = shape.cone * units::kDegree;
     job.cutter.spiral_angle = shape.spiral * units::kDegree;
     job.cutter.flute_length = 30e-3;
-    const GrindProgram of_job(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
-    // An edge under the wheel's centre is the helix.
-    const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
-    const std::vector<geometry_msgs::Point> strip = ToolPath(of_job, {edge}).markers().markers.at(1).points;
+    const GrindProgram of_job = programOf(job);
+    const std::vector<geometry_msgs::Point> strip = ToolPath(of_job, {centralEdge(job)}).markers().markers.at(1).points;
     ASSERT_GT(strip.size(), 30u);
     for (std::size_t i = 1; i < strip.size(); ++i) {
       const geometry_msgs::Point &p = strip[i - 1], &q = strip[i];
@@ -289,11 +287,9 @@ TEST(PathMarkers, AreChordsCloseToTheHelix) {
 
 // Across the helix in the plane that touches the cone there, all by the same factor.
 TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
-  const GrindProgram job = program();
+  const GrindProgram job = programOf(paper());
   const ConicalCutter& cutter = job.cutter();
-  const double length = job.job()->cutter.flute_length;
-  // An edge under the wheel's centre: the arrows begin on the commanded points.
-  PathErrorMarkers errors(job.job(), {GroundEdge({{0, 0, 0}, {length, length, 0}})});
+  PathErrorMarkers errors(job.job(), {centralEdge(paper())});  // the arrows begin on the commanded points
   std::map<double, Setpoint> commanded;
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
@@ -320,16 +316,15 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
 }
 
 TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
+  GrindJob job = paper();
   job.cutter.end_diameter = 0.1e-3;
   job.cutter.core_diameter = job.cutter.core_diameter_end = 0.08e-3;
   job.cutter.cone_angle = 0;
   job.cutter.spiral_angle = 1;
   job.cutter.flute_length = 500e-3;
   job.process.depth = job.process.infeed = 0.01e-3;
-  const GrindProgram program(ValidJob(job), test_support::plainMachine(), test_support::plainMachine().park);
-  const GroundEdge edge({{0, 0, 0}, {job.cutter.flute_length, job.cutter.flute_length, 0}});
-  const MarkerArray array = ToolPath(program, {edge}).markers();
+  const GrindProgram program = programOf(job);
+  const MarkerArray array = ToolPath(program, {centralEdge(job)}).markers();
   std::size_t points = 0;
   for (const Marker& m : array.markers) points += m.points.size();
   EXPECT_GT(points, 1000u);

@@ -1,19 +1,22 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_geometry.h"
 #include "flute_grinder/machine/offset_fit.h"
+#include "flute_grinder/machine/offset_limits.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
 /// @file
-/// Which work offsets fit which job. Where the wheel's centre must be is computed from the machine's geometry.
+/// Which work offsets fit which job, and which are too large. Where the wheel's centre must be is computed from the
+/// machine's geometry.
 
 namespace grinder {
-namespace test_offset_fit {
+namespace test_offsets {
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kDegree = 0.017453292519943295;
@@ -46,26 +49,31 @@ TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsAlways) {
   EXPECT_TRUE(mismatches(offsets, job).empty());
 }
 
-TEST(OffsetFit, WhatWasNeverSetDoesNotFit) {
-  const auto found = mismatches(WorkOffsets{}, basisOf());
-  ASSERT_EQ(axesOf(found), "XYZ");
-  EXPECT_EQ(found[1].reason, "Y was never set");
-  for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
-}
-
-TEST(OffsetFit, WhatWasSetBeforeThisWasKeptIsUnknown) {
-  const auto found = mismatches(offsetsFor(OffsetBasis{}), basisOf());
-  ASSERT_EQ(axesOf(found), "XYZ");
-  EXPECT_EQ(found[1].reason, "Y was set, not known for which job");
-  for (const auto& mismatch : found) EXPECT_FALSE(mismatch.change);
-}
-
-TEST(OffsetFit, WithoutAJobOnlyXFits) {
-  OffsetBasis none;
-  none.method = OffsetMethod::kTouchOff;
-  const auto found = mismatches(offsetsFor(none), basisOf());
-  ASSERT_EQ(axesOf(found), "YZ");
-  EXPECT_EQ(found[0].reason, "Y was touched off, not known for which job");
+TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
+  WorkOffsets unreadable;
+  unreadable.axes[kX].value = kNan;
+  OffsetBasis no_job;
+  no_job.method = OffsetMethod::kTouchOff;
+  const struct {
+    WorkOffsets offsets;
+    std::vector<std::string> reasons;
+  } rows[]{{{}, {"X was never set", "Y was never set", "Z was never set"}},
+           {unreadable, {"X cannot be read", "Y was never set", "Z was never set"}},
+           // Set before this was kept.
+           {offsetsFor(OffsetBasis{}),
+            {"X was set, not known for which job", "Y was set, not known for which job",
+             "Z was set, not known for which job"}},
+           // X depends on no job.
+           {offsetsFor(no_job),
+            {"Y was touched off, not known for which job", "Z was touched off, not known for which job"}}};
+  for (const auto& row : rows) {
+    std::vector<std::string> reasons;
+    for (const OffsetMismatch& mismatch : mismatches(row.offsets, basisOf())) {
+      reasons.push_back(mismatch.reason);
+      EXPECT_FALSE(mismatch.change) << mismatch.reason;
+    }
+    EXPECT_EQ(reasons, row.reasons);
+  }
 }
 
 TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
@@ -170,15 +178,6 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
   }
 }
 
-TEST(OffsetFit, OneThatCannotBeReadIsNotOneThatWasNeverSet) {
-  WorkOffsets offsets;
-  offsets.axes[kX].value = kNan;
-  const auto found = mismatches(offsets, basisOf());
-  ASSERT_EQ(axesOf(found), "XYZ");
-  EXPECT_EQ(found[0].reason, "X cannot be read");
-  EXPECT_EQ(found[1].reason, "Y was never set");
-}
-
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
   EXPECT_EQ(basisText(kY, WorkOffset{}), "never set");
   WorkOffset unknown;
@@ -193,5 +192,47 @@ TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
   EXPECT_EQ(basisText(kZ, offsetFor(none)), "set by hand, not known for which job");
 }
 
-}  // namespace test_offset_fit
+const double kInf = std::numeric_limits<double>::infinity();
+const double kTurn = 2 * std::acos(-1.0);
+
+OffsetLimits limitsOf(double a) {
+  AxisLimits travel;
+  travel.min_position << -0.1, -0.02, -0.05, -a;
+  travel.max_position << 0.3, 0.15, 0.1, a;
+  return offsetLimits(travel, {0.005, 0.005, 0.005, kTurn});
+}
+
+TEST(OffsetLimits, AreTheTravelAndOfAOneTurnMore) {
+  const OffsetLimits limits = limitsOf(1);
+  for (const double good : {-0.02, 0.0, 0.15}) EXPECT_EQ(travelRefusal(limits, kY, good), "");
+  EXPECT_EQ(travelRefusal(limits, kY, 0.1501),
+            "work offset of axis Y = 150.1 mm; allowed: -20 to 150 mm, the travel of the axis");
+  for (const double wrong : {-0.0201, 6.203, 1000.0, kNan, kInf, -kInf})
+    EXPECT_NE(travelRefusal(limits, kY, wrong), "");
+  EXPECT_EQ(travelRefusal(limits, kA, 1 + kTurn), "");
+  EXPECT_NE(travelRefusal(limits, kA, 1.001 + kTurn), "");
+}
+
+TEST(OffsetLimits, OfAnAxisThatTurnsForEverAreThoseOfAnyOffset) {
+  const OffsetLimits limits = limitsOf(kInf);
+  EXPECT_EQ(travelRefusal(limits, kA, kMaxOffset), "");
+  EXPECT_NE(travelRefusal(limits, kA, kMaxOffset * 1.001), "");
+  EXPECT_NE(travelRefusal(limits, kA, kNan), "");
+}
+
+TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {
+  const OffsetLimits limits = limitsOf(100);
+  const WorkOffset was{0.0015, "anna@grinder", 1.7e9};
+  EXPECT_EQ(changeRefusal(limits, kY, was, 0.006), "");
+  EXPECT_EQ(
+      changeRefusal(limits, kY, was, -0.0105),
+      "work offset of axis Y would change by 12 mm, from 1.5 mm to -10.5 mm; allowed without a confirmation: 5 mm");
+  EXPECT_NE(changeRefusal(limits, kY, was, kNan), "");
+  EXPECT_EQ(changeRefusal(limits, kA, was, 6), "");
+  EXPECT_NE(changeRefusal(limits, kA, was, 7), "");
+  EXPECT_EQ(changeRefusal(limits, kY, WorkOffset{}, 0.1), "") << "never set";
+  EXPECT_EQ(changeRefusal(limits, kY, {kNan, "anna@grinder", 1.7e9}, 0.1), "") << "unknown";
+}
+
+}  // namespace test_offsets
 }  // namespace grinder

@@ -22,6 +22,11 @@ MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
           (limits.max_jerk / size).minCoeff()};
 }
 
+/// @p position, but on no axis outside [@p from, @p to]: the way of a straight is rounded, and may lead past its end.
+Axes clamped(const Axes& position, const Axes& from, const Axes& to) noexcept {
+  return position.max(from.min(to)).min(from.max(to));
+}
+
 }  // namespace
 
 bool MoveShape::operator<(const MoveShape& o) const noexcept {
@@ -126,7 +131,7 @@ void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noe
   if (current_.move == MoveKind::kStroke) {
     strokePoint(even_point_, StepKind::kEven);
   } else {
-    current_.position = from_ + way_ * law_.position();
+    current_.position = clamped(from_ + way_ * law_.position(), from_, to_);
   }
 }
 
@@ -281,7 +286,7 @@ void SetpointStream::straightStep() noexcept {
   if (law_.finished()) {
     current_.position = to_;
   } else {
-    current_.position = from_ + way_ * law_.position();
+    current_.position = clamped(from_ + way_ * law_.position(), from_, to_);
   }
   current_.feed = law_.speed() * linear_way_;
   if (onPath()) current_.move_fraction = law_.position();

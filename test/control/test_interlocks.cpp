@@ -254,63 +254,63 @@ struct LostRig : Rig<FakeDrive> {
   }
 };
 
-TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
+/// Each part lost at each moment.
+template <typename Check>
+void atEveryLoss(const Check& check) {
   for (const Part& part : parts()) {
     for (const LossMoment& moment : lossMoments()) {
       SCOPED_TRACE(part.name + (" " + moment.name));
       LostRig rig(part, moment);
-      EXPECT_EQ(rig.last().interlock, part.interlock);
-      EXPECT_EQ(rig.last().state, moment.then);
-      EXPECT_FALSE(rig.last().job_ended);
-      EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
-      ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
-      EXPECT_GE(rig.last().command[kY], kClearanceHeight - 1e-12);
-      EXPECT_EQ(rig.last().interlock, part.interlock);
-      EXPECT_EQ(rig.jobsEnded(), 0);
-      const std::size_t lifted = rig.log.size() - 1;
-      for (int i = 0; i < 2; ++i) {
-        EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
-        rig.run(100);
-      }
-      rig.drive.on_read = restoreParts;
-      rig.run(200);
-      EXPECT_EQ(rig.last().state, S::kRetracted);
-      EXPECT_EQ(rig.last().interlock, part.interlock) << "reported until the job is resumed";
-      EXPECT_TRUE(atRestFrom(rig.log, lifted));
-      ASSERT_TRUE(rig.ask(E::kResume).accepted);
-      EXPECT_EQ(rig.last().interlock, Interlock::kNone);
-      if (rig.jobsEnded() == 0) rig.runToEnd();
-      expectCompleted(rig);
+      check(rig, part, moment);
     }
   }
+}
+
+TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
+  atEveryLoss([](LostRig& rig, const Part& part, const LossMoment& moment) {
+    EXPECT_EQ(rig.last().interlock, part.interlock);
+    EXPECT_EQ(rig.last().state, moment.then);
+    EXPECT_FALSE(rig.last().job_ended);
+    EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
+    ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
+    EXPECT_GE(rig.last().command[kY], kClearanceHeight - 1e-12);
+    EXPECT_EQ(rig.last().interlock, part.interlock);
+    EXPECT_EQ(rig.jobsEnded(), 0);
+    const std::size_t lifted = rig.log.size() - 1;
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
+      rig.run(100);
+    }
+    rig.drive.on_read = restoreParts;
+    rig.run(200);
+    EXPECT_EQ(rig.last().state, S::kRetracted);
+    EXPECT_EQ(rig.last().interlock, part.interlock) << "reported until the job is resumed";
+    EXPECT_TRUE(atRestFrom(rig.log, lifted));
+    ASSERT_TRUE(rig.ask(E::kResume).accepted);
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+    if (rig.jobsEnded() == 0) rig.runToEnd();
+    expectCompleted(rig);
+  });
 }
 
 TEST(Lost, ForASinglePeriodIsAsGoodAsForLong) {
-  for (const Part& part : parts()) {
-    for (const LossMoment& moment : lossMoments()) {
-      SCOPED_TRACE(part.name + (" " + moment.name));
-      LostRig rig(part, moment);
-      rig.drive.on_read = restoreParts;
-      ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
-      EXPECT_EQ(rig.last().interlock, part.interlock);
-      expectResumedAndCompleted(rig);
-    }
-  }
+  atEveryLoss([](LostRig& rig, const Part& part, const LossMoment&) {
+    rig.drive.on_read = restoreParts;
+    ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
+    EXPECT_EQ(rig.last().interlock, part.interlock);
+    expectResumedAndCompleted(rig);
+  });
 }
 
 TEST(Lost, CancelEndsTheJob) {
-  for (const Part& part : parts()) {
-    for (const LossMoment& moment : lossMoments()) {
-      SCOPED_TRACE(part.name + (" " + moment.name));
-      LostRig rig(part, moment);
-      ASSERT_TRUE(rig.ask(E::kCancel).accepted);
-      if (rig.last().state != S::kReady) rig.runUntil(S::kReady);
-      EXPECT_EQ(rig.jobsEnded(), 1);
-      EXPECT_EQ(rig.last().interlock, Interlock::kNone);
-      EXPECT_FALSE(rig.drive.written_drive.spindle);
-      EXPECT_TRUE(smooth(rig.log));
-    }
-  }
+  atEveryLoss([](LostRig& rig, const Part&, const LossMoment&) {
+    ASSERT_TRUE(rig.ask(E::kCancel).accepted);
+    if (rig.last().state != S::kReady) rig.runUntil(S::kReady);
+    EXPECT_EQ(rig.jobsEnded(), 1);
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+    EXPECT_FALSE(rig.drive.written_drive.spindle);
+    EXPECT_TRUE(smooth(rig.log));
+  });
 }
 
 TEST(LostPart, WhileCancelingDoesNotKeepTheJobFromEnding) {

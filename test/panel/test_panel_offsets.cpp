@@ -127,8 +127,10 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndShownWithWhatTheyWereBesideANewPlan) {
   EXPECT_EQ(panel.text("messages").substr(9),
             "Work offset of axis Y: 4 mm, was 2 mm; computed\nwork offset of axis Z: 4 mm, was 3 mm; computed");
   panel.picture("fitted");
-  ASSERT_EQ(offsetsSet().size(), 2U);
-  const flute_grinder::SetOffset::Request set = offsetsSet()[0];
+  const auto all = offsetsSet();
+  ASSERT_EQ(all.size(), 2U);
+  // One request may overtake the other.
+  const flute_grinder::SetOffset::Request& set = all[0].axis == kY ? all[0] : all[1];
   EXPECT_EQ(set.axis, kY);
   EXPECT_NEAR(set.value, 0.004, 1e-15);
   EXPECT_EQ(set.basis.job_name, "paper.yaml");

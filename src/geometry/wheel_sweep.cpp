@@ -3,7 +3,6 @@
 #include "flute_grinder/curve/units.h"
 
 #include <boost/math/tools/minima.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +26,7 @@ constexpr int kPoseHalvings = 30;      ///< of a step between poses, for where a
 constexpr int kDiscs = 16;             ///< of the wheel, from which its minimum radius is refined
 constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
 constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
+constexpr double kEndStep = 1e-10;     ///< of Newton's method, after which the next is lost in rounding [rad]
 constexpr double kSameAngle = 1e-12;   ///< by which a longer stroke must move an end to count as farther [rad]
 constexpr double kNearestApex = 1e-3;  ///< of the small end's radius: nearer its apex a cone turns without end
 constexpr double kSameEnd = 1e-7;      ///< how well two searches find the same end [rad]
@@ -36,18 +36,6 @@ void requireFinite(const char* name, double value) {
   std::ostringstream text;
   text << name << " = " << value << "; allowed: a finite number";
   throw std::invalid_argument(text.str());
-}
-
-/// The root of a function of which the ends of an interval have different signs, or one of them is 0.
-template <typename Function>
-double root(const Function& f, double a, double fa, double b, double fb) {
-  if (fa == 0) return a;
-  if (fb == 0) return b;
-  std::uintmax_t steps = kMaxPoseSteps;
-  const auto bracket =
-      a < b ? boost::math::tools::toms748_solve(f, a, b, fa, fb, boost::math::tools::eps_tolerance<double>(52), steps)
-            : boost::math::tools::toms748_solve(f, b, a, fb, fa, boost::math::tools::eps_tolerance<double>(52), steps);
-  return (bracket.first + bracket.second) / 2;
 }
 
 }  // namespace
@@ -130,9 +118,8 @@ double WheelSweep::lowestPoint(double axis_x) const noexcept {
   return centre_ + axis_x * y_per_x_ + deepest_deviation_ - wheel_.maxRadius();
 }
 
-double WheelSweep::outside(const Pose& p, double r, double theta) const noexcept {
-  const double dy = r * std::cos(theta) - p.y;
-  const double dz = r * std::sin(theta) - p.z;
+double WheelSweep::outside(const Pose& p, double y, double z) const noexcept {
+  const double dy = y - p.y, dz = z - p.z;
   const double w = dz * cos_ - p.dx * sin_;
   const double t = dz * sin_ + p.dx * cos_;
   return std::sqrt(dy * dy + t * t) - wheel_.radius(std::clamp(w, wheel_.lowerFace(), wheel_.upperFace()));
@@ -190,25 +177,46 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
   const double max = std::min(open, at_face(wheel_.upperFace()));
   if (!(min < max)) return std::nullopt;
 
-  const auto f = [&](double theta) { return outside(p, r, theta); };
+  // From the end inward to the first point that is in the wheel.
   const double end = high ? max : min;
-  const double f_end = f(end);
-  if (f_end <= 0) return end;
-  double inside = high ? min : max;
-  double f_inside = f(inside);
-  const double step = (max - min) / kAnglesPerPose;
-  for (int i = 1; i < kAnglesPerPose; ++i) {
-    const double theta = min + i * step;
-    const double value = f(theta);
-    if (value < f_inside) inside = theta, f_inside = value;
+  const double step = ((high ? min : max) - end) / kAnglesPerPose;
+  const double cos_step = std::cos(step), sin_step = std::sin(step);
+  double y = r * std::cos(end), z = r * std::sin(end);
+  PlaceOnCircle before{end, outside(p, y, z)}, nearest = before;
+  if (before.outside <= 0) return end;
+  for (int i = 1; i <= kAnglesPerPose; ++i) {
+    std::tie(y, z) = std::make_tuple(y * cos_step - z * sin_step, z * cos_step + y * sin_step);
+    const PlaceOnCircle here{end + i * step, outside(p, y, z)};
+    if (here.outside <= 0) return endBetween(p, r, here, before);
+    if (here.outside < nearest.outside) nearest = here;
+    before = here;
   }
-  if (f_inside > 0) {
-    std::uintmax_t steps = kMaxPoseSteps;
-    std::tie(inside, f_inside) =
-        boost::math::tools::brent_find_minima(f, std::max(min, inside - step), std::min(max, inside + step), 26, steps);
-    if (!(f_inside <= 0)) return std::nullopt;
+  const auto f = [&](double theta) { return outside(p, r * std::cos(theta), r * std::sin(theta)); };
+  std::uintmax_t steps = kMaxPoseSteps;
+  const double way = std::abs(step);
+  const auto [theta, value] = boost::math::tools::brent_find_minima(f, std::max(min, nearest.theta - way),
+                                                                    std::min(max, nearest.theta + way), 26, steps);
+  if (!(value <= 0)) return std::nullopt;
+  return endBetween(p, r, {theta, value}, {end, f(end)});
+}
+
+double WheelSweep::endBetween(const Pose& p, double r, PlaceOnCircle in, PlaceOnCircle out) const noexcept {
+  // Newton's method, which never leaves what is between the two.
+  double theta = in.theta + (out.theta - in.theta) * in.outside / (in.outside - out.outside);
+  for (std::uintmax_t i = 0; i < kMaxPoseSteps; ++i) {
+    const double y = r * std::cos(theta), z = r * std::sin(theta);
+    const double value = outside(p, y, z);
+    (value <= 0 ? in : out).theta = theta;
+    const double dy = y - p.y, dz = z - p.z;
+    const double w = std::clamp(dz * cos_ - p.dx * sin_, wheel_.lowerFace(), wheel_.upperFace());
+    const double t = dz * sin_ + p.dx * cos_;
+    const double slope = (t * y * sin_ - dy * z) / std::sqrt(dy * dy + t * t) - wheel_.slope(w) * y * cos_;
+    double next = theta - value / slope;
+    if (!((next - in.theta) * (next - out.theta) <= 0)) next = (in.theta + out.theta) / 2;
+    if (std::abs(next - theta) < kEndStep) return next;
+    theta = next;
   }
-  return root(f, inside, f_inside, end, f_end);
+  return theta;
 }
 
 double WheelSweep::endOver(double x, double axis_x, double r, bool high) const {
@@ -436,7 +444,7 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
 
   // The wheel moves along its groove's wall: of the normals about the point, one at a corner of the profile being any
   // between those of its two sides, the wall's is the one square to the wheel's motion.
-  const bool on_face = outside(p, r, theta) < -kCorner;
+  const bool on_face = outside(p, r * std::cos(theta), r * std::sin(theta)) < -kCorner;
   const double face = w + (2 * w > wheel_.lowerFace() + wheel_.upperFace() ? 1 : -1) * wheel_.maxRadius();
   const Normal below = normal(p, r, theta, on_face ? face : w - kCorner);
   const Normal above = normal(p, r, theta, on_face ? face : w + kCorner);

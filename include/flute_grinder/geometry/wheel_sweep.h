@@ -117,8 +117,15 @@ class WheelSweep {
   /// How many steps a window is gone through in: of the size of the cutter, not of the wheel.
   int posesOf(double x, const Window& window) const noexcept;
   std::optional<double> endAt(const Pose& pose, double r, bool high) const;
+  /// An angle on a circle, and what outside() is there.
+  struct PlaceOnCircle {
+    double theta, outside;
+  };
+  /// Where the circle leaves the wheel. @param in a place in the wheel. @param out one outside.
+  double endBetween(const Pose& pose, double r, PlaceOnCircle in, PlaceOnCircle out) const noexcept;
   double endOver(double x, double axis_x, double r, bool high) const;
-  double outside(const Pose& pose, double r, double theta) const noexcept;
+  /// How far a point of the section is outside the wheel: below 0 in it [m].
+  double outside(const Pose& pose, double y, double z) const noexcept;
   struct Extremum {
     double value;
     double axis_x;

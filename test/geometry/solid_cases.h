@@ -25,7 +25,7 @@ inline GroundCutter groundAt(const Case& c, const std::vector<double>& angles) {
 
 inline Case cylinder() {
   Case c;
-  c.face = faceFor(10, 8);
+  c.face = c.diameter / 2 * std::sin(c.rake * kDegree);
   c.width = 2;
   c.swivel = 38;
   return c;

@@ -245,19 +245,6 @@ TEST(JobSetup, WhatCannotBeHadIsRefusedWithHowNearItComesAndWhatMendsIt) {
   EXPECT_TRUE(solved(job).check.reasons.empty()) << text;
 }
 
-// With the wheel over the axis the core is 6.8 mm and no other; elsewhere it is more.
-TEST(JobSetup, ACylindersCoreMayDifferByItsTolerance) {
-  GrindJob job = shipped("roughing_d10_t4");
-  job.process.depth = 1.6 * kMillimetre;
-  for (const double core : {6.8, 6.785}) {
-    job.cutter.core_diameter = job.cutter.core_diameter_end = core * kMillimetre;
-    const JobSetup setup = solved(job, SetupFigure::kDepth);
-    EXPECT_EQ(setup.job.process.depth, job.process.depth);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-    EXPECT_NEAR(setup.check.figures.core_diameter[0], core * kMillimetre, job.cutter.core_tolerance);
-  }
-}
-
 // Found at random: their figures were near the ends of their tolerances.
 TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
   struct Case {

@@ -36,10 +36,6 @@ struct Case {
     for (int i = 0; i < teeth; ++i) all.push_back({2 * units::kPi * i / teeth, 0});
     return {cutter(), {{sweep()}}, all};
   }
-  double rakeAt(double x_mm) const { return ground().section(x_mm * kMillimetre).teeth.at(0).rake.value() / kDegree; }
 };
-
-/// The face is to pass the outer circle at R sin r.
-inline double faceFor(double diameter, double rake) { return diameter / 2 * std::sin(rake * kDegree); }
 
 }  // namespace grinder::test_support

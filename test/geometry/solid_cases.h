@@ -25,7 +25,7 @@ inline GroundCutter groundAt(const Case& c, const std::vector<double>& angles) {
 
 inline Case cylinder() {
   Case c;
-  c.face = faceFor(10, 8);
+  c.face = c.diameter / 2 * std::sin(c.rake * kDegree);
   c.width = 2;
   c.swivel = 38;
   return c;
@@ -58,7 +58,12 @@ inline std::vector<SolidCase> solidCases() {
   left.swivel = -38;
   left.face = left.width / std::cos(left.swivel * kDegree) - left.face;
   left.cut = CutDirection::kLeftHand;
-  add("left hand", left, left.ground(4), 0, 30);
+  Case shallower_left = left;
+  shallower_left.spiral = -33;
+  shallower_left.depth = 1.1;
+  const GroundCutter unequal_left(left.cutter(), {{left.sweep()}, {shallower_left.sweep()}},
+                                  {{0, 0}, {80 * kDegree, 1}, {190 * kDegree, 0}, {262 * kDegree, 1}});
+  add("left hand", left, unequal_left, 0, 30);
 
   add("unequal pitch", cylinder(), groundAt(cylinder(), {0, 80, 190, 262}), 0, 30);
 

@@ -118,12 +118,17 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
   EXPECT_GE(bent, 6);
 }
 
+// Of either hand, with a wheel whose other corner, away from the rake face, is rounded.
 TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
-  const SetupRequest request = requestFor(kSteep);
-  GrindJob job = steepJob();
-  for (const double lead : {-1e-3, 1e-3}) {
-    SCOPED_TRACE(lead);
+  for (const auto& [hand, lead] : {std::pair{1, -1e-3}, {1, 1e-3}, {-1, -1e-3}, {-1, 1e-3}}) {
+    SCOPED_TRACE(testing::Message() << hand << ' ' << lead);
+    Shop shop = kSteep;
+    if (hand < 0) shop.spiral = -shop.spiral, shop.cut = CutDirection::kLeftHand;
+    GrindJob job = jobFor(shop).value();
     job.process.setup_lead = lead;
+    (hand < 0 ? job.process.wheel_corner_radius_upper : job.process.wheel_corner_radius_lower) = 0.3 * kMillimetre;
+    SetupRequest request = requestFor(shop);
+    request.wheel = wheelOf(job);
     const ValidJob with_law = withLaws(ValidJob(job));
     EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
     const brute::Bench bench{request,

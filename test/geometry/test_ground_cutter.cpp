@@ -3,7 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_cutter.h"
 
-#include "geometry/ground_case.h"
+#include "geometry/solid_cases.h"
 #include "random_cases.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,6 @@ namespace grinder {
 namespace test_ground_cutter {
 
 using test_support::Case;
-using test_support::faceFor;
 using units::kDegree;
 using units::kMillimetre;
 constexpr double kMicrodegree = 1e-6 * kDegree;
@@ -127,6 +126,7 @@ std::optional<RandomCase> randomCase(std::mt19937& random, int i) {
   c.from = uniform(-6, 0);
   c.to = uniform(20, 35);
   c.a = uniform(-3, 3);
+  c.cut = i / 4 % 2 == 0 ? CutDirection::kRightHand : CutDirection::kLeftHand;
   const double x = uniform(3, 18) * kMillimetre;
   const double radius = c.cutter().radius(std::min(c.to, 40.0) * kMillimetre + 0.04);
   if (!(c.cutter().radius(-0.006) > 5e-4 && radius > 5e-4)) return std::nullopt;
@@ -206,23 +206,27 @@ TEST(GroundCutter, RakeEdgeAndFluteAreThoseOfBruteForce) {
     const ToothSection tooth = ground.section(k->x).teeth[0];
     if (!tooth.rake || !(*tooth.flute > 1e-3)) continue;
     ++checked;
-    const double edge = bruteEnd(*k, k->outer, *tooth.edge, true);
-    const double low = bruteEnd(*k, k->outer, *tooth.edge - *tooth.flute, false);
+    // The rake face is the wall at the larger angles on the right hand, at the smaller ones on the left hand.
+    const bool right = k->c.cut == CutDirection::kRightHand;
+    const int hand = right ? 1 : -1;
+    const double edge = bruteEnd(*k, k->outer, *tooth.edge, right);
+    const double back = bruteEnd(*k, k->outer, *tooth.edge - hand * *tooth.flute, !right);
     const WheelSweep sweep = k->c.sweep(k->wheel);
+    const auto face = [&](double r) {
+      const auto arc = sweep.arc(k->x, r);
+      return bruteEnd(*k, r, right ? arc->high : arc->low, right);
+    };
     // Brute force is too coarse for a short step at a sharp corner, and a long one may run over a kink.
     double rake_off = 1;
     for (const double part : {1e-4, 1e-3}) {
-      const double h = part * k->outer;
-      const double above = bruteEnd(*k, k->outer + h, sweep.arc(k->x, k->outer + h)->high, true);
-      const double below = bruteEnd(*k, k->outer - h, sweep.arc(k->x, k->outer - h)->high, true);
-      rake_off = std::min(rake_off, std::abs(*tooth.rake - std::atan(k->outer * (below - above) / (2 * h))));
+      const double h = part * k->outer, fall = hand * (face(k->outer - h) - face(k->outer + h));
+      rake_off = std::min(rake_off, std::abs(*tooth.rake - std::atan(k->outer * fall / (2 * h))));
       if (rake_off < 0.005 * kDegree) break;
     }
     EXPECT_LT(rake_off, 0.005 * kDegree) << "case " << i;
     EXPECT_NEAR(*tooth.edge, edge, 0.001 * kDegree) << "case " << i;
-    EXPECT_NEAR(*tooth.flute, edge - low, 0.001 * kDegree) << "case " << i;
-    const double inner = k->outer - tooth.depth / 10;
-    const double inward = bruteEnd(*k, inner, sweep.arc(k->x, inner)->high, true) - edge;
+    EXPECT_NEAR(*tooth.flute, hand * (edge - back), 0.001 * kDegree) << "case " << i;
+    const double inner = k->outer - tooth.depth / 10, inward = hand * (face(inner) - edge);
     const double chord = std::atan(inner * std::sin(inward) / (k->outer - inner * std::cos(inward)));
     EXPECT_NEAR(*tooth.chordal_rake, chord, 0.01 * kDegree) << "case " << i;
   }
@@ -315,40 +319,6 @@ TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {
   EXPECT_GT(incomplete, 300);
 }
 
-TEST(WheelSweep, AWallsSlopeIsThatOfItsAngles) {
-  std::mt19937 random(13);
-  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
-  int checked = 0;
-  for (int i = 0; i < 300; ++i) {
-    Case c;
-    c.cone = uniform(-2, 12);
-    c.spiral = uniform(-45, 45);
-    c.swivel = c.spiral + uniform(-4, 4);
-    c.width = uniform(1, 5);
-    c.face = uniform(-1, 4);
-    c.from = -4;
-    c.to = 30;
-    const WheelSweep sweep =
-        c.sweep(WheelProfile::straight(c.wheel * kMillimetre, c.width * kMillimetre, {0, i % 3 * 2e-4}));
-    const double x = uniform(3, 15) * kMillimetre, outer = c.cutter().radius(x);
-    const double r = outer - uniform(0, 0.7) * (outer - sweep.minRadius(x, outer));
-    const auto arc = sweep.arc(x, r);
-    for (const bool high : {false, true}) {
-      const auto at = sweep.wall(x, r, high), above = sweep.wall(x, 1.0001 * r, high),
-                 below = sweep.wall(x, 0.9999 * r, high);
-      if (!at || !above || !below) continue;
-      EXPECT_EQ(at->angle, high ? arc->high : arc->low);
-      // Between the slopes on both sides, which differ where one place of the wheel takes over from another.
-      const double slope = (above->angle - below->angle) / (2e-4 * r);
-      const double margin = 1e-3 * std::abs(slope) + 1e-2;
-      EXPECT_GE(slope, std::min({at->slope, above->slope, below->slope}) - margin) << i;
-      EXPECT_LE(slope, std::max({at->slope, above->slope, below->slope}) + margin) << i;
-      ++checked;
-    }
-  }
-  EXPECT_GT(checked, 300);
-}
-
 TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
   for (const double cone : {-1.0, 0.0, 8.0}) {
     Case c;
@@ -360,22 +330,19 @@ TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
   }
 }
 
-TEST(GroundCutter, FluteAndLandShareThePitch) {
-  Case c;
-  c.face = faceFor(10, 8);
-  c.width = 2;
-  c.swivel = 38;
-  const GroundSection s = c.ground(4).section(0.02);
-  ASSERT_EQ(s.teeth.size(), 4u);
-  for (const ToothSection& tooth : s.teeth) {
-    ASSERT_TRUE(tooth.land.has_value());
-    EXPECT_NEAR(*tooth.flute + *tooth.land, units::kPi / 2, 1e-9);
-    EXPECT_TRUE(tooth.complete);
+TEST(GroundCutter, ALandIsWhatTheFluteBehindItLeaves) {
+  for (const test_support::SolidCase& c : test_support::solidCases()) {
+    SCOPED_TRACE(c.name);
+    const bool right = c.ground.direction() == CutDirection::kRightHand;
+    const std::vector<ToothSection> teeth = c.ground.section(c.from + 0.2 * (c.to - c.from)).teeth;
+    for (std::size_t i = 0; i < teeth.size(); ++i) {
+      const ToothSection& behind = teeth[(i + (right ? 1 : teeth.size() - 1)) % teeth.size()];
+      const double turn = (right ? 1 : -1) * (*behind.edge - *teeth[i].edge);
+      const double left = turn - *behind.flute + (turn > 0 ? 0 : units::kTurn);
+      ASSERT_EQ(teeth[i].land.has_value(), left > 0) << i;
+      if (left > 0) EXPECT_NEAR(*teeth[i].land, left, 1e-9) << i;
+    }
   }
-  EXPECT_NEAR(*s.teeth[1].edge - *s.teeth[0].edge, units::kPi / 2, 1e-12);
-  // Where the flutes meet no land is left.
-  c.width = 10;
-  EXPECT_FALSE(c.ground(4).section(0.02).teeth[0].land.has_value());
 }
 
 }  // namespace test_ground_cutter

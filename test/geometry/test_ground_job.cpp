@@ -160,6 +160,15 @@ TEST(GroundJob, AChordOffByMoreThanItsToleranceIsRefused) {
   EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
 }
 
+// By the published motion the paper's cutter gets an edge of 26.8 to 27.9 deg in place of 30.
+TEST(GroundJob, AnEdgeOffItsHelixByMoreThanItsToleranceIsRefused) {
+  GrindJob job = paper();
+  job.cutter.spiral_tolerance = 3.5 * kDegree;
+  EXPECT_TRUE(checked(job).reasons.empty());
+  job.cutter.spiral_tolerance = 3 * kDegree;
+  EXPECT_NEAR(reasonOf(checked(job), ReasonKind::kSpiral).value / kDegree, 26.9, 0.11);
+}
+
 TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   GrindJob job = paper();
   job.process.overtravel_shank = 1 * kMillimetre;
@@ -184,22 +193,15 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   EXPECT_LT(check.complete->to, job.cutter.flute_length);
 }
 
-TEST(GroundJob, AToothWithoutALandIsRefused) {
-  GrindJob job = jobOf("roughing_d10_t4");
-  job.process.wheel_width = 10 * kMillimetre;
-  job.process.setup_height -= 3.5 * kMillimetre / std::cos(job.process.setup_swivel);  // the same upper face
-  job.process.overtravel_end = job.process.overtravel_shank = 12 * kMillimetre;
-  const Reason reason = reasonOf(checked(job), ReasonKind::kLand);
-  EXPECT_GT(reason.value, reason.limit);
-  EXPECT_NEAR(reason.limit, 90 * kDegree, 1e-12);
-}
-
 TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
-  GrindJob job = jobOf("unequal_d12_t4");
-  for (const double narrow : {20.0, 340.0}) {
-    job.tooth_angles = {0, narrow * kDegree};
-    const Reason reason = reasonOf(checked(job), ReasonKind::kLand);
-    EXPECT_NEAR(reason.limit, 20 * kDegree, 1e-12);
+  for (const char* name : {"unequal_d12_t4", "left_hand_d8_t3"}) {
+    GrindJob job = jobOf(name);
+    for (const double narrow : {20.0, 340.0}) {
+      job.tooth_angles = {0, narrow * kDegree};
+      const Reason reason = reasonOf(checked(job), ReasonKind::kLand);
+      EXPECT_NEAR(reason.limit, 20 * kDegree, 1e-12) << name;
+      EXPECT_GT(reason.value, reason.limit) << name;
+    }
   }
 }
 
@@ -210,26 +212,6 @@ TEST(GroundJob, CornersThatDoNotFitAreRefused) {
   job.process.wheel_corner_radius_lower = 1 * kMillimetre;
   const CutterCheck check = checked(job);
   EXPECT_NE(text(check.reasons).find("corner_radius"), std::string::npos);
-}
-
-// Tapered wheels are measured in test_touch_off.cpp.
-TEST(GroundJob, TheOtherProfilesAreTheWheelsOfTheirFigures) {
-  GrindJob job = paper();
-  GrindProcess& p = job.process;
-  p.wheel_corner_radius_lower = 0.2e-3;
-  p.wheel_corner_radius_upper = 0.4e-3;
-  WheelProfile wheel = wheelOf(job);
-  EXPECT_DOUBLE_EQ(wheel.radius(0), 50e-3);
-  EXPECT_NEAR(wheel.radius(-1.5e-3), 49.8e-3, 1e-9);
-  EXPECT_NEAR(wheel.radius(1.5e-3), 49.6e-3, 1e-9);
-  p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
-  p.wheel_profile = WheelShape::kFullRadius;
-  EXPECT_NEAR(wheelOf(job).radius(0), 50e-3, 1e-12);
-  EXPECT_NEAR(wheelOf(job).radius(1.5e-3 * std::sin(0.7)), 48.5e-3 + 1.5e-3 * std::cos(0.7), 1e-9);
-  p.wheel_profile = WheelShape::kPoints;
-  job.wheel_points = {{-1.5e-3, 48e-3}, {0, 50e-3}, {1.5e-3, 49e-3}};
-  EXPECT_NEAR(wheelOf(job).radius(-0.75e-3), 49e-3, 1e-12);
-  EXPECT_NEAR(wheelOf(job).radius(0.75e-3), 49.5e-3, 1e-12);
 }
 
 TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
@@ -250,32 +232,6 @@ TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
   EXPECT_NE(*section.teeth[0].rake, *section.teeth[3].rake);
 }
 
-TEST(GroundJob, EarlierPassesRemoveNothingMore) {
-  for (const char* name : {"paper", "roughing_d10_t4", "taper_d6_t6", "mould_cone_d2_t2", "left_hand_d8_t3"}) {
-    SCOPED_TRACE(name);
-    GrindJob job = jobOf(name);
-    job.process.wheel_wear_per_pass = 0;
-    const GroundCutter whole = groundCutterOf(ValidJob(job));
-    const double deepest = std::max(job.process.depth, job.process.depthEnd());
-    for (const double part : {0.25, 0.5, 0.9}) {
-      GrindJob earlier = job;
-      earlier.process.depth = part * job.process.depth;
-      earlier.process.depth_end = part * job.process.depthEnd();
-      earlier.process.infeed = earlier.process.finish_infeed = part * deepest;
-      const GroundCutter before = groundCutterOf(ValidJob(earlier));
-      for (const double at : {0.0, 0.4, 1.0}) {
-        const double x = at * job.cutter.flute_length;
-        const ToothSection first = before.section(x).teeth[0], last = whole.section(x).teeth[0];
-        if (!first.edge) continue;
-        const double sign = job.cutter.cut == CutDirection::kRightHand ? 1 : -1;
-        EXPECT_LE(sign * *first.edge, sign * *last.edge + 1e-9);
-        EXPECT_LE(*first.flute - sign * *first.edge, *last.flute - sign * *last.edge + 1e-9);
-        EXPECT_LE(first.depth, last.depth + 1e-9);
-      }
-    }
-  }
-}
-
 TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
   GrindJob job = cylinder(38);
   job.process.wheel_width = 2 * kMillimetre;
@@ -286,25 +242,6 @@ TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
   const GroundSection section = groundCutterOf(ValidJob(job)).section(0.015);
   EXPECT_NEAR(*section.teeth[0].spiral, 30 * kDegree, 1e-4);
   EXPECT_NEAR(*section.teeth[1].spiral, 33 * kDegree, 1e-4);
-}
-
-TEST(GroundJob, AStraightGrooveIsAsDeepAsAskedAtBothEnds) {
-  // Straight flutes on a cylinder, the floor formed by the wheel's lowest point: the core tapers as asked.
-  GrindJob job = cylinder(0);
-  job.cutter.spiral_angle = 0;
-  job.process.wheel_diameter = 20 * kMillimetre;
-  job.process.setup_height = 0;
-  job.process.depth = 1 * kMillimetre;
-  job.process.depth_end = 2 * kMillimetre;
-  job.process.infeed = 2 * kMillimetre;
-  job.cutter.rake_angle = 0;
-  const GroundCutter cutter = groundCutterOf(ValidJob(job));
-  const double slope = 1.0 / 30;  // the wheel touches the floor this far off its lowest point
-  const double deeper = 10 * kMillimetre * (std::sqrt(1 + slope * slope) - 1);
-  for (const double at : {0.0, 0.5, 1.0}) {
-    const GroundSection section = cutter.section(at * job.cutter.flute_length);
-    EXPECT_NEAR(section.radius - section.core_radius, (1 + at) * kMillimetre + deeper, 1e-9);
-  }
 }
 
 TEST(GroundJob, AnEngraverOf30DegIsPossible) {

@@ -164,46 +164,6 @@ TEST(JobSetup, WhatAPlanRefusesSaysSo) {
   expectContains(text, ", or set process.z_law: constant_rake\n");
 }
 
-bool hasReason(const GrindJob& job, ReasonKind kind) {
-  const CutterCheck check = checkGroundCutter(ValidJob(job), groundCutterOf(ValidJob(job)));
-  return std::any_of(check.reasons.begin(), check.reasons.end(), [&](const auto& r) { return r.kind == kind; });
-}
-
-// By the published motion the paper's cutter gets an edge of 26.8 to 27.9 deg and a core of 7.08 to 12.37 mm.
-TEST(JobSetup, EdgeAndCoresBeyondTheirTolerancesAreRefusedAndFound) {
-  GrindJob job = paper();
-  job.cutter.core_diameter = 6.8 * kMillimetre;
-  job.cutter.core_diameter_end = 12.05 * kMillimetre;
-  job.cutter.chordal_rake_tolerance = 7 * kDegree;
-  job.cutter.spiral_tolerance = 3.5 * kDegree;
-  job.cutter.core_tolerance = 0.4 * kMillimetre;
-  EXPECT_FALSE(hasReason(job, ReasonKind::kSpiral));
-  EXPECT_FALSE(hasReason(job, ReasonKind::kCoreSize));
-  job.cutter.spiral_tolerance = 0.1 * kDegree;
-  job.cutter.core_tolerance = 0.01 * kMillimetre;
-  EXPECT_TRUE(hasReason(job, ReasonKind::kSpiral));
-  EXPECT_TRUE(hasReason(job, ReasonKind::kCoreSize));
-  const JobSetup setup = solved(job);
-  EXPECT_EQ(planRefusal(setup), "");
-  EXPECT_FALSE(hasReason(setup.job, ReasonKind::kSpiral));
-  EXPECT_FALSE(hasReason(setup.job, ReasonKind::kCoreSize));
-  EXPECT_NEAR(setup.job.process.setup_lead / kMillimetre, 11.847, 0.015);
-  const auto wrote = [&](const char* key) {
-    return std::any_of(setup.edits.begin(), setup.edits.end(), [&](const JobEdit& e) { return e.key == key; });
-  };
-  for (const char* key : {"process.setup.lead_mm", "process.depth_mm", "process.depth_end_mm"}) EXPECT_TRUE(wrote(key));
-}
-
-TEST(JobSetup, AWornWheelIsTakenAsItIs) {
-  GrindJob job = paper();
-  job.process.wheel_wear = 20 * kMillimetre;
-  const JobSetup setup = solved(job);
-  EXPECT_NEAR(rakeAt(setup.job, 0), 8, 0.05);
-  EXPECT_NEAR(rakeAt(setup.job, job.cutter.flute_length), 8, 0.05);
-  EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, 8, 0.003);
-  EXPECT_GT(std::abs(setup.job.process.setup_swivel - solved(paper()).job.process.setup_swivel), 0.01 * kDegree);
-}
-
 TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
   GrindJob job = shipped("roughing_d10_t4");
   const JobSetup equal = solved(job);
@@ -283,19 +243,6 @@ TEST(JobSetup, WhatCannotBeHadIsRefusedWithHowNearItComesAndWhatMendsIt) {
   job.cutter.core_diameter = numberBehind(text, "cutter.core_diameter_mm") * kMillimetre;
   job.cutter.core_diameter_end = numberBehind(text, "cutter.core_diameter_end_mm") * kMillimetre;
   EXPECT_TRUE(solved(job).check.reasons.empty()) << text;
-}
-
-// With the wheel over the axis the core is 6.8 mm and no other; elsewhere it is more.
-TEST(JobSetup, ACylindersCoreMayDifferByItsTolerance) {
-  GrindJob job = shipped("roughing_d10_t4");
-  job.process.depth = 1.6 * kMillimetre;
-  for (const double core : {6.8, 6.785}) {
-    job.cutter.core_diameter = job.cutter.core_diameter_end = core * kMillimetre;
-    const JobSetup setup = solved(job, SetupFigure::kDepth);
-    EXPECT_EQ(setup.job.process.depth, job.process.depth);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-    EXPECT_NEAR(setup.check.figures.core_diameter[0], core * kMillimetre, job.cutter.core_tolerance);
-  }
 }
 
 // Found at random: their figures were near the ends of their tolerances.

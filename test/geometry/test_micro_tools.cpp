@@ -1,6 +1,7 @@
 // The walls of tools much smaller than the wheel's reach along them, against trying every pose of the stroke.
 
-#include "flute_grinder/curve/units.h"
+#include "brute_force.h"
+
 #include "flute_grinder/geometry/wheel_sweep.h"
 
 #include <gtest/gtest.h>
@@ -16,93 +17,51 @@ namespace test_micro_tools {
 
 using units::kDegree;
 using units::kMillimetre;
-using units::kPi;
 
 /// A right-hand cutter under a wheel, in the shop's units.
 struct Tool {
-  double diameter, cone, spiral, rake, length;
-  double wheel, depth, swivel, height, from, to;
-  WheelProfile profile;
+  SetupRequest request;
+  double depth, swivel, height, from, to;
 
-  ConicalCutter cutter() const {
-    CutterGeometry g;
-    g.end_diameter = diameter * kMillimetre;
-    g.cone_angle = cone * kDegree;
-    g.spiral_angle = spiral * kDegree;
-    g.rake_angle = rake * kDegree;
-    g.flute_length = length * kMillimetre;
-    return ConicalCutter(g);
+  Tool(const brute::Shop& shop, const WheelProfile& profile, double swivel, double height, double from, double to)
+      : request(shop.request()),
+        depth(shop.depth * kMillimetre),
+        swivel(swivel * kDegree),
+        height(height * kMillimetre),
+        from(from * kMillimetre),
+        to((shop.length + to) * kMillimetre) {
+    request.wheel = profile;
   }
 
   WheelSweep sweep() const {
-    return {cutter(), profile, wheel / 2 * kMillimetre, {swivel * kDegree, height * kMillimetre}, stroke()};
+    return {ConicalCutter(request.cutter),
+            request.wheel,
+            request.nominal_radius,
+            {swivel, height},
+            {from, to, -depth, 0, 0}};
   }
 
-  GrindStroke stroke() const { return {from * kMillimetre, (length + to) * kMillimetre, -depth * kMillimetre, 0, 0}; }
-};
-
-/// The end of the arc that a wheel removes of a circle: the farthest of all poses of the stroke, each gone through from
-/// outside. Shares no code with the sweep but the wheel's profile and the cutter's figures.
-class BruteForce {
- public:
-  explicit BruteForce(const Tool& tool) : t_(tool), g_(tool.cutter().geometry()), stroke_(tool.stroke()) {}
-
+  /// The end of the arc that the wheel removes of a circle: the farthest of all poses of the stroke.
   /// @param side 1 for the upper end, -1 for the lower one. @return the angle times the side.
-  double end(double x, double r, int side) const {
-    double step = (stroke_.to - stroke_.from) / kPoses;
+  double bruteEnd(double x, double r, int side) const {
+    constexpr int kPoses = 1500, kPlaces = 200, kCloser = 14;
+    const brute::Bench bench{request, swivel, height, depth, kPoses, kPlaces};
+    double step = (to - from) / kPoses;
     double best = -std::numeric_limits<double>::infinity(), best_at = 0;
-    const auto tryAll = [&](double from, int count) {
+    const auto tryAll = [&](double first, int count) {
       for (int i = 0; i <= count; ++i) {
-        const double at = std::clamp(from + i * step, stroke_.from, stroke_.to);
-        const double end = endAt(x, r, at, side);
+        const double at = std::clamp(first + i * step, from, to);
+        const double end = bench.endAt(x, r, at, side).angle;
         if (end > best) best = end, best_at = at;
       }
     };
-    tryAll(stroke_.from, kPoses);
+    tryAll(from, kPoses);
     for (int i = 0; i < kCloser; ++i) {
       step /= 6;
       tryAll(best_at - 6 * step, 12);
     }
     return best;
   }
-
- private:
-  static constexpr int kPoses = 1500, kAngles = 200, kHalvings = 45, kCloser = 14;
-
-  double turned(double s) const {
-    const double b = 2 * std::tan(g_.cone_angle) / g_.end_diameter, k = 2 * std::tan(g_.spiral_angle) / g_.end_diameter;
-    return std::abs(b) < 1e-9 ? k * s : k / b * std::log1p(b * s);
-  }
-
-  double endAt(double x, double r, double s, int side) const {
-    const double sn = std::sin(t_.swivel * kDegree), cs = std::cos(t_.swivel * kDegree), tc = std::tan(g_.cone_angle);
-    const double y0 = g_.end_diameter / 2 + (t_.wheel / 2 - t_.depth) * kMillimetre + s * tc;
-    const double z0 = t_.height * kMillimetre + s * tc * std::sin(g_.rake_angle);
-    const auto inside = [&](double angle) {
-      const double dx = x - s, dy = r * std::cos(angle) - y0, dz = r * std::sin(angle) - z0;
-      const double w = dz * cs - dx * sn, along = dz * sn + dx * cs;
-      if (w < t_.profile.lowerFace() || w > t_.profile.upperFace()) return false;
-      return std::hypot(dy, along) <= t_.profile.radius(w);
-    };
-    double out = side * kPi / 2;
-    for (int i = 0; i <= kAngles; ++i) {
-      double in = side * kPi * (0.5 - static_cast<double>(i) / kAngles);
-      if (!inside(in)) {
-        out = in;
-        continue;
-      }
-      for (int k = 0; k < kHalvings; ++k) {
-        const double middle = (in + out) / 2;
-        (inside(middle) ? in : out) = middle;
-      }
-      return side * (in + turned(s));
-    }
-    return -std::numeric_limits<double>::infinity();
-  }
-
-  const Tool& t_;
-  CutterGeometry g_;
-  GrindStroke stroke_;
 };
 
 struct Compared {
@@ -113,20 +72,19 @@ struct Compared {
 /// the wall has a corner there.
 void compare(const Tool& tool, const std::vector<double>& places, Compared& count) {
   const WheelSweep sweep = tool.sweep();
-  const BruteForce brute(tool);
-  const ConicalCutter cutter = tool.cutter();
+  const ConicalCutter cutter(tool.request.cutter);
   constexpr double kSame = 1e-3 * kDegree, kExact = 1e-7;
   for (const double part : places) {
     const double x = part * cutter.geometry().flute_length, r = cutter.radius(x), h = 1e-3 * r;
     for (const int side : {1, -1}) {
       SCOPED_TRACE(testing::Message() << "X = " << x / kMillimetre << " mm, side " << side);
-      const double expected = brute.end(x, r, side);
+      const double expected = tool.bruteEnd(x, r, side);
       const auto wall = sweep.wall(x, r, side > 0);
       if (!std::isfinite(expected)) continue;
       ASSERT_TRUE(wall.has_value());
       ++count.walls;
       EXPECT_GT(side * wall->angle, expected - kSame);
-      const double below = brute.end(x, r - h, side), above = brute.end(x, r + h, side);
+      const double below = tool.bruteEnd(x, r - h, side), above = tool.bruteEnd(x, r + h, side);
       const double corner = std::abs(above - 2 * expected + below) / h * r;
       if (!(std::abs(side * wall->angle - expected) < kExact && corner < 0.01)) continue;
       ++count.rakes;
@@ -147,27 +105,20 @@ Tool randomTool(std::mt19937& random, int i) {
   const double face = diameter / 2 * std::sin(uniform(-10, 30) * kDegree);
   const std::array<double, 2> corners{0.15 * width * kMillimetre, 0.15 * width * kMillimetre};
   const double w = width * kMillimetre, d = wheel * kMillimetre;
-  return {diameter,
-          cone,
-          spiral,
-          uniform(-5, 20),
-          length,
-          wheel,
-          uniform(0.06, 0.28) * diameter,
-          swivel,
-          face - width / 2 / std::cos(swivel * kDegree),
-          -(cone > 0 ? std::min(uniform(0.1, 3), open) : uniform(0.1, 3)),
-          cone < 0 ? std::min(uniform(0.1, 3), open / 2) : uniform(0.1, 3),
-          i % 4 == 0   ? WheelProfile::straight(d, w)
-          : i % 4 == 1 ? WheelProfile::angled(d, w, uniform(5, 40) * kDegree)
-          : i % 4 == 2 ? WheelProfile::straight(d, w, corners)
-                       : WheelProfile::fullRadius(d, w)};
+  const brute::Shop shop{diameter, cone, spiral, uniform(-5, 20), length, uniform(0.06, 0.28) * diameter, wheel, width};
+  const double from = -(cone > 0 ? std::min(uniform(0.1, 3), open) : uniform(0.1, 3));
+  const double to = cone < 0 ? std::min(uniform(0.1, 3), open / 2) : uniform(0.1, 3);
+  const WheelProfile profile = i % 4 == 0   ? WheelProfile::straight(d, w)
+                               : i % 4 == 1 ? WheelProfile::angled(d, w, uniform(5, 40) * kDegree)
+                               : i % 4 == 2 ? WheelProfile::straight(d, w, corners)
+                                            : WheelProfile::fullRadius(d, w);
+  return {shop, profile, swivel, face - width / 2 / std::cos(swivel * kDegree), from, to};
 }
 
 TEST(MicroTools, AWallIsWhereEveryPoseOfTheStrokeIsTried) {
   // The rake came out as 27.93, -21.09 or -61.6 deg, depending on X.
-  const Tool angled{0.387,  0,      45.938,  16.809, 1.2,  125,
-                    0.0604, 43.952, -0.1218, -0.82,  2.06, WheelProfile::angled(0.125, 0.281e-3, 24.131 * kDegree)};
+  const Tool angled({0.387, 0, 45.938, 16.809, 1.2, 0.0604, 125},
+                    WheelProfile::angled(0.125, 0.281e-3, 24.131 * kDegree), 43.952, -0.1218, -0.82, 2.06);
   std::vector<double> sections;
   for (int i = 0; i < 25; ++i) sections.push_back(i / 24.0);
   Compared count;

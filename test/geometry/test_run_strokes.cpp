@@ -113,16 +113,6 @@ bool removed(const GroundCutter& cutter, double x, double r, double theta) {
 
 double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).core_radius; }
 
-TEST(RunStrokes, APassThatWasDeeperIsInTheCoreWhicheverItWas) {
-  const GrindJob job = straight();
-  const double first = passDepths(job.process).front();
-  const auto core = [&](int pass, double deeper) {
-    return coreAt(runOf(job, errorOf(pass, MoveKind::kStroke, along(kY, -deeper))).cutter(), 0.01);
-  };
-  EXPECT_NEAR(coreAt(groundCutterOf(ValidJob(job)), 0.01) - core(5, 1e-4), 1e-4, 1e-8);  // the spark-out
-  EXPECT_NEAR(core(0, 1.6e-3), job.cutter.end_diameter / 2 - first - 1.6e-3, 1e-8);
-}
-
 TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
   const GrindJob job = roughing();
   const RunStrokes strokes = runOf(job, kExact);
@@ -222,8 +212,15 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
 
 // Its walls are so curved that a shallower pass lies far inside of them, but beyond their tangent.
 TEST(Gouges, AShallowerPassIsNone) {
-  GrindJob job = readJobFile("jobs/left_hand_d8_t3.yaml");
-  job.tooth_angles = {0};
+  const auto of_one_tooth = [](const char* file) {
+    GrindJob job = readJobFile(file);
+    job.tooth_angles = {0};
+    return job;
+  };
+  for (const char* file : {"jobs/paper.yaml", "jobs/taper_d6_t6.yaml", "jobs/mould_cone_d2_t2.yaml"}) {
+    EXPECT_TRUE(gougesOf(runOf(of_one_tooth(file), kExact), 1e-6).empty()) << file;
+  }
+  const GrindJob job = of_one_tooth("jobs/left_hand_d8_t3.yaml");
   EXPECT_TRUE(gougesOf(runOf(job, kExact), 1e-6).empty());
   EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);
 }

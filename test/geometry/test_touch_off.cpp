@@ -50,12 +50,6 @@ TEST(TouchOff, ReportsWhatTheAxesRead) {
   EXPECT_NEAR(touch.z_for_y / kMillimetre, -(2.788 + kEdge / kMillimetre), 1e-6);
 }
 
-TEST(TouchOff, YIsThatOfTheBlankLessTheWear) {
-  EXPECT_NEAR(touchY(paper(), 10 * kMillimetre), 0, 1e-15);
-  EXPECT_NEAR(touchY(paper(), 12.02 * kMillimetre), 1.01 * kMillimetre, 1e-15);
-  EXPECT_NEAR(touchY(worn(), 12.02 * kMillimetre), 0.76 * kMillimetre, 1e-15);
-}
-
 TEST(TouchOff, AStraightWheelTouchesOverItsWidth) {
   const double middle = -2.788 * kMillimetre;
   for (const double off : {-kEdge + kMicron, 0.0, kEdge - kMicron}) EXPECT_EQ(heightRefusal(paper(), middle + off), "");
@@ -172,11 +166,15 @@ TEST(TouchOff, TheOtherProfilesMeasureTheirDiameterToo) {
   GrindProcess& p = job.process;
   const double max = p.wheel_diameter / 2;
   EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
-  p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0.4 * kMillimetre;
+  p.wheel_corner_radius_lower = 0.2 * kMillimetre;
+  p.wheel_corner_radius_upper = 0.4 * kMillimetre;
   EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
+  EXPECT_NEAR(wheelOf(job).radius(-0.0015), max - 0.0002, 1e-9);
+  EXPECT_NEAR(wheelOf(job).radius(0.0015), max - 0.0004, 1e-9);
   p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
   p.wheel_profile = WheelShape::kFullRadius;
   EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
+  EXPECT_NEAR(wheelOf(job).radius(0.0015 * std::sin(0.7)), max - 0.0015 + 0.0015 * std::cos(0.7), 1e-9);
   EXPECT_NEAR(touchReadings(job).z_for_y, -p.setup_height, 1e-12);
   // A line of 45 deg up to a corner of 0.5 mm: its profile is as high as if it were rounded from outside.
   p.wheel_profile = WheelShape::kPoints;

@@ -2,7 +2,6 @@
 """The strokes that flute_grinder grinds, and what LinuxCNC makes of the same ones, on this computer. `scripts/bench_peers` runs it."""
 
 import argparse
-import csv
 import io
 import math
 import os
@@ -10,16 +9,20 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import xml.etree.ElementTree as xml
 
 import flute_grinder.job
 import numpy
+import rospy
 import yaml
 
 import bench_all
+import bench_rest
 import figures
 import linuxcnc_peer
 import peers
+from bench_all import gc
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGE = ROOT / 'docs/comparison.md'
@@ -40,8 +43,9 @@ def limits():
             [more[name]['max_acceleration'], more[name]['max_jerk']] for name in names]
 
 
-def row(name, feed, by, spacing, found, size, more=(None, None, None)):
-    """Of the table. @param spacing of the goal's points [m]. @param found by peers.judge(). @param size of the goal [bytes]."""
+def row(name, feed, by, spacing, found, size, more):
+    """Of the table. @param spacing of the goal's points [m]. @param found by peers.judge(). @param size of the goal [bytes].
+    @param more time to motion [ms], processor [% of a core], memory [MB]."""
     least, most = (figures.number(6e4 * value) for value in found['feed'])
     used = (' and '.join(map(figures.number, found[what])) for what in ('acceleration', 'jerk'))
     return [name, str(feed), by, figures.number(spacing and 1e3 * spacing), figures.number(found['at_points']),
@@ -65,20 +69,30 @@ def job_file(folder, cutter, feed):
 
 
 def measure_own(cutters, feeds, of_axes):
-    """Yields the table's rows of flute_grinder: of the plan, whose setpoints the node streams to the bit."""
-    for name, cutter in cutters.items():
-        for feed in feeds:
-            with tempfile.TemporaryDirectory() as folder:
-                job, setpoints = job_file(folder, cutter, feed), pathlib.Path(folder) / 'setpoints.csv'
-                subprocess.run([bench_all.gc.program('grind'), 'plan', job, '--csv', setpoints], check=True, stdout=subprocess.DEVNULL)
-                with open(setpoints) as file:
-                    stroke = [[float(p[key]) for key in ('x_mm', 'y_mm', 'z_mm', 'a_rad')]
-                              for p in csv.DictReader(file) if p['move'] == 'stroke']
-                goal = io.BytesIO()
-                flute_grinder.job.goal(str(job)).serialize(goal)
-            rows = numpy.array(stroke) * (1e-3, 1e-3, 1e-3, 1)
-            yield row(name, feed, 'flute_grinder', None, peers.judge(cutter, rows, of_axes[:, 3], of_axes[:, 4]),
-                      len(goal.getvalue()))
+    """Yields the table's rows of flute_grinder, as its node streams them to the simulated drive."""
+    with bench_all.grinder(), tempfile.TemporaryDirectory() as folder:
+        rospy.init_node('bench_peers', disable_signals=True)
+        client, node = gc.Grinder(), [bench_rest.process_of(bench_all.NODE)]
+        for name, cutter in cutters.items():
+            for feed in feeds:
+                client.make_ready()
+                goal, packed = flute_grinder.job.goal(str(job_file(folder, cutter, feed))), io.BytesIO()
+                goal.serialize(packed)
+                used, begin = linuxcnc_peer.processor(node), time.monotonic()
+                run = client.send(goal).wait_complete(linuxcnc_peer.PATIENCE)
+                share = (linuxcnc_peer.processor(node) - used) / (time.monotonic() - begin)
+                if run.status != 'SUCCEEDED':
+                    raise RuntimeError('%s at %d mm/min: %s' % (name, feed, run.text))
+                stroke = numpy.array([s.position for s in run.setpoints if s.move == gc.STROKE])
+                yield row(name, feed, 'flute_grinder', None, peers.judge(cutter, stroke, of_axes[:, 3], of_axes[:, 4]),
+                          len(packed.getvalue()),
+                          (1e3 * (first_motion(run) - run.sent), 100 * share, bench_rest.memory(node[0])['resident'] / 1e6))
+
+
+def first_motion(run):
+    """When the first setpoint was written that moves [s]."""
+    return next(batch.header.stamp.to_sec() + i * batch.period
+                for batch in run.batches for i, s in enumerate(batch.setpoints) if any(s.velocity))
 
 
 def measure_linuxcnc(cutters, feeds, of_axes):

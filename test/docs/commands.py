@@ -36,7 +36,7 @@ NOT_RUN = {
     'scripts/bench --json after.json --before before.json': 'measures for minutes',
     'scripts/bench_commands': 'measures for minutes',
     'scripts/bench_hal': 'measures for minutes',
-    'scripts/bench_peers': 'measures for a quarter of an hour',
+    'scripts/bench_peers': 'measures for minutes',
     'scripts/bench_peers --docs': 'measures for minutes',
     'scripts/bench_rviz': 'measures for minutes',
     'scripts/bench_stop': 'measures for minutes',

@@ -4,6 +4,7 @@
 #include "cli/machine_file.h"
 #include "cli/time_text.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/on_all_cores.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
@@ -19,11 +20,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <future>
 #include <map>
 #include <stdexcept>
 #include <string_view>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -334,17 +333,10 @@ Read readOne(const Record& record, const Tolerances& tolerances, const Filter& f
 template <typename ReadOne, typename Take>
 void readAll(const std::vector<Record>& records, const ReadOne& read, const Take& take) {
   constexpr std::size_t block = 1024;  // bounds the memory
-  const std::size_t threads = std::max(1U, std::thread::hardware_concurrency());
   std::vector<Read> done;
   for (std::size_t begin = 0; begin < records.size(); begin += block) {
     done.assign(std::min(block, records.size() - begin), {});
-    std::vector<std::future<void>> workers;
-    for (std::size_t t = 0; t < std::min(threads, done.size()); ++t) {
-      workers.push_back(std::async(std::launch::async, [&, t] {
-        for (std::size_t i = t; i < done.size(); i += threads) done[i] = read(records[begin + i]);
-      }));
-    }
-    for (std::future<void>& worker : workers) worker.get();
+    onAllCores(done.size(), [&](std::size_t i) { done[i] = read(records[begin + i]); });
     std::for_each(done.begin(), done.end(), take);
   }
 }

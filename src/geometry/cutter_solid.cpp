@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/cutter_solid.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/on_all_cores.h"
 
 #include <Eigen/Geometry>
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace grinder {
 
@@ -34,8 +36,8 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
                             const OutlineGrid& grid) {
   std::vector<Layer> layers;
   const LogCurve curve(cutter.cutter());
-  const auto add = [&](double x, double radius) {
-    Layer next{x, sectionOutline(cutter, x, radius, grid)};
+  const auto add = [&](double x, std::vector<PolarPoint> outline) {
+    Layer next{x, std::move(outline)};
     if (!layers.empty() && x > layers.back().x) {
       const Layer last = layers.back();
       const double twist = std::abs(curve.a(x) - curve.a(last.x));
@@ -50,10 +52,13 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
     layers.push_back(std::move(next));
   };
   const double step = (extent.to - extent.from) / static_cast<double>(resolution.sections - 1);
-  for (std::size_t i = 0; i < resolution.sections; ++i) {
-    const double x = i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
-    add(x, cutter.cutter().radius(x));
-  }
+  const auto at = [&](std::size_t i) {
+    return i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
+  };
+  std::vector<std::vector<PolarPoint>> outlines(resolution.sections);
+  onAllCores(outlines.size(),
+             [&](std::size_t i) { outlines[i] = sectionOutline(cutter, at(i), cutter.cutter().radius(at(i)), grid); });
+  for (std::size_t i = 0; i < outlines.size(); ++i) add(at(i), std::move(outlines[i]));
   if (!(extent.shank_to > extent.to)) return layers;
   const double shank = extent.shank_diameter / 2;
   const auto is_whole = [&] {
@@ -64,10 +69,10 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
   // Without a step there is no ring between cone and shank: it would be seen as a line of slivers.
   const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
   for (int i = 1; x < extent.shank_to; ++i) {
-    if (is_step || i > 1) add(x, shank);
+    if (is_step || i > 1) add(x, sectionOutline(cutter, x, shank, grid));
     x = is_whole() ? extent.shank_to : std::min(extent.shank_to, extent.to + i * step);
   }
-  add(extent.shank_to, shank);
+  add(extent.shank_to, sectionOutline(cutter, extent.shank_to, shank, grid));
   return layers;
 }
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <exception>
+#include <future>
+#include <thread>
+#include <vector>
+
+namespace grinder {
+
+/// Calls f(0) to f(count - 1), as many at once as there are cores. Not for the control cycle: it starts threads.
+/// @throw what the first of them in order has thrown, once all have ended.
+template <typename Function>
+void onAllCores(std::size_t count, const Function& f) {
+  const std::size_t threads = std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency()));
+  std::vector<std::exception_ptr> errors(count);
+  std::vector<std::future<void>> workers;
+  for (std::size_t t = 0; t < threads; ++t) {
+    workers.push_back(std::async(std::launch::async, [&, t] {
+      for (std::size_t i = t; i < count; i += threads) {
+        try {
+          f(i);
+        } catch (...) {
+          errors[i] = std::current_exception();
+        }
+      }
+    }));
+  }
+  for (std::future<void>& worker : workers) worker.get();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace grinder

@@ -1,13 +1,290 @@
-// Rides random jobs through the control loop, see ride.h, and reports those that went wrong.
+// Rides random jobs on random machines through the control loop, in simulated time, each from its start to its end:
+// with holds, overrides, retracts, jogs, cancels, stops, faults and restarts at random moments. Every cycle is judged
+// by the second opinion, and the rides that went wrong are reported.
 
-#include "ride.h"
+#include "flute_grinder/control/control_loop.h"
+#include "ride_job.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <iterator>
+#include <limits>
+#include <list>
 #include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace grinder::test_support {
+
+namespace {
+
+using E = MachineEvent;
+using S = MachineState;
+
+constexpr std::uint64_t kMostRideCycles = 300000;
+constexpr int kMostEvents = 30;
+constexpr double kEventEvery = 300;    ///< cycles
+constexpr double kRecoverEvery = 100;  ///< cycles; at once when no event is to come
+
+/// Axes that reach every command at once, and what can go wrong with them.
+class RideDrive : public Drive {
+ public:
+  enum class Failure {
+    kNone,
+    kEmergencyStop,
+    kFault,
+    kJump,
+    kNan,
+    kStale,
+    kThrow,
+    kSpindle,
+    kCoolant,
+    kProbe,
+    kReference
+  };
+
+  void init(ros::NodeHandle&, ros::NodeHandle&) override {}
+  DriveCapabilities capabilities() const override {
+    DriveCapabilities can;
+    can.homing = can.spindle = can.coolant = true;
+    return can;
+  }
+  void read(const DriveCycle&, DriveFeedback& feedback) override {
+    DriveStatus& status = feedback.status;
+    if (left_ > 0) --left_;
+    if (fails(Failure::kThrow)) throw std::runtime_error("of the ride");
+    status.emergency_stop = fails(Failure::kEmergencyStop);
+    status.fault = fails(Failure::kFault);
+    if (status.enabled && sent_.enable) at_ = sent_.position;
+    status.enabled = sent_.enable && !status.emergency_stop;
+    status.homing = status.enabled && sent_.home && ++homed_for_ < 4;
+    if (!sent_.home) homed_for_ = 0;
+    if (homed_for_ == 4) lost_ = false;
+    if (fails(Failure::kReference)) lost_ = true;
+    status.homed = !lost_ && !status.homing;
+    status.spindle_at_speed = sent_.spindle && !fails(Failure::kSpindle);
+    status.coolant_on = sent_.coolant && !fails(Failure::kCoolant);
+    status.probe_free = !fails(Failure::kProbe);
+    if (fails(Failure::kJump)) at_[static_cast<std::size_t>(axis_)] += 5e-3;
+    feedback.position = at_;
+    if (fails(Failure::kNan))
+      feedback.position[static_cast<std::size_t>(axis_)] = std::numeric_limits<double>::quiet_NaN();
+    if (!fails(Failure::kStale)) ++status.feedback_count;
+  }
+  void write(const DriveCycle&, const DriveCommand& command) override { sent_ = command; }
+
+  bool isCommandedOn() const { return sent_.enable; }
+  void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, at_.begin()); }
+  void fail(Failure failure, int axis, int cycles) {
+    failure_ = failure;
+    axis_ = axis;
+    left_ = cycles + 1;
+  }
+
+ private:
+  bool fails(Failure failure) const { return left_ > 0 && failure_ == failure; }
+
+  AxisValues at_{};
+  DriveCommand sent_;
+  Failure failure_ = Failure::kNone;
+  int axis_ = 0, left_ = 0, homed_for_ = 0;
+  bool lost_ = false;
+};
+
+/// Where nothing may move, but homing axes.
+constexpr S kAtRest[]{S::kDisabled, S::kReady, S::kHoming, S::kStarting, S::kHeld, S::kRetracted, S::kFault};
+
+LoopConfig configOf(const Machine& machine) {
+  LoopConfig config;
+  config.machine = machine;
+  config.following_error << 1e-3, 1e-3, 1e-3, 1e-3;
+  config.feedback_timeout = 2.5 * machine.period;
+  config.enable_timeout = config.homing_timeout = config.spindle_timeout = 0.5;
+  config.jog_timeout = 0.05;
+  config.jog_velocity << 0.01, 0.01, 0.01, 0.5;
+  return config;
+}
+
+/// What a ride has come to.
+struct RideResult {
+  std::string fault;  ///< what is wrong with it; empty if nothing
+  std::uint64_t setpoints = 0;
+  std::uint64_t cycles = 0;
+  int events = 0;  ///< requests and failures on the way
+  int runs = 0;    ///< starts of the job
+};
+
+class Ride {
+ public:
+  explicit Ride(std::uint64_t number) : random_(number), job_(randomJob(random_)), watch_(job_.asked) {
+    drive_.place(job_.machine.park);
+    loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
+    loop_->postSwivel(job_.job->process.setup_swivel);
+  }
+
+  RideResult run() {
+    try {
+      while (!isOver()) cycle();
+    } catch (const second_opinion::Violation& violation) {
+      result_.fault = std::string(violation.what()) + " in cycle " + std::to_string(result_.cycles) + ", " +
+                      toString(sample_.state) + ", " + toString(sample_.setpoint.move) + " " +
+                      std::to_string(sample_.setpoint.cycle) + " of run " + std::to_string(result_.runs);
+    }
+    return result_;
+  }
+
+ private:
+  bool isOver() {
+    if (result_.cycles > kMostRideCycles)
+      throw second_opinion::Violation("the job does not end: " + last_reply_ + "; " + sample_.fault.text());
+    const LoopStatus status = loop_->status();
+    const bool ended = status.jobs_ended == status.jobs_started;
+    if (ended && status.end == JobEnd::kDone && watch_.ground() != job_.asked.passes.size()) {
+      throw second_opinion::Violation("done with " + std::to_string(watch_.ground()) + " of " +
+                                      std::to_string(job_.asked.passes.size()) + " passes");
+    }
+    return ended && watch_.ground() == job_.asked.passes.size();
+  }
+
+  void cycle() {
+    if (result_.events < kMostEvents && flip(random_, 1 / kEventEvery)) happen();
+    if (result_.events >= kMostEvents || flip(random_, 1 / kRecoverEvery)) recover();
+    keepJogging();
+    late_ = periods_ > 1;
+    const ros::Duration period(job_.machine.period * std::exchange(periods_, 1.0));
+    time_ += period;
+    loop_->cycle(time_, period);
+    if (const auto reply = loop_->reply()) last_reply_ = reply->text;
+    loop_->jogReply();
+    if (const auto reply = loop_->startJobReply()) last_reply_ = reply->text;
+    loop_->swivelReply();
+    ++result_.cycles;
+    if (!loop_->pop(sample_)) throw second_opinion::Violation("a cycle without a sample");
+    see();
+  }
+
+  void see() {
+    second_opinion::Row row;
+    std::copy(sample_.command.data(), sample_.command.data() + kAxisCount, row.at.begin());
+    row.late = late_;
+    row.moves = sample_.has_setpoint;
+    row.of_job = sample_.has_setpoint && sample_.job != 0;
+    row.free = sample_.state == S::kDisabled || sample_.state == S::kHoming;
+    row.cycle = sample_.setpoint.cycle;
+    row.tooth = sample_.setpoint.tooth;
+    row.pass = sample_.setpoint.pass;
+    row.lifts = sample_.setpoint.move == MoveKind::kLift;
+    row.in_stroke = sample_.setpoint.step != StepKind::kNone;
+    std::copy(sample_.setpoint.position.data(), sample_.setpoint.position.data() + kAxisCount, row.work.begin());
+    if (sample_.state == S::kFault && drive_.isCommandedOn()) throw second_opinion::Violation("the power stays on");
+    if (row.moves && std::find(std::begin(kAtRest), std::end(kAtRest), sample_.state) != std::end(kAtRest))
+      throw second_opinion::Violation("it moves");
+    // No job is planned beyond a limit of its machine: what the loop refuses is the stream's fault, or the jog's.
+    if (sample_.fault.kind == FaultKind::kLimit) throw second_opinion::Violation(sample_.fault.text());
+    if (row.of_job) ++result_.setpoints;
+    watch_.see(row);
+  }
+
+  /// Something that somebody asks for, or that goes wrong.
+  void happen() {
+    ++result_.events;
+    const int axis = static_cast<int>(fraction(random_) * kAxisCount);
+    const int some = 1 + static_cast<int>(fraction(random_) * 200);
+    using F = RideDrive::Failure;
+    switch (static_cast<int>(fraction(random_) * 24)) {
+      case 0:
+      case 1:
+      case 2: return loop_->postStop(E::kHold);
+      case 3: return post(E::kResume);
+      case 4:
+      case 5: return post(E::kRetract);
+      case 6: return setOverride(between(random_, 0.05, 1.2));
+      case 7: return setOverride(kMaxFeedOverride);
+      case 8: return setOverride(0);
+      case 9: return loop_->postStop(E::kCancel);
+      case 10: return loop_->postStop(E::kDisable);
+      case 11: return jogStep(axis);
+      case 12: return beginJog(axis, some);
+      case 13: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
+      case 14: return post(flip(random_, 0.5) ? E::kSpindleOn : E::kCoolantOn);
+      case 15: periods_ = 3; return;
+      case 16: periods_ = 20; return;
+      case 17: return drive_.fail(F::kEmergencyStop, axis, some);
+      case 18: return drive_.fail(F::kFault, axis, some);
+      case 19: return drive_.fail(flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
+      case 20: return drive_.fail(F::kStale, axis, some);
+      case 21: return drive_.fail(F::kThrow, axis, 2);
+      case 22: return drive_.fail(flip(random_, 0.5) ? F::kSpindle : F::kCoolant, axis, some);
+      default: return drive_.fail(flip(random_, 0.7) ? F::kProbe : F::kReference, axis, some);
+    }
+  }
+
+  /// What an operator does to go on.
+  void recover() {
+    const LoopStatus status = loop_->status();
+    if (status.feed_override < 0.05 || result_.events >= kMostEvents) setOverride(1);
+    switch (status.state) {
+      case S::kFault: return post(E::kReset);
+      case S::kDisabled: return post(E::kEnable);
+      case S::kHeld:
+      case S::kRetracted: return status.homed ? post(E::kResume) : loop_->postStop(E::kCancel);
+      case S::kReady:
+        if (status.wheel.in_work) return post(E::kLift);
+        return status.homed ? startRun(status) : post(E::kHome);
+      default: return;
+    }
+  }
+
+  void startRun(const LoopStatus& status) {
+    if (status.jobs_ended != status.jobs_started || watch_.ground() == job_.asked.passes.size()) return;
+    const second_opinion::Pass& first = job_.asked.passes[watch_.ground()];
+    watch_.start(watch_.ground());
+    streams_.clear();
+    streams_.emplace_back(GrindProgram(job_.job, job_.machine,
+                                       RunStart(Axes(status.command.data()), {first.tooth, first.pass}, job_.offset)));
+    if (loop_->startJob(&streams_.back())) ++result_.runs;
+  }
+
+  void post(E event) { loop_->post(event); }
+  void setOverride(double fraction) { loop_->setFeedOverride(fraction); }
+  void jogStep(int axis) {
+    const double distance = axis == kA ? between(random_, -1, 1) : between(random_, -5e-3, 5e-3);
+    loop_->postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
+  }
+  void beginJog(int axis, int cycles) {
+    jog_ = {axis, true, 0, between(random_, -1, 1) * (axis == kA ? 1.0 : 0.02)};
+    jog_left_ = cycles;
+  }
+  void keepJogging() {
+    if (jog_left_ > 0 && jog_left_-- % 20 == 0) loop_->postJog(jog_);
+  }
+
+  Random random_;
+  RideJob job_;
+  second_opinion::Watch watch_;
+  RideDrive drive_;
+  std::unique_ptr<ControlLoop> loop_;
+  std::list<SetpointStream> streams_;
+  CycleSample sample_;
+  RideResult result_;
+  ros::Time time_{1000};
+  double periods_ = 1;  ///< that the next cycle takes
+  bool late_ = false;   ///< the last one took several
+  std::string last_reply_;
+  JogRequest jog_;
+  int jog_left_ = 0;
+};
+
+}  // namespace
+
+}  // namespace grinder::test_support
 
 int main(int argc, char** argv) {
   using Clock = std::chrono::steady_clock;
@@ -28,7 +305,7 @@ int main(int argc, char** argv) {
   std::uint64_t number = first, wrong = 0;
   for (; number < first + count && elapsed() < seconds; ++number) {
     try {
-      const auto one = grinder::test_support::ride(number);
+      const auto one = grinder::test_support::Ride(number).run();
       total.setpoints += one.setpoints;
       total.cycles += one.cycles;
       total.events += one.events;

@@ -5,11 +5,13 @@
 #include "flute_grinder/job/job_fields.h"
 
 #include "motion/generators.h"
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <sstream>
 #include <string>
@@ -40,12 +42,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 std::string refusal(const std::string& text, const Edits& edits) {
-  try {
-    editJob(text, "job.yaml", edits);
-  } catch (const JobFileError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::refusalOf([&] { editJob(text, "job.yaml", edits); });
 }
 
 /// With the two overtravels each in a line of its own.
@@ -83,6 +80,18 @@ std::string inLayout(std::string text, int layout) {
   return text;
 }
 
+struct Piece {
+  std::size_t at, size;
+};
+
+/// Where a file has a number of the property below. In a block list, signs stand before the numbers.
+Piece numberOf(const std::string& job, std::size_t edit) {
+  const std::string key = std::array{"swivel_deg", "height_mm", "  depth_mm", "overtravel_mm", "overtravel_mm"}[edit];
+  std::size_t at = job.find_first_of(edit < 3 ? "-0123456789" : "0123456789", job.find(key) + key.size());
+  if (edit == 4) at = job.find_first_of("0123456789", job.find_first_of(",\n", at));
+  return {at, job.find_first_not_of("-0123456789.", at) - at};
+}
+
 /// A number with some decimals, five at most.
 std::string anyNumber(double from, double to, int decimals = 0) {
   std::ostringstream text;
@@ -102,32 +111,12 @@ RC_GTEST_PROP(JobEditProperty, ChangesTheNumbersAndNoOtherByte, ()) {
                     {"process.overtravel_mm[1]", anyNumber(1, 9)}};
   const GrindJob before = parseJob(text, kName);
   const std::string result = editJob(text, "job.yaml", edits);
-  const auto numbersOf = [](const std::string& job) {
-    std::vector<std::string> numbers;
-    for (const char* key : {"swivel_deg", "height_mm", "  depth_mm", "overtravel_mm"}) {
-      std::size_t at = job.find(key);
-      at += std::string(key).size();
-      const bool list = key == std::string("overtravel_mm");
-      for (int i = 0; i < (list ? 2 : 1); ++i) {
-        at = job.find_first_of(list ? "0123456789" : "-0123456789", at);
-        const std::size_t end = job.find_first_not_of("-0123456789.", at);
-        numbers.push_back(job.substr(at, end - at));
-        at = end;
-      }
-    }
-    return numbers;
-  };
   // Put back, the old numbers give the old bytes.
-  std::vector<std::string> old = numbersOf(text);
-  const std::vector<std::string> now = numbersOf(result);
-  for (std::size_t i = 0; i < edits.size(); ++i) RC_ASSERT(std::stod(now[i]) == std::stod(edits[i].value));
   std::string back = result;
-  const char* const keys[]{"swivel_deg", "height_mm", "  depth_mm", "overtravel_mm", "overtravel_mm"};
   for (std::size_t i = 0; i < edits.size(); ++i) {
-    std::size_t at = back.find(keys[i]) + std::string(keys[i]).size();
-    at = back.find_first_of(i < 3 ? "-0123456789" : "0123456789", at);
-    if (i == 4) at = back.find_first_of("0123456789", back.find_first_of(",\n", at));
-    back.replace(at, now[i].size(), old[i]);
+    const Piece old = numberOf(text, i), now = numberOf(back, i);
+    RC_ASSERT(std::stod(back.substr(now.at, now.size)) == std::stod(edits[i].value));
+    back.replace(now.at, now.size, text, old.at, old.size);
   }
   RC_ASSERT(back == text);
   // What is read: the same job but for these.

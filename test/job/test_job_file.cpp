@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/grind_job.h"
 
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +22,8 @@
 
 namespace grinder {
 namespace test_job_file {
+
+using test_support::refusalOf;
 
 constexpr double kPi = 3.141592653589793238462643383279502884;
 
@@ -65,9 +68,8 @@ const char* const kGood =
     "  tolerance_um: 2\n"                            // 37
     "  rotary_scale_mm_per_rad: 1.5\n";              // 38
 
-/// The good text with one piece of it replaced.
-std::string with(const std::string& piece, const std::string& replacement) {
-  std::string text = kGood;
+/// The good text, or another, with one piece of it replaced.
+std::string with(const std::string& piece, const std::string& replacement, std::string text = kGood) {
   const auto at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;
   return text.replace(at, piece.size(), replacement);
@@ -75,12 +77,7 @@ std::string with(const std::string& piece, const std::string& replacement) {
 
 /// What is wrong with a text; empty where nothing is.
 std::string errorOf(const std::string& text) {
-  try {
-    parseJob(text, "job.yaml");
-  } catch (const JobFileError& error) {
-    return error.what();
-  }
-  return "";
+  return refusalOf([&] { parseJob(text, "job.yaml"); });
 }
 
 std::ptrdiff_t linesOf(const std::string& text) {
@@ -282,23 +279,23 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
 }
 
 TEST(JobFile, ReportsAllOfSeveralErrors) {
-  std::string text = with("depth_mm: 1.5", "depth_mm: deep");
-  text.replace(text.find("pass_major"), 10, "any");
-  text += "extra: 1\n";
-  const std::string error = errorOf(text);
-  EXPECT_EQ(linesOf(error), 3) << error;
-  EXPECT_TRUE(hasLine(error, "job.yaml:18 ... process.depth_mm ... deep"));
-  EXPECT_TRUE(hasLine(error, "job.yaml:24 ... process.order ... any"));
-  EXPECT_TRUE(hasLine(error, "job.yaml:39 ... extra"));
-}
-
-TEST(JobFile, ReportsAllFiguresOutOfRange) {
-  std::string text = with("depth_mm: 1.5", "depth_mm: 51");
-  text.replace(text.find("feed_mm_min: 200"), 16, "feed_mm_min: 0");
-  const std::string error = errorOf(text);
-  EXPECT_EQ(linesOf(error), 2) << error;
-  EXPECT_TRUE(hasLine(error, "job.yaml:18 ... process.depth_mm ... 51 mm"));
-  EXPECT_TRUE(hasLine(error, "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"));
+  const std::string cut = std::string(kGood).substr(0, std::string(kGood).find("interpolation:"));
+  const struct {
+    std::string text;
+    std::vector<const char*> messages;  ///< as for hasLine()
+  } rows[]{
+      {with("depth_mm: 1.5", "depth_mm: deep", with("pass_major", "any")) + "extra: 1\n",
+       {"job.yaml:18 ... process.depth_mm ... deep", "job.yaml:24 ... process.order ... any", "job.yaml:39 ... extra"}},
+      {with("depth_mm: 1.5", "depth_mm: 51", with("feed_mm_min: 200", "feed_mm_min: 0")),
+       {"job.yaml:18 ... process.depth_mm ... 51 mm", "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"}},
+      {cut + "interpolation: exact\n",
+       {"job.yaml:35 ... interpolation", "interpolation.tolerance_um ... missing",
+        "interpolation.rotary_scale_mm_per_rad ... missing", "interpolation.even_step ... missing"}}};
+  for (const auto& row : rows) {
+    const std::string error = errorOf(row.text);
+    EXPECT_EQ(linesOf(error), static_cast<std::ptrdiff_t>(row.messages.size())) << error;
+    for (const char* message : row.messages) EXPECT_TRUE(hasLine(error, message)) << message << "\ngot: " << error;
+  }
 }
 
 TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
@@ -323,13 +320,6 @@ TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
   }
 }
 
-TEST(JobFile, RefusesASectionThatIsNotAMap) {
-  const std::string good = kGood;
-  const std::string error = errorOf(good.substr(0, good.find("interpolation:")) + "interpolation: exact\n");
-  EXPECT_TRUE(hasLine(error, "job.yaml:35 ... interpolation")) << error;
-  EXPECT_TRUE(hasLine(error, "interpolation.tolerance_um ... missing")) << error;
-}
-
 TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
   std::string text = "\xEF\xBB\xBF";
   for (const char* c = kGood; *c != 0; ++c) text += *c == '\n' ? std::string("\r\n") : std::string(1, *c);
@@ -342,12 +332,7 @@ class JobFileOnDisk : public ::testing::Test {
   JobFileOnDisk() { std::ofstream(path_) << kGood; }
 
   static std::string fileErrorOf(const std::string& path) {
-    try {
-      readJobFile(path);
-    } catch (const JobFileError& error) {
-      return error.what();
-    }
-    return "";
+    return refusalOf([&] { readJobFile(path); });
   }
 
   const test_support::TempFolder folder_;

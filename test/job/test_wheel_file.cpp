@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/job_fields.h"
 
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -21,6 +22,8 @@
 
 namespace grinder {
 namespace test_wheel_file {
+
+using test_support::refusalOf;
 
 // Line numbers in the rows below are those of this text.
 const char* const kWheel =
@@ -45,12 +48,7 @@ std::string with(const char* text, const std::string& piece, const std::string& 
 }
 
 std::string errorOf(const std::string& text) {
-  try {
-    parseWheel(text, "wheel.yaml");
-  } catch (const JobFileError& error) {
-    return error.what();
-  }
-  return "";
+  return refusalOf([&] { parseWheel(text, "wheel.yaml"); });
 }
 
 /// A job whose wheel's keys are these lines.
@@ -83,12 +81,7 @@ class WheelOfAJob : public ::testing::Test {
   }
 
   static std::string jobErrorOf(const std::string& path) {
-    try {
-      readJobFile(path);
-    } catch (const JobFileError& error) {
-      return error.what();
-    }
-    return "";
+    return refusalOf([&] { readJobFile(path); });
   }
 
   const test_support::TempFolder temp_;

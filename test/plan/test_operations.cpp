@@ -3,38 +3,31 @@
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/yaml_text.h"
-#include "flute_grinder/motion/setpoint_stream.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/plan/planned_job.h"
 #include "jobs.h"
 #include "motion/generators.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 
 namespace grinder {
 namespace test_operations {
 
+using test_support::refusalOf;
 using units::kDegree;
 using units::kMillimetre;
 
 constexpr const char* kReamer = "jobs/taper_reamer_d6_t6.yaml";
 
 GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, {}, operation); }
-
-std::string refusal(const std::string& operation) {
-  try {
-    reamer(operation);
-  } catch (const JobFileError& error) {
-    return error.what();
-  }
-  return "";
-}
 
 CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(ValidJob(job))); }
 
@@ -58,29 +51,23 @@ TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
     EXPECT_EQ(reamer(name).process.kind, kind) << name;
   }
   const std::string allowed = "; allowed: 1 or flute, 2 or primary, 3 or secondary";
-  EXPECT_EQ(refusal(""), std::string(kReamer) + ": operation is missing" + allowed);
-  EXPECT_EQ(refusal("4"), std::string(kReamer) + ": operation = 4" + allowed);
+  EXPECT_EQ(refusalOf([] { reamer(""); }), std::string(kReamer) + ": operation is missing" + allowed);
+  EXPECT_EQ(refusalOf([] { reamer("4"); }), std::string(kReamer) + ": operation = 4" + allowed);
   EXPECT_EQ(readJobFile("test/jobs/paper.yaml", {}, "flute").operations.size(), 0u);
   EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
 }
 
 TEST(Operations, OnlyThoseAheadMustBeSolvedForOneToBe) {
-  const std::string solved = readTextFile(kReamer);
+  std::string text = readTextFile(kReamer);
   const std::string setup = "    setup: {swivel_deg: 13.104, height_mm: -3.658}\n";
-  const std::size_t at = solved.find(setup);
-  ASSERT_NE(at, std::string::npos);
-  const std::string text = std::string(solved).erase(at, setup.size());
+  ASSERT_NE(text.find(setup), std::string::npos);
+  text.erase(text.find(setup), setup.size());
   const std::vector<std::string> fields{"process.setup_swivel", "process.setup_height"};
   const std::string wheels = std::filesystem::absolute("jobs/reamer.yaml");
   EXPECT_EQ(parseJob(text, wheels, fields, "flute").operation, 0);
   EXPECT_EQ(parseJob(text, wheels, fields, "primary").operation, 1);
-  try {
-    parseJob(text, wheels, fields, "secondary");
-    ADD_FAILURE();
-  } catch (const JobFileError& error) {
-    EXPECT_NE(std::string(error.what()).find("operations[1].setup.swivel_deg is missing"), std::string::npos)
-        << error.what();
-  }
+  const std::string said = refusalOf([&] { parseJob(text, wheels, fields, "secondary"); });
+  EXPECT_NE(said.find("operations[1].setup.swivel_deg is missing"), std::string::npos) << said;
 }
 
 // What a relief leaves out and may take from the flutes, and what it may not.
@@ -108,30 +95,31 @@ TEST(Operations, EachHasItsDigestAndKnowsWhatWasGroundBefore) {
 }
 
 TEST(Operations, AreRefusedWhereTheyDoNotFollowOneAnother) {
-  GrindJob job = reamer("primary");
-  std::swap(job.operations[1], job.operations[2]);
-  EXPECT_FALSE(validate(job).empty());
-  job = reamer("primary");
-  job.operation = 3;
-  EXPECT_FALSE(validate(job).empty());
-  job = reamer("primary");
-  job.process.feed *= 2;  // not as in the list
-  EXPECT_FALSE(validate(job).empty());
-  job = reamer("primary");
-  job.cutter.clearance = 0;
-  EXPECT_FALSE(validate(job).empty());
-  job = reamer("secondary");
-  job.cutter.land = 0;
-  EXPECT_FALSE(validate(job).empty());
-  job = test_support::paper();
-  job.process.behind = 1e-4;  // a relief's
-  EXPECT_FALSE(validate(job).empty());
-  job = reamer("primary");
-  for (GrindProcess* process : {&job.process, &job.operations[1].process})
-    process->wheel_profile = WheelShape::kFullRadius;
-  const std::vector<Reason> reasons = validate(job);
-  ASSERT_FALSE(reasons.empty());
-  EXPECT_NE(text(reasons).find("its cylinder is what grinds it"), std::string::npos) << text(reasons);
+  const struct {
+    const char* operation;
+    std::function<void(GrindJob&)> change;
+    const char* reason;  ///< the only one
+  } rows[]{
+      {"primary", [](GrindJob& j) { std::swap(j.operations[1], j.operations[2]); },
+       "process.kind = 2; allowed: 1 to 1"},
+      {"primary", [](GrindJob& j) { j.operation = 3; }, "operation = 3; allowed: 0 to 2"},
+      {"primary", [](GrindJob& j) { j.process.feed *= 2; },
+       "process.feed_mm_min = 600 mm/min; allowed: as in its operation, 300 mm/min"},
+      {"primary", [](GrindJob& j) { j.cutter.clearance = 0; },
+       "cutter.clearance_deg = 0 deg; allowed: more than 0 with a relief"},
+      {"secondary", [](GrindJob& j) { j.cutter.land = 0; },
+       "cutter.land_mm = 0 mm; allowed: more than 0 with a secondary relief"},
+      {"flute", [](GrindJob& j) { j.process.behind = 1e-4; },
+       "process.behind_mm = 0.1 mm; allowed: 0 for this operation"},
+      {"primary",
+       [](GrindJob& j) { j.process.wheel_profile = j.operations[1].process.wheel_profile = WheelShape::kFullRadius; },
+       "process.wheel_profile = 2; allowed: 0, straight, for a relief: its cylinder is what grinds it"},
+  };
+  for (const auto& row : rows) {
+    GrindJob job = reamer(row.operation);
+    row.change(job);
+    EXPECT_EQ(text(validate(job)), row.reason);
+  }
 }
 
 // Every setpoint of a relief's stroke is on the closed form: P(s) + R N - q w, with the edge of the flutes.
@@ -166,23 +154,6 @@ TEST(Operations, AReliefsStrokesAreTheClosedForm) {
   }
 }
 
-// The stream that grinds a relief gives the plan's bits.
-TEST(Operations, AReliefIsStreamedAsItIsPlanned) {
-  const ValidJob job = withLaws(ValidJob(reamer("primary")));
-  const Machine machine = test_support::roomyMachine();
-  std::vector<Axes> planned;
-  const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) { planned.push_back(p.position); });
-  SetpointStream stream(plan.program);
-  std::size_t count = 0;
-  for (; !stream.finished(); ++count) {
-    Setpoint p;
-    stream.next(p);
-    ASSERT_LT(count, planned.size());
-    ASSERT_TRUE((p.position == planned[count]).all()) << count;
-  }
-  EXPECT_EQ(count, planned.size());
-}
-
 TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(checkOf(reamer("primary")).reasons.empty());
   const CutterCheck good = checkOf(reamer("secondary"));
@@ -203,54 +174,43 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(kindsOf(checkOf(wrong)).count(ReasonKind::kUndercut)) << text(checkOf(wrong).reasons);
 }
 
-/// The shipped roughing cutter with a primary relief. @param width,height of its wheel and set-up [m].
-GrindJob roughingWithRelief(double clearance, double width, double swivel, double height) {
+/// What is ground of the shipped roughing cutter with a primary relief whose wheel, of 100 mm, has the edge at a place
+/// of its rim. @param width,contact [m]
+CutterCheck checkOfRoughing(double clearance, double width, double swivel, double contact, double core_tolerance) {
   GrindJob job = test_support::jobOf("roughing_d10_t4");
+  job.cutter.core_tolerance = core_tolerance;
   job.cutter.clearance = clearance;
   job.cutter.clearance_tolerance = 0.5 * kDegree;
   GrindProcess relief;
   relief.kind = OperationKind::kPrimaryRelief;
   relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 3e-3;
   relief.wheel_diameter = 100e-3, relief.wheel_width = width;
-  relief.setup_swivel = swivel, relief.setup_height = height;
+  relief.setup_swivel = swivel;
+  relief.setup_height =
+      ReliefPath::heightFor(ConicalCutter(job.cutter), {clearance}, {50e-3, 0, width, swivel, 0}, contact);
   job.operations = {{job.process, {}}, {relief, {}}};
-  return job.ofOperation(1);
+  return checkOf(job.ofOperation(1));
 }
 
 // A steep and wide one goes over the next flute's floor. How deep it may go there is for the core's tolerance to say.
 TEST(Operations, AReliefThatTakesTheCoreIsRefused) {
-  const double clearance = 24 * kDegree, width = 4e-3, swivel = 25 * kDegree;
   const CutterGeometry cutter = test_support::jobOf("roughing_d10_t4").cutter;
-  double core_tolerance = cutter.core_tolerance;
-  const auto with_contact = [&](double contact) {
-    const double height =
-        ReliefPath::heightFor(ConicalCutter(cutter), {clearance}, {50e-3, 0, width, swivel, 0}, contact);
-    GrindJob job = roughingWithRelief(clearance, width, swivel, height);
-    job.cutter.core_tolerance = core_tolerance;
-    return checkOf(job);
+  const auto with_contact = [](double contact, double core_tolerance) {
+    return checkOfRoughing(24 * kDegree, 4e-3, 25 * kDegree, contact, core_tolerance);
   };
-  EXPECT_TRUE(with_contact(-1e-3).reasons.empty());
-  const CutterCheck deep = with_contact(-2e-3);
+  EXPECT_TRUE(with_contact(-1e-3, cutter.core_tolerance).reasons.empty());
+  const CutterCheck deep = with_contact(-2e-3, cutter.core_tolerance);
   ASSERT_EQ(kindsOf(deep), std::set<ReasonKind>{ReasonKind::kCoreSize}) << text(deep.reasons);
   EXPECT_EQ(deep.figures.core_diameter[0], deep.reasons.front().value);
   EXPECT_LT(deep.reasons.front().value, cutter.core_diameter - 0.5e-3);
   EXPECT_NE(text(deep.reasons).find("change the height or the swivel of the relief's set-up"), std::string::npos);
-  core_tolerance = 0.6e-3;
-  EXPECT_TRUE(with_contact(-2e-3).reasons.empty());
+  EXPECT_TRUE(with_contact(-2e-3, 0.6e-3).reasons.empty());
 }
 
 // A wheel 100 x 8 whose rim has the edge 1 mm from its lower face takes 93 of the 90 deg to the next one.
 TEST(Operations, AReliefAsWideAsThePitchIsRefused) {
-  const auto with_contact = [&](double contact) {
-    // Of a cylinder, by the design's closed form: phi' = -14.87 deg.
-    const double phi =
-        std::asin(-std::tan(43 * kDegree) * std::tan(35 * kDegree) * std::sin(9 * kDegree)) - 9 * kDegree;
-    const double t_y = -std::tan(35 * kDegree) * std::sin(phi), t_z = std::tan(35 * kDegree) * std::cos(phi);
-    const double n_x = -t_y * std::cos(43 * kDegree), n_y = t_z * std::sin(43 * kDegree) + std::cos(43 * kDegree);
-    const double n_z = -t_y * std::sin(43 * kDegree);
-    const double height =
-        5e-3 * std::sin(phi) + 50e-3 * n_z / std::hypot(n_x, n_y, n_z) - contact * std::cos(43 * kDegree);
-    return checkOf(roughingWithRelief(9 * kDegree, 8e-3, 43 * kDegree, height));
+  const auto with_contact = [](double contact) {
+    return checkOfRoughing(9 * kDegree, 8e-3, 43 * kDegree, contact, 0.02e-3);
   };
   const CutterCheck check = with_contact(-3e-3);
   ASSERT_EQ(kindsOf(check), std::set<ReasonKind>{ReasonKind::kNextEdge}) << text(check.reasons);

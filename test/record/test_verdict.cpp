@@ -1,6 +1,7 @@
 #include "flute_grinder/record/verdict.h"
 
 #include "flute_grinder/job/yaml_text.h"
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -307,14 +308,9 @@ std::string refusal(const std::string& text) {
   const test_support::TempFolder folder;
   const std::string path = folder.path() / "tolerances.yaml";
   std::ofstream(path) << text;
-  try {
-    readTolerances(path);
-  } catch (const JobFileError& error) {
-    const std::string said = error.what();
-    EXPECT_EQ(said.substr(0, path.size()), path);
-    return said.substr(path.size());
-  }
-  return "";
+  const std::string said = test_support::refusalOf([&] { readTolerances(path); });
+  EXPECT_EQ(said.substr(0, path.size()), path);
+  return said.substr(path.size());
 }
 
 TEST(Tolerances, AreThoseOfTheFile) {

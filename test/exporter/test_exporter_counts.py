@@ -59,40 +59,32 @@ class Folder(unittest.TestCase):
 
 
 class TestRecords(Folder):
-    def write_three(self):
-        self.write(1, setpoints=1009, complete=3, seconds=2.5, wear=0.25)
-        self.write(2, 'canceled', setpoints=2003, complete=2, broken_off=1, seconds=4)
-        self.write(3, 'fault', setpoints=4001, complete=0, broken_off=1, seconds=8, wear=0.5)
-
-    def check_three(self, done=1):
+    def check_four(self, done=2):
         self.assertEqual([self.value('jobs_total', outcome=o) for o in ('done', 'canceled', 'fault')], [done, 1, 1])
         self.assertEqual(sum(self.value('verdicts_total', verdict=v) for v in ('passed', 'incomplete', 'failed')), done + 2)
         self.assertEqual((self.value('setpoints_total'), self.value('strokes_total'), self.value('tools_total')),
                          (7012 + done, 4 + done, done))
         self.assertEqual(self.value('job_duration_seconds_total'), 13.5 + done)
 
-    def test_are_added_up(self):
-        self.write_three()
+    def test_are_added_up_and_still_count_when_they_are_removed(self):
+        self.write(1, setpoints=1009, complete=3, seconds=2.5, wear=0.25)
+        self.write(2, 'canceled', setpoints=2003, complete=2, broken_off=1, seconds=4)
+        self.write(3, 'fault', setpoints=4001, complete=0, broken_off=1, seconds=8, wear=0.5)
         self.write(0, setpoints=1)
-        self.check_three(2)
+        self.check_four()
         # A job that was broken off has failed; a record says nothing of the ground tool, so that none has passed.
         self.assertGreaterEqual(self.value('verdicts_total', verdict='failed'), 2)
         self.assertEqual(self.value('verdicts_total', verdict='passed'), 0)
         self.assertEqual(self.value('wheel_wear_meters', wheel='wheel.yaml'), 0.5e-3)
-
-    def test_still_count_when_they_are_removed(self):
-        self.write_three()
-        self.write(0, setpoints=1)
-        self.check_three(2)
-        for restart in (False, True):
-            self.remove(0 if restart else 2)
-            if restart:
-                self.start()
-            self.check_three(2)
-        self.write(4, setpoints=1)
-        self.check_three(3)
+        self.remove(2)
+        self.check_four()
+        self.remove(0)
         self.start()
-        self.check_three(3)
+        self.check_four()
+        self.write(4, setpoints=1)
+        self.check_four(done=3)
+        self.start()
+        self.check_four(done=3)
 
     def test_of_a_clock_that_was_set_back_count(self):
         self.write(9, setpoints=5)

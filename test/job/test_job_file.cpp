@@ -320,12 +320,6 @@ TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
   }
 }
 
-TEST(JobFile, ReadsACarriageReturnAndAByteOrderMark) {
-  std::string text = "\xEF\xBB\xBF";
-  for (const char* c = kGood; *c != 0; ++c) text += *c == '\n' ? std::string("\r\n") : std::string(1, *c);
-  EXPECT_EQ(errorOf(text), "");
-}
-
 /// A file with the good text; and what is said of reading a file, nothing where it was read.
 class JobFileOnDisk : public ::testing::Test {
  protected:

@@ -1,7 +1,7 @@
 #include "flute_grinder/job/reason.h"
 
 #include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/machine/loop_fault.h"
 
 #include <gtest/gtest.h>
@@ -252,10 +252,10 @@ TEST(Reason, ManyStandSideBySide) {
   EXPECT_EQ(text(std::vector<Reason>{stop, other}), "emergency stop; busy");
 }
 
-TEST(JobFields, HaveTheirNamesInTheJobFile) {
-  EXPECT_EQ(fieldName("process.wheel_wear"), "process.wheel.wear_mm");
-  EXPECT_EQ(fieldName("cutter.spiral_angles"), "cutter.spiral_angles_deg");
-  EXPECT_EQ(fieldName("process.spark_out"), "process.spark_out");
+TEST(Reason, CutsNothingOff) {
+  const std::string name(100000, 'n');
+  EXPECT_EQ(format("<%s>", name.c_str()), "<" + name + ">");
+  EXPECT_EQ(format("%s", ""), "");
 }
 
 }  // namespace test_reason

@@ -120,7 +120,6 @@ ValidJob withRelief(Random& random, GrindJob job) {
 
 ValidJob withCorrections(Random& random, const ValidJob& job) {
   const StrokeLaw& law = job.strokeLaw(0);
-  std::vector<ZCorrection> corrections;
   ZCorrection c;
   c.from = std::min(law.from, law.to);
   c.pieces = 1 + static_cast<int>(fraction(random) * 6);
@@ -129,8 +128,7 @@ ValidJob withCorrections(Random& random, const ValidJob& job) {
     c.coefficients[static_cast<std::size_t>(i)] = std::abs(law.to - law.from) * between(random, -1e-3, 1e-3);
   }
   // Teeth with the same spiral angle have the same.
-  corrections.assign(static_cast<std::size_t>(job.teeth()), c);
-  return job.withZCorrections(corrections);
+  return job.withZCorrections(std::vector<ZCorrection>(static_cast<std::size_t>(job.teeth()), c));
 }
 
 second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine) {

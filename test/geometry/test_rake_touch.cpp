@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -27,7 +28,7 @@ using units::kDegree;
 using units::kMillimetre;
 using units::kPi;
 
-constexpr double kNearly = 1e-6;  ///< [rad]
+constexpr double kNearly = 1e-5;  ///< 0.1 um at the largest cutter's edge [rad]
 
 /// A ball at a distance and an angle about the axis.
 struct Ball {
@@ -107,18 +108,21 @@ class Groove {
     const GrindProcess& p = job_->process;
     const double step = (job_->cutter.flute_length + p.overtravel_shank + p.overtravel_end) / kPlaces;
     const auto depth = [&](double i) { return depthAt(x, from_axis, angle, i * step - p.overtravel_end); };
-    double best = -std::numeric_limits<double>::infinity(), best_at = 0;
+    std::array<double, kPlaces + 1> values;
+    for (int i = 0; i <= kPlaces; ++i) values[i] = depth(i);
+    double best = -std::numeric_limits<double>::infinity();
+    // The deepest place may be beside any peak.
     for (int i = 0; i <= kPlaces; ++i) {
-      const double value = depth(i);
-      if (value > best) best = value, best_at = i;
-    }
-    double from = std::max(0.0, best_at - 1), to = std::min<double>(kPlaces, best_at + 1);
-    const double golden = 0.6180339887498949;
-    for (int i = 0; i < 45; ++i) {
-      const double left = to - golden * (to - from), right = from + golden * (to - from);
-      const double one = depth(left), other = depth(right);
-      best = std::max({best, one, other});
-      one > other ? to = right : from = left;
+      const int before = std::max(0, i - 1), after = std::min(kPlaces, i + 1);
+      if (values[i] < std::max(values[before], values[after])) continue;
+      double from = before, to = after;
+      const double golden = 0.6180339887498949;
+      for (int k = 0; k < 45; ++k) {
+        const double left = to - golden * (to - from), right = from + golden * (to - from);
+        const double one = depth(left), other = depth(right);
+        best = std::max({best, one, other});
+        one > other ? to = right : from = left;
+      }
     }
     return best;
   }
@@ -143,7 +147,7 @@ class Groove {
     return std::min({wheel_.radius(within) - from_spindle, w - wheel_.lowerFace(), wheel_.upperFace() - w});
   }
 
-  static constexpr int kPlaces = 120;
+  static constexpr int kPlaces = 400;
   const ValidJob job_;
   WheelProfile wheel_;
   ZCorrection z_correction_;
@@ -214,7 +218,7 @@ TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
 TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
   RandomJobs random;
   int touched = 0, of_hand[2] = {0, 0};
-  const int cases = test_support::randomCases(60);
+  const int cases = test_support::randomCases(24);
   for (int i = 0; i < cases; ++i) {
     SCOPED_TRACE(i);
     const ValidJob job(random.job());

@@ -1,6 +1,5 @@
 """What the tests share: jobs, the package's programs and files, and a client of the grinder that records all it says."""
 
-import atexit
 import contextlib
 import copy
 import math
@@ -562,23 +561,10 @@ class Grinder:
         return self.wait_rest()
 
 
-NODE = []
-
-
+@lru_cache(None)
 def grinder():
-    """The client of the grinder that the launch file has started, one for all tests. The files it keeps go with them."""
-    if not NODE:
-        NODE.append(Grinder())
-        for kept in ('journal', 'offsets'):
-            atexit.register(remove_file, rospy.get_param('/grinder/' + kept))
-            atexit.register(remove_file, rospy.get_param('/grinder/' + kept) + '.lock')
-        atexit.register(shutil.rmtree, rospy.get_param('/grinder/history'), ignore_errors=True)
-    return NODE[0]
-
-
-def remove_file(path):
-    with contextlib.suppress(FileNotFoundError):
-        os.remove(path)
+    """The client of the grinder that the launch file has started, one for all tests."""
+    return Grinder()
 
 
 def shipped_machine():
@@ -716,4 +702,5 @@ class SlowDisk:
 
     def release(self):
         """Once more does nothing."""
-        remove_file(self._seconds)
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(self._seconds)

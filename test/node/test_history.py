@@ -170,7 +170,7 @@ class TestBadFolder(gc.OwnNode):
         self.addCleanup(shutil.rmtree, folder)
         with open(os.path.join(folder, 'file'), 'w'):
             pass
-        grinder = self.start(dict(gc.machine(), history=folder + '/file/history'))
+        grinder = self.start(dict(gc.machine(pace=5), history=folder + '/file/history'))
         reports = Reports(self.node.name)
         self.addCleanup(reports.subscriber.unregister)
         reported = reports.wait('History', DiagnosticStatus.WARN, 'history %s/file/history: ' % folder)

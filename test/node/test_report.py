@@ -108,6 +108,9 @@ def setUpModule():
     FILES['recording'] = Recording(folder)
     FILES['plan'] = os.path.join(folder, 'plan.csv')
     FILES['printed'] = gc.grind('plan', PAPER_JOB, '--csv', FILES['plan']).stdout
+    FILES['short'] = os.path.join(folder, 'short.csv')
+    with open(FILES['plan']) as plan, open(FILES['short'], 'w') as short:
+        short.writelines(plan.readlines()[:50])
     FILES['table'] = os.path.join(folder, 'table.csv')
     gc.grind('table', PAPER_JOB, '--step-length', '0.2', '--csv', FILES['table'])
 
@@ -805,12 +808,12 @@ class TestLayout(ReportCase):
 
     def test_pdf_that_cannot_be_written(self):
         path = self.path('no/such/folder.pdf')
-        done = gc.grind('report', FILES['plan'], '--pdf', path)
+        done = gc.grind('report', FILES['short'], '--pdf', path)
         self.assertEqual((done.returncode, done.stderr), (2, path + ': cannot be written: No such file or directory\n'))
 
     def test_without_a_browser(self):
         environment = {**os.environ, 'PATH': self.path('nothing')}
-        done = subprocess.run([gc.program('grind'), 'report', FILES['plan'], '--pdf', self.path('none.pdf')], env=environment,
+        done = subprocess.run([gc.program('grind'), 'report', FILES['short'], '--pdf', self.path('none.pdf')], env=environment,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
         self.assertEqual(done.returncode, 2)
         self.assertIn('cannot be printed without a browser; install chromium', done.stderr)
@@ -856,9 +859,9 @@ class TestBadFiles(ReportCase):
             self.assertEqual(file.read(), 'kept')
 
     def changed(self, name, change):
-        """A plan's CSV with other lines."""
-        with open(FILES['plan']) as file:
-            lines = file.read().splitlines()[:50]
+        """The short plan with other lines."""
+        with open(FILES['short']) as file:
+            lines = file.read().splitlines()
         with open(self.path(name), 'w') as file:
             file.write('\n'.join(change(lines)))
         return self.path(name)
@@ -915,21 +918,21 @@ class TestBadFiles(ReportCase):
 
     def test_output_that_cannot_be_written(self):
         output = self.path('no/such/folder.html')
-        done = gc.grind('report', FILES['plan'], '-o', output)
+        done = gc.grind('report', FILES['short'], '-o', output)
         self.assertEqual(done.returncode, 2)
         self.assertEqual(done.stderr, output + ': cannot be written: No such file or directory\n')
 
     def test_full_disk(self):
         for arguments in (('-o', '/dev/full'), ('--pdf', '/dev/full')):
-            done = gc.grind('report', FILES['plan'], *arguments)
+            done = gc.grind('report', FILES['short'], *arguments)
             self.assertEqual((done.returncode, done.stderr), (1, '/dev/full: write failed: No space left on device\n'))
         with open('/dev/full', 'w') as full:
-            done = subprocess.run([gc.program('grind'), 'report', FILES['plan'], '--json'], stdout=full, stderr=subprocess.PIPE,
+            done = subprocess.run([gc.program('grind'), 'report', FILES['short'], '--json'], stdout=full, stderr=subprocess.PIPE,
                                   universal_newlines=True)
         self.assertEqual((done.returncode, done.stderr), (1, 'standard output: write failed\n'))
 
     def test_reader_of_the_data_that_has_ended(self):
-        run = subprocess.Popen([gc.program('grind'), 'report', FILES['plan'], '--json'], stdout=subprocess.PIPE,
+        run = subprocess.Popen([gc.program('grind'), 'report', FILES['short'], '--json'], stdout=subprocess.PIPE,
                                stderr=subprocess.PIPE)
         run.stdout.close()
         self.assertEqual((run.stderr.read(), run.wait(gc.PATIENCE)), (b'', 1))
@@ -938,10 +941,10 @@ class TestBadFiles(ReportCase):
     def test_nothing_to_report_on_and_nothing_to_write(self):
         done = gc.grind('report', '-o', self.path('none.html'))
         self.assertEqual((done.returncode, done.stderr), (2, 'FILE is missing; allowed: a file, or --last\n'))
-        done = gc.grind('report', FILES['plan'])
+        done = gc.grind('report', FILES['short'])
         self.assertEqual((done.returncode, done.stderr), (2, 'nothing to write; allowed: --output, --pdf, --json\n'))
 
     def test_machine_that_cannot_be_read(self):
-        done = gc.grind('report', FILES['plan'], '-o', self.path('no.html'), '--machine', self.path('nothing.yaml'))
+        done = gc.grind('report', FILES['short'], '-o', self.path('no.html'), '--machine', self.path('nothing.yaml'))
         self.assertEqual(done.returncode, 2)
         self.assertIn(self.path('nothing.yaml') + ': cannot be read', done.stderr)

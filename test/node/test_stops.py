@@ -2,6 +2,7 @@
 end of the process; and that the wheel is not left in the work."""
 
 import contextlib
+import fcntl
 import os
 import random
 import signal
@@ -32,6 +33,7 @@ SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.
 CLEAR_HEIGHT = checks.Helix(SLOW).y(SLOW['cutter.flute_length'] + SLOW['process.overtravel_shank']) + 1 * MM
 
+F_SETPIPE_SZ = 1031  # Python's fcntl has it from 3.10 on
 ENDED_BY_CANCEL = ('PREEMPTED', 'RECALLED')
 
 
@@ -183,10 +185,11 @@ class TestTheWayDown(NodeTest):
     def test_full_pipe(self):
         read, write = os.pipe()
         self.addCleanup(os.close, read)
+        fcntl.fcntl(write, F_SETPIPE_SZ, 4096)
         self.start(machine(), output=write).make_ready()
         os.close(write)
-        # Each refusal is a line of the log: more than any pipe holds.
-        for _ in range(400):
+        # Each refusal is a line of the log of more than 100 bytes: more than the pipe holds.
+        for _ in range(60):
             self.assertEqual(self.client.send(gc.paper(feed=-1, depth=-1, infeed=-1)).wait().status, 'REJECTED')
         run = self.send_into_stroke()
         self.client.fresh_state()

@@ -130,25 +130,6 @@ inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, co
   return "";
 }
 
-/// Whether every odd point leaves the curve from where its pair starts by the tangent's error k b dX^2 / (2 u^2), up to
-/// the next orders, of which 2/3 b dX/u is the largest.
-inline std::string offTheTangent(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
-  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
-  const Axes noise = 4 * roundingOf(setpoints);
-  for (const SeenPair& s : pairsOf(setpoints)) {
-    const Real x = s.start.position[kX];
-    const Real dx = s.odd.position[kX] - x;
-    const Real growth = curve.b * dx / curve.u(x);
-    const Real leading = curve.k * curve.b * dx * dx / (2 * curve.u(x) * curve.u(x));
-    const Real before = s.start.step == StepKind::kEven ? s.start.path_error : 0;
-    const Real rounding = noise[kA] + noise[kX] * std::abs(curve.slope(x)) + 1e-15L;
-    if (!(std::abs(s.odd.path_error - before + leading) <= std::abs(leading * growth) + rounding)) {
-      return "cycle " + std::to_string(s.odd.cycle) + " odd error " + ::testing::PrintToString(s.odd.path_error);
-    }
-  }
-  return "";
-}
-
 /// How far a point of a stroke is off the theoretical curve, at the cutter's surface and normal to the helix. [m]
 class Deviation {
  public:

@@ -111,22 +111,6 @@ TEST(JobPlan, AsksItsWatchAllTheTime) {
   EXPECT_LE(done.back(), 1);
 }
 
-TEST(JobPlan, IsGivenUpByItsWatch) {
-  const Machine machine = plainMachine();
-  GrindJob job = paperJob();
-  job.process.spark_out = 9;
-  std::uint64_t visited = 0;
-  int looks = 0;
-  const JobPlan plan = planJob(
-      ValidJob(job), machine, machine.park, [&](const Setpoint&) { ++visited; }, [&](double) { return ++looks < 3; });
-  EXPECT_EQ(plan.fault, PlanFault::kGivenUp);
-  EXPECT_EQ(looks, 3);
-  EXPECT_EQ(visited, plan.statistics.setpoints);
-  EXPECT_LE(visited, 10000u);
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_TRUE(contains(textOf(plan), "given up"));
-}
-
 /// D1 1.6 mm, C 15 deg and next to no spiral, with an overtravel up to next to the apex.
 GrindJob apexJob(double short_of_apex, double spiral_deg) {
   GrindJob job = paperJob();

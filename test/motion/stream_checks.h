@@ -93,13 +93,6 @@ inline std::string beyondLimits(std::vector<Setpoint> setpoints, const Machine& 
   return "";
 }
 
-/// Y over that of the surface at X = 0 at which the wheel is clear of the whole stroke. [m]
-inline double clearHeight(const GrindJob& job) {
-  const double growth = std::tan(job.cutter.cone_angle);
-  const double ends[]{-job.process.overtravel_end, job.cutter.flute_length + job.process.overtravel_shank};
-  return std::max(ends[0] * growth, ends[1] * growth) + job.process.clearance;
-}
-
 /// How far the strokes' points are off what the paper's construction gives, as text; empty where they are not.
 inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const GrindJob& job, std::size_t every) {
   const ReferenceCurve curve(job.cutter, job.process.setup_lead);

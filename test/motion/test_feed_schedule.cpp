@@ -1,7 +1,7 @@
 #include "flute_grinder/motion/feed_schedule.h"
 
 #include "curve/reference.h"
-#include "generators.h"
+#include "plans.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -96,13 +96,6 @@ Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
     }
   }
   return result;
-}
-
-/// The one cause for which a feed is cut; empty where it is not, and all where there are several.
-std::string causeOf(const FeedSchedule& schedule) {
-  std::string causes;
-  for (const FeedLimit& cut : schedule.feedLimits()) causes += (causes.empty() ? "" : ", ") + cut.cause;
-  return causes;
 }
 
 void expectWithin(const Excess& excess) {
@@ -282,7 +275,7 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
       (by_jerk ? c.machine.limits.max_jerk : c.machine.limits.max_acceleration)[axis] =
           (by_jerk ? 0.1 : 0.02) * per_x[axis];
       const FeedSchedule schedule = c.schedule();
-      EXPECT_EQ(causeOf(schedule), std::string(names[axis]) + (by_jerk ? " jerk" : " acceleration"));
+      EXPECT_EQ(causesOf(schedule.feedLimits()), std::string(names[axis]) + (by_jerk ? " jerk" : " acceleration"));
       EXPECT_GT(schedule.limits().acceleration, 0);
       EXPECT_GT(schedule.limits().jerk, 0);
       std::vector<double> xs;
@@ -306,7 +299,7 @@ TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
     FeedSchedule::Stroke stroke = plainStroke();
     if (backward) std::swap(stroke.from, stroke.to);
     const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
-    ASSERT_EQ(causeOf(schedule), "axis X velocity, axis A velocity");
+    ASSERT_EQ(causesOf(schedule.feedLimits()), "axis X velocity, axis A velocity");
     const FeedLimit& along = schedule.feedLimits()[0];
     const FeedLimit& tip = schedule.feedLimits()[1];
     EXPECT_EQ(along.from_x, stroke.from);
@@ -333,11 +326,12 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   for (const auto& row : rows) {
     Machine machine = boundless();
     (machine.limits.*row.limits)[row.axis] = row.limit;
-    EXPECT_EQ(causeOf(FeedSchedule(ConicalCutter(thinCutter()), plainStroke(), machine)), row.cause);
+    EXPECT_EQ(causesOf(FeedSchedule(ConicalCutter(thinCutter()), plainStroke(), machine).feedLimits()), row.cause);
   }
   FeedSchedule::Stroke tight = plainStroke();
   tight.tolerance = 1e-9;
-  EXPECT_EQ(causeOf(FeedSchedule(ConicalCutter(thinCutter()), tight, boundless())), "interpolation tolerance");
+  EXPECT_EQ(causesOf(FeedSchedule(ConicalCutter(thinCutter()), tight, boundless()).feedLimits()),
+            "interpolation tolerance");
 }
 
 }  // namespace test_feed_schedule

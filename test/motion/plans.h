@@ -26,9 +26,9 @@ inline std::string textOf(const JobPlan& plan) {
 inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// The causes of all feed limits.
-inline std::string causesOf(const JobPlan& plan) {
+inline std::string causesOf(const std::vector<FeedLimit>& cuts) {
   std::string causes;
-  for (const FeedLimit& cut : plan.statistics.feed_limits) causes += (causes.empty() ? "" : ", ") + cut.cause;
+  for (const FeedLimit& cut : cuts) causes += (causes.empty() ? "" : ", ") + cut.cause;
   return causes;
 }
 

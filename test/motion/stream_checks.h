@@ -93,13 +93,6 @@ inline std::string beyondLimits(std::vector<Setpoint> setpoints, const Machine& 
   return "";
 }
 
-/// Y over that of the surface at X = 0 at which the wheel is clear of the whole stroke. [m]
-inline double clearHeight(const GrindJob& job) {
-  const double growth = std::tan(job.cutter.cone_angle);
-  const double ends[]{-job.process.overtravel_end, job.cutter.flute_length + job.process.overtravel_shank};
-  return std::max(ends[0] * growth, ends[1] * growth) + job.process.clearance;
-}
-
 /// How far the strokes' points are off what the paper's construction gives, as text; empty where they are not.
 inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const GrindJob& job, std::size_t every) {
   const ReferenceCurve curve(job.cutter, job.process.setup_lead);
@@ -125,25 +118,6 @@ inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, co
              std::to_string(static_cast<double>((x2 - expected.x2) * 1e15L)) + "e-15, a by " +
              std::to_string(static_cast<double>((a1 - expected.a1) * 1e12L)) + "e-12, " +
              std::to_string(static_cast<double>((a2 - expected.a2) * 1e12L)) + "e-12";
-    }
-  }
-  return "";
-}
-
-/// Whether every odd point leaves the curve from where its pair starts by the tangent's error k b dX^2 / (2 u^2), up to
-/// the next orders, of which 2/3 b dX/u is the largest.
-inline std::string offTheTangent(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
-  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
-  const Axes noise = 4 * roundingOf(setpoints);
-  for (const SeenPair& s : pairsOf(setpoints)) {
-    const Real x = s.start.position[kX];
-    const Real dx = s.odd.position[kX] - x;
-    const Real growth = curve.b * dx / curve.u(x);
-    const Real leading = curve.k * curve.b * dx * dx / (2 * curve.u(x) * curve.u(x));
-    const Real before = s.start.step == StepKind::kEven ? s.start.path_error : 0;
-    const Real rounding = noise[kA] + noise[kX] * std::abs(curve.slope(x)) + 1e-15L;
-    if (!(std::abs(s.odd.path_error - before + leading) <= std::abs(leading * growth) + rounding)) {
-      return "cycle " + std::to_string(s.odd.cycle) + " odd error " + ::testing::PrintToString(s.odd.path_error);
     }
   }
   return "";

@@ -64,24 +64,6 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
   RC_ASSERT((setpoints.back().position == work.machine.park).all());
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, IndexesAAloneAndThenRunsInAboveTheWork, ()) {
-  const Work work = *toothedWork(kCycles / 3);
-  const auto setpoints = all(work);
-  const double clear = clearHeight(work.job) - 1e-15;
-  for (std::size_t i = 1; i < setpoints.size(); ++i) {
-    const Setpoint& p = setpoints[i];
-    const Axes way = p.position - setpoints[i - 1].position;
-    if (p.move == MoveKind::kIndex) {
-      RC_ASSERT(way[kX] == 0 && way[kY] == 0 && way[kZ] == 0);
-      RC_ASSERT(p.position[kY] >= clear);
-    }
-    if (p.move == MoveKind::kPosition) {
-      RC_ASSERT(way[kY] == 0 && way[kA] == 0);
-      RC_ASSERT(p.position[kY] >= clear);
-    }
-  }
-}
-
 RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndReportsTheMeanVelocityOfTheCycle, ()) {
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
@@ -96,7 +78,6 @@ RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstructionAndRepor
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
   RC_ASSERT(offTheConstruction(setpoints, work.job, 37) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");  // odd points leave the curve by the tangent's error only
   const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
   const Axes noise = roundingOf(setpoints);
   for (const Setpoint& p : setpoints) {

@@ -57,7 +57,6 @@ RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWholeAndKe
   RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
   RC_ASSERT(beyondLimits(setpoints, work.machine) == "");             // and none needs a rest to be gone on from
   RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-  RC_ASSERT(offTheTangent(setpoints, work.job) == "");
 }
 
 RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
@@ -104,29 +103,6 @@ RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxe
   RC_ASSERT(stream.finished());
   RC_ASSERT((setpoints.back().position == work.machine.park).all());
   RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-}
-
-TEST(SetpointStream, SlowedDownAmidAPairItSlowsDownWithTheNext) {
-  GrindJob job = paperJob();
-  Axes start = plainMachine().park;
-  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), start));
-  SetpointStream undisturbed(stream.program());
-  Setpoint p, q;
-  const auto step = [&] {
-    ASSERT_TRUE(stream.next(p));
-    ASSERT_TRUE(undisturbed.next(q));
-  };
-  while (!(p.at_feed && p.step == StepKind::kOdd)) step();
-  const Axes even_before = p.position;
-  stream.slowDown(0.2);
-  step();
-  EXPECT_TRUE((p.position == q.position).all()) << "its second step is made as planned";
-  const double x = p.position[kX];
-  const double full = 2 * (x - even_before[kX]);
-  step();
-  step();
-  // Then a fifth, and what the jerk adds in two cycles.
-  EXPECT_NEAR(p.position[kX] - x, full / 5, 0.02 * full);
 }
 
 }  // namespace test_stream_hold

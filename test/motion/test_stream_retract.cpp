@@ -29,7 +29,7 @@ void checkDetours(const Ride& ride, const Work& work) {
   const double growth = std::tan(g.cone_angle);
   const double direction = program.strokeTo() < program.strokeFrom() ? -1 : 1;
   const Axes rounding = 2 * roundingOf(ride.seen_by_machine);
-  const double clear = clearHeight(work.job) - rounding[kY];
+  const double clear = program.clearanceHeight() - rounding[kY];
   std::map<std::uint32_t, std::pair<double, double>> strokes;  // where left, and the farthest reached, by move
   for (std::size_t i = 1; i < ride.given.size(); ++i) {
     const Setpoint& p = ride.given[i].p;

@@ -89,16 +89,6 @@ RC_GTEST_PROP(ZLawProperty, ZIsThePapersAndTheCorrectionWithinAllLimits, ()) {
   }
 }
 
-RC_GTEST_PROP(ZLawProperty, ThePlanSeesTheStreamsBits, ()) {
-  const Work work = *correctedWork(kCycles / 3);
-  std::vector<Setpoint> planned;
-  planJob(work.valid(), work.machine, work.start, [&](const Setpoint& p) { planned.push_back(p); });
-  RC_PRE(!planned.empty());  // some are refused
-  const auto streamed = all(work);
-  RC_ASSERT(planned.size() == streamed.size());
-  for (std::size_t i = 0; i < planned.size(); ++i) RC_ASSERT((planned[i].position == streamed[i].position).all());
-}
-
 TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {
   const auto expected = all({paperJob(), plainMachine(), plainMachine().park});
   const auto setpoints = all({constantRakeJob(), plainMachine(), plainMachine().park});

@@ -159,40 +159,27 @@ class Rig {
     log.front().job_ended = false;
   }
 
-  /// Runs until a state is reached.
+  /// Runs until a state is reached, by a cycle at least.
   void runUntil(MachineState state) {
-    for (int i = 0; i < 100000; ++i) {
-      if (cycle().state == state) return;
-    }
-    FAIL() << "never " << toString(state) << ", but " << toString(last().state);
+    cycle();
+    runWhile([&] { return last().state != state; }, toString(state));
   }
 
   /// Runs the job that has been started until the setpoint of a cycle.
   void runToCycle(std::uint64_t number) {
-    for (int i = 0; i < 100000; ++i) {
-      if (last().has_setpoint && last().setpoint.cycle == number) return;
-      cycle();
-    }
-    FAIL() << "no cycle " << number;
+    runWhile([&] { return !last().has_setpoint || last().setpoint.cycle != number; }, std::to_string(number));
   }
 
   /// Runs the job that has been started until its first setpoint of a kind of move.
   void runTo(MoveKind move) {
-    for (int i = 0; i < 100000; ++i) {
-      if (last().has_setpoint && last().setpoint.move == move) return;
-      const bool moves = last().state == MachineState::kRunning || last().state == MachineState::kResuming;
-      ASSERT_TRUE(moves) << toString(last().state) << ", and the job has no " << toString(move);
-      cycle();
-    }
-    FAIL() << "no " << toString(move);
+    runWhile([&] { return isOnTheWay() && !(last().has_setpoint && last().setpoint.move == move); }, toString(move));
+    ASSERT_TRUE(isOnTheWay()) << toString(last().state) << ", and the job has no " << toString(move);
   }
 
   /// Runs until the job has ended.
   void runToEnd() {
-    for (int i = 0; i < 100000; ++i) {
-      if (cycle().job_ended) return;
-    }
-    FAIL() << "the job does not end";
+    cycle();
+    runWhile([&] { return !last().job_ended; }, "the job's end");
   }
 
   const CycleSample& last() const { return log.back(); }
@@ -217,6 +204,18 @@ class Rig {
   std::optional<SetpointStream> stream;
 
  private:
+  bool isOnTheWay() const { return last().state == MachineState::kRunning || last().state == MachineState::kResuming; }
+
+  /// @param what ends it.
+  template <typename Condition>
+  void runWhile(const Condition& condition, const std::string& what) {
+    for (int i = 0; i < 100000; ++i) {
+      if (!condition()) return;
+      cycle();
+    }
+    FAIL() << "never " << what << ", but " << toString(last().state);
+  }
+
   void unseen(const ros::Duration& period) {
     time_ += period;
     useNoHeap([&] {

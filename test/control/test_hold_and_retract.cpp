@@ -219,16 +219,5 @@ TEST_F(FeedOverrideOfZero, CanBeRetractedAndRestsAboveTheWorkOnTheWayBack) {
   expectCompleted(rig_);
 }
 
-TEST_F(FeedOverrideOfZero, CanBeCanceled) {
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  rig_.runToEnd();
-  rig_.run(3);
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_EQ(rig_.jobsEnded(), 1);
-  const Axes& stood = rig_.log[at_rest_].command;
-  EXPECT_TRUE(sameBits(rig_.last().command, Axes(stood[kX], rig_.last().command[kY], stood[kZ], stood[kA])));
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
-}
-
 }  // namespace test_hold_and_retract
 }  // namespace grinder::test_support

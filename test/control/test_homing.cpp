@@ -63,20 +63,6 @@ class HomingFake : public testing::Test {
   Rig<FakeDrive> rig_;
 };
 
-TEST_F(HomingFake, IsCommandedToHomeAsLongAsItDoes) {
-  changeHoming([](FakeDrive& d, int reading) { d.status.homing = reading <= 7; });
-  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  for (int i = 0; i < 7; ++i) {
-    EXPECT_TRUE(rig_.drive.written_drive.home);
-    EXPECT_EQ(rig_.cycle().state, S::kHoming);
-  }
-  EXPECT_EQ(rig_.cycle().state, S::kReady);
-  EXPECT_FALSE(rig_.drive.written_drive.home);
-  EXPECT_TRUE(rig_.drive.written_drive.enable);
-  EXPECT_FALSE(rig_.last().has_setpoint);
-  EXPECT_EQ(rig_.jobsEnded(), 0);
-}
-
 TEST_F(HomingFake, CommandsFollowThePositionsHoweverTheyJump) {
   changeHoming([](FakeDrive& d, int reading) {
     d.status.homing = reading <= 10;

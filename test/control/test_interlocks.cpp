@@ -38,83 +38,66 @@ void restoreParts(FakeDrive& drive) {
   drive.status.swivel = kPaperSwivel;
 }
 
-TEST(InterlockText, SaysWhatIsWrong) {
-  EXPECT_STREQ(toString(Interlock::kNone), "");
-  for (const Part& part : parts()) EXPECT_STREQ(toString(part.interlock), part.words);
-  EXPECT_STREQ(toString(static_cast<Interlock>(99)), "unknown");
-}
-
-/// With a job that waits for spindle and coolant, and for a part that is lost.
-struct WaitingRig : Rig<FakeDrive> {
-  explicit WaitingRig(const Part& part) {
-    enable();
-    EXPECT_TRUE(askToStartPaper().accepted);
-    EXPECT_EQ(last().state, S::kStarting);
-    drive.on_read = part.lose;
-  }
-
-  void expectToWait() {
-    for (int i = 0; i < 15; ++i) {
-      cycle();
-      ASSERT_EQ(last().state, S::kStarting);
-      ASSERT_TRUE(drive.written_drive.spindle);
-      ASSERT_TRUE(drive.written_drive.coolant);
-    }
-  }
-};
-
-TEST(WaitsFor, EachPartWithSpindleAndCoolantAndStreamsTheWholeJobOnceItIsThere) {
-  for (const Part& part : parts()) {
-    SCOPED_TRACE(part.name);
-    WaitingRig rig(part);
-    const std::size_t from = rig.log.size() - 1;
-    ASSERT_NO_FATAL_FAILURE(rig.expectToWait());
-    EXPECT_TRUE(atRestFrom(rig.log, from));
-    rig.drive.on_read = restoreParts;
-    EXPECT_EQ(rig.cycle().state, S::kRunning);
-    EXPECT_TRUE(rig.last().has_setpoint);
-    EXPECT_EQ(rig.last().setpoint.cycle, 0u);
-    rig.runToEnd();
-    expectCompleted(rig);
-    EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
-  }
-}
-
-TEST(WaitsFor, EachPartUntilTheTimeoutAndIsReadyThenWithEverythingOffForANewJob) {
-  for (const Part& part : parts()) {
-    SCOPED_TRACE(part.name);
-    WaitingRig rig(part);
-    const Axes before = rig.last().command;
-    // 20.5 periods, and the cycle of the start counts.
-    for (int i = 2; i <= 20; ++i) {
+TEST(WaitsFor, EachPartAndTheJournalWithSpindleAndCoolantAndEndsTheJobAtTheTimeoutWithEverythingOff) {
+  std::vector<Part> awaited = parts();
+  awaited.push_back({"Journal", Interlock::kJournal, nullptr, "the journal does not contain the job"});
+  for (const Part& part : awaited) {
+    for (const bool comes : {true, false}) {
+      SCOPED_TRACE(testing::Message() << part.name << (comes ? "" : ", never"));
+      const bool is_journal = part.interlock == Interlock::kJournal;
+      RigIn rig(S::kReady);
+      const Axes before = rig.last().command;
+      rig.stream.emplace(rig.paperStream());
+      ASSERT_TRUE(rig.loop->startJob(&*rig.stream, !is_journal));
+      const RequestReply answer = rig.answerOf([&] { return rig.loop->startJobReply(); });
+      ASSERT_TRUE(answer.accepted) << answer.text;
+      if (is_journal) rig.loop->confirmJournal(rig.loop->status().jobs_started - 1);  // of the job before
+      rig.drive.on_read = part.lose;
+      // 20.5 periods, and the cycle of the start counts.
+      for (int i = 2; i <= (comes ? 15 : 20); ++i) {
+        rig.cycle();
+        ASSERT_EQ(rig.last().state, S::kStarting) << "in cycle " << i;
+        ASSERT_FALSE(rig.last().job_ended);
+        ASSERT_TRUE(rig.drive.written_drive.spindle);
+        ASSERT_TRUE(rig.drive.written_drive.coolant);
+      }
+      if (comes) {
+        rig.drive.on_read = restoreParts;
+        if (is_journal) rig.loop->confirmJournal(rig.loop->status().jobs_started);
+        EXPECT_EQ(rig.cycle().state, S::kRunning);
+        EXPECT_TRUE(rig.last().has_setpoint);
+        EXPECT_EQ(rig.last().setpoint.cycle, 0u);
+        EXPECT_TRUE(sameBits(rig.last().command, before));
+        rig.runToEnd();
+        expectCompleted(rig);
+        EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
+        continue;
+      }
       rig.cycle();
-      ASSERT_EQ(rig.last().state, S::kStarting) << "in cycle " << i;
-      ASSERT_FALSE(rig.last().job_ended);
+      EXPECT_EQ(rig.last().state, S::kReady);
+      EXPECT_TRUE(rig.last().job_ended);
+      EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock);
+      EXPECT_EQ(rig.last().fault.interlock, part.interlock);
+      EXPECT_EQ(rig.last().fault.text(),
+                std::string(part.words) + " 0.021 s after the job was started, allowed 0.0205 s");
+      EXPECT_EQ(rig.loop->status().end, JobEnd::kFault);
+      EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kInterlock);
+      EXPECT_FALSE(rig.drive.written_drive.spindle);
+      EXPECT_FALSE(rig.drive.written_drive.coolant);
+      EXPECT_TRUE(rig.drive.written_drive.enable);
+      rig.stream.reset();
+      rig.drive.on_read = restoreParts;
+      rig.run(100);
+      EXPECT_EQ(rig.last().state, S::kReady) << "what comes late starts nothing";
+      EXPECT_EQ(rig.jobsEnded(), 1);
+      EXPECT_TRUE(rig.setpoints().empty());
+      EXPECT_TRUE(sameBits(rig.last().command, before));
+      EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
+      ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+      EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
+      rig.runToEnd();
+      EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
     }
-    rig.cycle();
-    EXPECT_EQ(rig.last().state, S::kReady);
-    EXPECT_TRUE(rig.last().job_ended);
-    EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock);
-    EXPECT_EQ(rig.last().fault.interlock, part.interlock);
-    EXPECT_EQ(rig.last().fault.text(),
-              std::string(part.words) + " 0.021 s after the job was started, allowed 0.0205 s");
-    EXPECT_EQ(rig.loop->status().end, JobEnd::kFault);
-    EXPECT_EQ(rig.loop->status().fault.kind, FaultKind::kInterlock);
-    EXPECT_FALSE(rig.drive.written_drive.spindle);
-    EXPECT_FALSE(rig.drive.written_drive.coolant);
-    EXPECT_TRUE(rig.drive.written_drive.enable);
-    rig.stream.reset();
-    rig.drive.on_read = restoreParts;
-    rig.run(100);
-    EXPECT_EQ(rig.last().state, S::kReady) << "what comes late starts nothing";
-    EXPECT_EQ(rig.jobsEnded(), 1);
-    EXPECT_TRUE(rig.setpoints().empty());
-    EXPECT_TRUE(sameBits(rig.last().command, before));
-    EXPECT_EQ(rig.last().fault.kind, FaultKind::kInterlock) << "reported until the next job";
-    ASSERT_NO_FATAL_FAILURE(rig.startPaper());
-    EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
-    rig.runToEnd();
-    EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
   }
 }
 
@@ -128,37 +111,6 @@ TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
     };
     rig.runUntil(S::kReady);
     EXPECT_EQ(rig.last().fault.interlock, parts()[first].interlock);
-  }
-}
-
-TEST(WaitsForJournal, OfTheJobItselfAndNoLongerThanTheTimeout) {
-  for (const bool comes : {true, false}) {
-    RigIn rig(S::kReady);
-    rig.stream.emplace(rig.paperStream());
-    ASSERT_TRUE(rig.loop->startJob(&*rig.stream, false));
-    const RequestReply answer = rig.answerOf([&] { return rig.loop->startJobReply(); });
-    ASSERT_TRUE(answer.accepted) << answer.text;
-    rig.loop->confirmJournal(rig.loop->status().jobs_started - 1);  // of the job before
-    for (int i = 0; i < 15; ++i) {
-      ASSERT_EQ(rig.cycle().state, S::kStarting);
-      ASSERT_TRUE(rig.drive.written_drive.spindle);
-      ASSERT_TRUE(rig.drive.written_drive.coolant);
-    }
-    EXPECT_TRUE(rig.setpoints().empty());
-    if (comes) {
-      rig.loop->confirmJournal(rig.loop->status().jobs_started);
-      EXPECT_EQ(rig.cycle().state, S::kRunning);
-      rig.runToEnd();
-      expectCompleted(rig);
-      EXPECT_TRUE(sameSetpoints(rig.setpoints(), planned()));
-    } else {
-      rig.runUntil(S::kReady);
-      EXPECT_EQ(rig.last().fault.interlock, Interlock::kJournal);
-      EXPECT_EQ(rig.last().fault.text(),
-                "the journal does not contain the job 0.021 s after the job was started, allowed 0.0205 s");
-      EXPECT_TRUE(rig.setpoints().empty());
-      EXPECT_FALSE(rig.drive.written_drive.spindle);
-    }
   }
 }
 
@@ -307,6 +259,7 @@ TEST(Lost, CancelEndsTheJob) {
     ASSERT_TRUE(rig.ask(E::kCancel).accepted);
     if (rig.last().state != S::kReady) rig.runUntil(S::kReady);
     EXPECT_EQ(rig.jobsEnded(), 1);
+    EXPECT_FALSE(rig.last().wheel_in_work);
     EXPECT_EQ(rig.last().interlock, Interlock::kNone);
     EXPECT_FALSE(rig.drive.written_drive.spindle);
     EXPECT_TRUE(smooth(rig.log));

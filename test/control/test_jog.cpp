@@ -381,17 +381,5 @@ TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {
   EXPECT_EQ(rig.jog(step(kX, 0.01)).text, "jog refused: the job has reached the end of its path; resume it first");
 }
 
-TEST(JogRetracted, TheInterlocksAreAskedAgainAtResume) {
-  RigIn rig(S::kJoggingRetracted);
-  rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
-  rig.runUntil(S::kRetracted);
-  EXPECT_EQ(rig.ask(E::kResume).text, "resume refused: the spindle is not at speed");
-  rig.drive.on_read = nullptr;
-  rig.run(2);
-  EXPECT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
-}
-
 }  // namespace test_jog
 }  // namespace grinder::test_support

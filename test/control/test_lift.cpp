@@ -49,16 +49,6 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel does not stand in the work");
 }
 
-TEST_F(InTheWork, StaysSoWithoutPowerAndThroughFaults) {
-  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
-  rig_.run(20);
-  EXPECT_TRUE(rig_.last().wheel_in_work);
-  ASSERT_NO_FATAL_FAILURE(rig_.enable());
-  rig_.drive.status.emergency_stop = true;
-  rig_.run(5);
-  EXPECT_TRUE(rig_.last().wheel_in_work);
-}
-
 TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
   const auto seeAt = [&](double y, bool homed) {
@@ -97,11 +87,6 @@ TEST(Lift, IsStoppedOnItsWayByEveryStopWithTheWheelStillInTheWork) {
     ASSERT_NO_FATAL_FAILURE(rig.lift());
     EXPECT_FALSE(rig.last().wheel_in_work);
   }
-}
-
-TEST(AfterARestart, AWheelThatStandsAboveByNowIsNotInTheWork) {
-  Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift});
-  EXPECT_FALSE(rig.cycle().wheel_in_work) << "the park position is clear";
 }
 
 TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {

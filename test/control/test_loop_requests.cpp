@@ -11,19 +11,6 @@ namespace test_loop_requests {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(ControlLoopEnable, IsAnsweredOncePowerIsThere) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  ASSERT_TRUE(rig.loop->post(E::kEnable));
-  EXPECT_EQ(rig.cycle().state, S::kDisabled);
-  EXPECT_TRUE(rig.drive.written_drive.enable);
-  EXPECT_FALSE(rig.loop->reply());
-  EXPECT_EQ(rig.cycle().state, S::kReady);
-  const auto answer = rig.loop->reply();
-  ASSERT_TRUE(answer);
-  EXPECT_TRUE(answer->accepted);
-}
-
 TEST(ControlLoopEnable, TakesTheCommandsFromThePositionsAtTheMomentOfPower) {
   Rig<FakeDrive> rig;
   rig.cycle();

@@ -1,10 +1,11 @@
+#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_geometry.h"
 #include "temp_folder.h"
+#include "yaml_parameters.h"
 
 #include <gtest/gtest.h>
 #include <urdf/model.h>
-#include <yaml-cpp/yaml.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -28,15 +29,8 @@ urdf::Model urdfModel() {
 
 /// Of config/grinder.yaml.
 MachineGeometry shippedGeometry() {
-  const YAML::Node node = YAML::LoadFile("config/grinder.yaml")["geometry"];
-  MachineGeometry geometry;
-  geometry.work_axis_y = node["work_axis"]["y"].as<double>();
-  geometry.work_axis_z = node["work_axis"]["z"].as<double>();
-  geometry.collet_face = node["collet_face"]["x"].as<double>();
-  const char* names[]{"x", "y", "z"};
-  for (int i = 0; i < 3; ++i) geometry.swivel_centre[i] = node["swivel_centre"][names[i]].as<double>();
-  geometry.flange = node["flange"].as<double>();
-  return geometry;
+  return readMachineGeometry(
+      ParameterReader(test_support::toXmlRpc(YAML::LoadFile("config/grinder.yaml")), "/grinder"));
 }
 
 /// Where a link stands in the root's frame.

@@ -2,12 +2,11 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/job_plan.h"
-
-#include <rapidcheck.h>
-#include <rapidcheck/gtest.h>
+#include "random_cases.h"
 
 #include <cmath>
 #include <limits>
+#include <random>
 
 // Jobs with work offsets: setpoints are the work's, commands, limits and heights the machine's.
 namespace grinder::test_support {
@@ -22,12 +21,15 @@ SetpointStream streamAt(const Axes& offset, const Axes& command, const LoopConfi
   return paperStream(config.machine, {command, {}, offset});
 }
 
-double between(double low, double high) {
-  return low + (high - low) * static_cast<double>(*rc::gen::inRange(0, 1000000001)) * 1e-9;
-}
+/// With offsets for which the job stays within the machine's limits, and below the park position.
+class WithOffsets : public testing::TestWithParam<int> {
+ protected:
+  double between(double low, double high) { return std::uniform_real_distribution<>(low, high)(random_); }
 
-/// One for which the job stays within the machine's limits, and below the park position.
-Axes anyOffset() { return {between(-0.09, 0.26), between(-0.018, 0.041), between(-0.049, 0.09), between(-120, 120)}; }
+  std::mt19937 random_{static_cast<unsigned>(GetParam())};
+  Axes offset_{between(-0.09, 0.26), between(-0.018, 0.041), between(-0.049, 0.09), between(-120, 120)};
+};
+INSTANTIATE_TEST_SUITE_P(, WithOffsets, testing::Range(0, randomCases(100)));
 
 /// Whether c is p + o, rounded once.
 bool isSum(double c, double p, double o) {
@@ -59,64 +61,60 @@ std::vector<CycleSample> inWork(const std::vector<CycleSample>& log, const Axes&
   return work;
 }
 
-RC_GTEST_PROP(WorkOffsets, SetpointsAreThePlansAndCommandsTheMachines, ()) {
-  const Axes offset = anyOffset();
+TEST_P(WithOffsets, SetpointsAreThePlansAndCommandsTheMachines) {
   Rig<FakeDrive> rig;
   rig.enable();
-  SetpointStream stream = streamAt(offset, rig.last().command);
+  SetpointStream stream = streamAt(offset_, rig.last().command);
   const std::vector<Setpoint> planned = allSetpoints(stream);
   rig.start(stream);
   rig.runToEnd();
-  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
-  RC_ASSERT(sameSetpoints(rig.setpoints(), planned));
-  RC_ASSERT(commandsAreShifted(rig.log, offset));
-  RC_ASSERT(!rig.last().wheel_in_work);
-  RC_ASSERT(((rig.last().command - machineConfig().machine.park).abs() <= 2 * kUlp * (offset.abs() + 0.15)).all());
+  ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
+  ASSERT_TRUE(sameSetpoints(rig.setpoints(), planned));
+  ASSERT_TRUE(commandsAreShifted(rig.log, offset_));
+  ASSERT_FALSE(rig.last().wheel_in_work);
+  ASSERT_TRUE(((rig.last().command - machineConfig().machine.park).abs() <= 2 * kUlp * (offset_.abs() + 0.15)).all());
 }
 
 /// With a part of the job's motion at a limit of the machine: axes that stand there, and a park position there.
-RC_GTEST_PROP(WorkOffsets, AJobAtALimitIsNotRefused, ()) {
-  const Axes offset = anyOffset();
+TEST_P(WithOffsets, AJobAtALimitIsNotRefused) {
   LoopConfig config = machineConfig();
   AxisLimits& limits = config.machine.limits;
   config.machine.park << limits.min_position[kX], limits.max_position[kY], limits.min_position[kZ],
       limits.max_position[kA];
   // Where the stroke ends, by a sum that is rounded as badly as any.
-  limits.max_position[kX] = kStrokeTo + offset[kX];
+  limits.max_position[kX] = kStrokeTo + offset_[kX];
   Rig<FakeDrive> rig(config);
   rig.enable();
-  const JobPlan plan = planJob(paper(), config.machine, {rig.last().command, {}, offset});
-  RC_ASSERT(plan.good());
+  const JobPlan plan = planJob(paper(), config.machine, {rig.last().command, {}, offset_});
+  ASSERT_TRUE(plan.good());
   SetpointStream stream(plan.program);
   rig.start(stream);
   rig.runToEnd();
-  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
-  RC_ASSERT(!rig.last().wheel_in_work);
+  ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
+  ASSERT_FALSE(rig.last().wheel_in_work);
   for (const CycleSample& sample : rig.log) {
-    RC_ASSERT((sample.command <= limits.max_position).all());
-    RC_ASSERT((sample.command >= limits.min_position).all());
+    ASSERT_TRUE((sample.command <= limits.max_position).all());
+    ASSERT_TRUE((sample.command >= limits.min_position).all());
   }
-  const RequestReply jog = rig.jog({kX, false, 0.001, 0.01});
-  RC_ASSERT(jog.accepted);
+  ASSERT_TRUE(rig.jog({kX, false, 0.001, 0.01}).accepted);
 }
 
-RC_GTEST_PROP(WorkOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures, ()) {
+TEST_P(WithOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures) {
   // Up to which only the stroke leaves it, and not the move to its start.
   const double beyond = between(1e-9, 0.037);
-  Axes offset = anyOffset();
-  offset[kX] = 0.3 - kStrokeTo + beyond;
+  offset_[kX] = 0.3 - kStrokeTo + beyond;
   const Machine machine = machineConfig().machine;
-  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset});
-  RC_ASSERT(plan.fault == PlanFault::kLimit);
+  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset_});
+  ASSERT_EQ(plan.fault, PlanFault::kLimit);
   const Reason& reason = plan.reasons.at(0);
-  RC_ASSERT(reason.kind == ReasonKind::kPosition);
-  RC_ASSERT(reason.axis == kX);
-  RC_ASSERT(std::abs(reason.value - (0.3 + beyond)) < 1e-12);
-  RC_ASSERT(reason.limit == 0.3);
-  RC_ASSERT(std::abs(reason.x - kStrokeTo) < 1e-12);
+  ASSERT_EQ(reason.kind, ReasonKind::kPosition);
+  ASSERT_EQ(reason.axis, kX);
+  EXPECT_NEAR(reason.value, 0.3 + beyond, 1e-12);
+  ASSERT_EQ(reason.limit, 0.3);
+  EXPECT_NEAR(reason.x, kStrokeTo, 1e-12);
 
-  offset[kX] -= 2 * beyond;
-  RC_ASSERT(planJob(paper(), machine, {machine.park, {}, offset}).good());
+  offset_[kX] -= 2 * beyond;
+  ASSERT_TRUE(planJob(paper(), machine, {machine.park, {}, offset_}).good());
 }
 
 TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
@@ -153,23 +151,15 @@ TEST(WorkOffsets, UnknownOnesAreNoJobs) {
 }
 
 /// From any place, whose work coordinates are rounded.
-RC_GTEST_PROP(WorkOffsets, AJobStartsWhereItWasPlannedFromAndNowhereElse, ()) {
-  const Axes offset = anyOffset();
+TEST_P(WithOffsets, AJobStartsWhereItWasPlannedFrom) {
   const Axes at(between(-0.1, 0.3), between(0, 0.15), between(-0.05, 0.1), between(-120, 120));
   Rig<FakeDrive> rig;
   rig.drive.place(at);
   rig.enable();
-  Axes elsewhere = at;
-  elsewhere[*rc::gen::inRange(0, 4)] += 1e-9;
-  SetpointStream wrong = streamAt(offset, elsewhere);
-  RC_ASSERT(rig.askToStart(wrong).text ==
-            "start refused: the axes do not stand where the job was planned to start; plan it again");
-  SetpointStream stream = streamAt(offset, at);
-  const RequestReply reply = rig.askToStart(stream);
-  RC_ASSERT(reply.accepted);
-  rig.runUntil(S::kRunning);
-  RC_ASSERT(rig.last().has_setpoint);
-  RC_ASSERT(((rig.last().command - at).abs() <= kUlp * (offset.abs() + at.abs())).all());
+  SetpointStream stream = streamAt(offset_, at);
+  ASSERT_NO_FATAL_FAILURE(rig.start(stream));
+  ASSERT_TRUE(rig.last().has_setpoint);
+  ASSERT_TRUE(((rig.last().command - at).abs() <= kUlp * (offset_.abs() + at.abs())).all());
 }
 
 const Axes kOffset(0.1, 0.0375, -0.02, 7);
@@ -212,44 +202,42 @@ TEST_F(InAShiftedStroke, RetractJogAndResume) {
 }
 
 /// In the middle of a job too the limits are the machine's, and the height to which Y may go down with them.
-RC_GTEST_PROP(WorkOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack, ()) {
-  const Axes offset = anyOffset();
+TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
   Rig<FakeDrive> rig;
   rig.enable();
-  rig.stream.emplace(streamAt(offset, rig.last().command));
+  rig.stream.emplace(streamAt(offset_, rig.last().command));
   rig.start(*rig.stream);
   rig.runTo(MoveKind::kStroke);
-  RC_ASSERT(rig.ask(E::kHold).accepted);
-  rig.runUntil(S::kHeld);
-  RC_ASSERT(rig.ask(E::kRetract).accepted);
-  rig.runUntil(S::kRetracted);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
+  ASSERT_NO_FATAL_FAILURE(rig.retract());
   const AxisLimits limits = machineConfig().machine.limits;
   for (int i = 0; i < 6; ++i) {
-    const int axis = *rc::gen::element(static_cast<int>(kX), static_cast<int>(kY), static_cast<int>(kZ));
-    const bool up = *rc::gen::arbitrary<bool>();
+    const int axis = static_cast<int>(random_() % 3);
+    const bool up = random_() % 2 == 0;
     const double low = axis == kY ? rig.loop->status().wheel.clear_y : limits.min_position[axis];
     const double limit = up ? limits.max_position[axis] : low;
     if (rig.last().command[axis] == limit) continue;
     const double speed = limits.max_velocity[axis] * between(0.5, 1);
-    const bool step = *rc::gen::arbitrary<bool>();
-    RC_ASSERT(!step || rig.jog({axis, false, limit - rig.last().command[axis], speed}).accepted);
+    const bool step = random_() % 2 == 0;
+    if (step) {
+      ASSERT_TRUE(rig.jog({axis, false, limit - rig.last().command[axis], speed}).accepted);
+    }
     for (int cycle = 0; cycle < 20000 && (cycle < 50 || rig.last().state == S::kJoggingRetracted); ++cycle) {
       if (!step && cycle % 20 == 0) rig.loop->postJog({axis, true, 0, up ? speed : -speed});
       rig.cycle();
       static_cast<void>(rig.loop->jogReply());
       const double at = rig.last().command[axis];
-      const bool within = up ? at <= limit : at >= limit;
-      RC_ASSERT(within);
+      ASSERT_TRUE(up ? at <= limit : at >= limit) << at;
     }
-    RC_ASSERT(rig.last().state == S::kRetracted);
-    RC_ASSERT(rig.last().command[axis] == limit);
-    RC_ASSERT(!rig.last().wheel_in_work);
+    ASSERT_EQ(rig.last().state, S::kRetracted);
+    ASSERT_EQ(rig.last().command[axis], limit);
+    ASSERT_FALSE(rig.last().wheel_in_work);
     rig.run(100);
   }
   rig.keepLast();
-  RC_ASSERT(rig.ask(E::kResume).accepted);
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
   rig.runToEnd();
-  RC_ASSERT(rig.loop->status().end == JobEnd::kDone);
+  ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
 }
 
 TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
@@ -260,17 +248,7 @@ TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
   EXPECT_FALSE(rig_.last().wheel_in_work);
 }
 
-TEST_F(InAShiftedStroke, AfterAFaultTheWheelIsLiftedInMachineCoordinates) {
-  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
-  ASSERT_NO_FATAL_FAILURE(rig_.recover());
-  const Axes from = rig_.last().command;
-  ASSERT_NO_FATAL_FAILURE(rig_.lift());
-  EXPECT_TRUE(sameBits(rig_.last().command, Axes(from[kX], rig_.loop->status().wheel.clear_y, from[kZ], from[kA])));
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
-  EXPECT_FALSE(rig_.last().wheel_in_work);
-}
-
-TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
+TEST_F(InAShiftedStroke, AfterAFaultTheLoopAndANewOneLiftItWithoutTheOffset) {
   ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
   const Wheel wheel = rig_.loop->status().wheel;
   EXPECT_NEAR(wheel.lift, kLift, 1e-15);
@@ -280,9 +258,14 @@ TEST_F(InAShiftedStroke, ANewLoopLiftsItWithoutKnowingTheOffset) {
   next.cycle();
   EXPECT_TRUE(next.last().wheel_in_work);
   next.enable();
-  ASSERT_NO_FATAL_FAILURE(next.lift());
-  EXPECT_NEAR(next.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
-  EXPECT_FALSE(next.last().wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig_.recover());
+  for (Rig<FakeDrive>* rig : {&rig_, &next}) {
+    const Axes from = rig->last().command;
+    ASSERT_NO_FATAL_FAILURE(rig->lift());
+    EXPECT_TRUE(sameBits(rig->last().command, Axes(from[kX], wheel.clear_y, from[kZ], from[kA])));
+    EXPECT_NEAR(rig->last().command[kY], kClearanceHeight + 0.0375, 1e-15);
+    EXPECT_FALSE(rig->last().wheel_in_work);
+  }
 }
 
 TEST(WorkOffsets, TheNextJobMayHaveOthers) {

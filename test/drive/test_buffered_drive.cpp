@@ -13,14 +13,13 @@ constexpr std::size_t kDepth = 50;
 /// Makes a drive play each command kDepth cycles after it was written.
 struct Buffer {
   std::deque<Axes> waiting;
-  bool reports = true;  ///< how many wait
 
   void operator()(FakeDrive& drive) {
     if (!drive.status.enabled) return waiting.clear();
     waiting.push_back(toAxes(drive.written));
     if (waiting.size() > kDepth + 1) waiting.pop_front();
     drive.place(waiting.front());
-    drive.status.commands_waiting = reports ? static_cast<std::uint32_t>(waiting.size() - 1) : 0;
+    drive.status.commands_waiting = static_cast<std::uint32_t>(waiting.size() - 1);
   }
 };
 
@@ -69,13 +68,6 @@ TEST_F(BufferedDrive, IsComparedWithWhatTheAxesHaveGotWhichTheStatusReportsToo) 
     const auto last = std::find_if(log.rbegin(), log.rend(), [](const CycleSample& r) { return r.has_setpoint; });
     EXPECT_EQ(static_cast<std::size_t>(last - log.rbegin()), kDepth + 1);
   }
-}
-
-TEST_F(BufferedDrive, ThatDoesNotReportItsBufferFallsBehind) {
-  buffer_.reports = false;
-  rig_.startPaper();
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kFollowingError);
 }
 
 TEST_F(BufferedDrive, IsHeldWhenTheAxesRest) {

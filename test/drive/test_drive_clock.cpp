@@ -1,4 +1,4 @@
-#include "drive/simulated_bench.h"
+#include "control/fixtures.h"
 
 #include <gtest/gtest.h>
 #include <sys/syscall.h>
@@ -159,20 +159,6 @@ TEST_F(Pacing, AFastSimulationTakesHalfACore) {
     }
     EXPECT_EQ(clock_ns - before, 100 * std::max(10 * kMicrosecond, 2 * used * kMicrosecond));
   }
-}
-
-// With the real clock: n waits take at least n - 1 periods, however busy the computer is, since at most one of them
-// returns at once.
-TEST(Drive, WaitsOnTheMonotonicClock) {
-  const auto now_ns = [] {
-    timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return now.tv_sec * 1000000000LL + now.tv_nsec;
-  };
-  EmptyDrive drive;
-  const std::int64_t start = now_ns();
-  for (int i = 0; i < 6; ++i) drive.wait(ros::Duration(0.001));
-  EXPECT_GE(now_ns() - start, 5 * kMillisecond);
 }
 
 }  // namespace

@@ -182,62 +182,43 @@ TEST(TriggerOutput, IsGivenUp) {
   EXPECT_TRUE(output.hasFailed());
 }
 
-struct Hardware {
-  std::string calls;
-  ModeSwitch::Result result = ModeSwitch::Result::kDone;
-  void doSwitch(bool on) { calls += on ? "on " : "off "; }
-  ModeSwitch::Result switchResult() {
-    calls += "result ";
-    return result;
+TEST(ModeSwitch, SwitchesOnceForEveryChangeAndAsksForTheResultUntilItIsThere) {
+  using Result = ModeSwitch::Result;
+  struct Hardware {
+    std::string calls;
+    Result result = Result::kDone;
+    void doSwitch(bool on) { calls += on ? "on " : "off "; }
+    Result switchResult() {
+      calls += "result ";
+      return result;
+    }
+  };
+  const struct {
+    bool wanted;
+    Result result;
+    const char* calls;  ///< of three cycles
+    bool on, refused;
+  } rows[]{{false, Result::kDone, "", false, false},
+           {true, Result::kDone, "on result ", true, false},
+           {false, Result::kDone, "off ", false, false},
+           {true, Result::kOngoing, "on result result result ", false, false},
+           {true, Result::kDone, "result ", true, false},
+           {false, Result::kDone, "off ", false, false},
+           {true, Result::kOngoing, "on result result result ", false, false},
+           {false, Result::kOngoing, "off ", false, false},
+           {true, Result::kError, "on result ", false, true},
+           {true, Result::kDone, "", false, true},
+           {false, Result::kDone, "off ", false, false},
+           {true, Result::kDone, "on result ", true, false}};
+  ModeSwitch mode;
+  for (const auto& row : rows) {
+    SCOPED_TRACE(&row - rows);
+    Hardware hardware{"", row.result};
+    for (int i = 0; i < 3; ++i) mode.update(row.wanted, hardware);
+    EXPECT_EQ(hardware.calls, row.calls);
+    EXPECT_EQ(mode.isOn(), row.on);
+    EXPECT_EQ(mode.isRefused(), row.refused);
   }
-};
-
-TEST(ModeSwitch, SwitchesOnceForEveryChange) {
-  Hardware hardware;
-  ModeSwitch mode;
-  mode.update(false, hardware);
-  EXPECT_EQ(hardware.calls, "");
-  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
-  EXPECT_TRUE(mode.isOn());
-  for (int i = 0; i < 3; ++i) mode.update(false, hardware);
-  EXPECT_FALSE(mode.isOn());
-  EXPECT_EQ(hardware.calls, "on result off ");
-}
-
-TEST(ModeSwitch, WaitsForAResultThatComesLate) {
-  Hardware hardware;
-  ModeSwitch mode;
-  hardware.result = ModeSwitch::Result::kOngoing;
-  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
-  EXPECT_FALSE(mode.isOn() || mode.isRefused());
-  hardware.result = ModeSwitch::Result::kDone;
-  mode.update(true, hardware);
-  EXPECT_TRUE(mode.isOn());
-  EXPECT_EQ(hardware.calls, "on result result result result ");
-}
-
-TEST(ModeSwitch, ThatIsGivenUpMeanwhileIsTakenBack) {
-  Hardware hardware;
-  ModeSwitch mode;
-  hardware.result = ModeSwitch::Result::kOngoing;
-  mode.update(true, hardware);
-  mode.update(false, hardware);
-  EXPECT_EQ(hardware.calls, "on result off ");
-}
-
-TEST(ModeSwitch, ThatFailsIsNotTriedAgainUntilItWasTakenBack) {
-  Hardware hardware;
-  ModeSwitch mode;
-  hardware.result = ModeSwitch::Result::kError;
-  for (int i = 0; i < 3; ++i) mode.update(true, hardware);
-  EXPECT_TRUE(mode.isRefused());
-  EXPECT_FALSE(mode.isOn());
-  mode.update(false, hardware);
-  EXPECT_FALSE(mode.isRefused());
-  hardware.result = ModeSwitch::Result::kDone;
-  mode.update(true, hardware);
-  EXPECT_TRUE(mode.isOn());
-  EXPECT_EQ(hardware.calls, "on result off on result ");
 }
 
 class Parameters : public testing::Test {

@@ -6,6 +6,7 @@
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -42,6 +43,25 @@ class JournalTest : public ::testing::Test {
   std::string path_ = folder_ + "/journal";
 };
 
+/// Nobody may use a file or a folder while this lives; root, who may always, is nobody meanwhile.
+class Forbidden {
+ public:
+  explicit Forbidden(const std::string& path) : path_(path) {
+    permit(std::filesystem::perms::none);
+    EXPECT_EQ(seteuid(user_ == 0 ? 65534 : user_), 0);
+  }
+  ~Forbidden() {
+    EXPECT_EQ(seteuid(user_), 0);
+    permit(std::filesystem::perms::owner_all);
+  }
+
+ private:
+  void permit(std::filesystem::perms permissions) { std::filesystem::permissions(path_, permissions); }
+
+  const std::string path_;
+  const uid_t user_ = geteuid();
+};
+
 /// No figure of it is a default, nor like another.
 inline Progress someProgress() {
   Progress p;
@@ -53,6 +73,8 @@ inline Progress someProgress() {
   p.finished = true;
   p.next = {2, 7};
   p.x = 0.1 + 0.2;
+  p.end = "canceled";
+  p.feed_override = 0.36;
   p.wheel.in_work = true;
   p.wheel.clear_y = 0.0125;
   p.wheel.lift = 0.005;
@@ -74,6 +96,8 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.next.tooth, b.next.tooth);
   EXPECT_EQ(a.next.pass, b.next.pass);
   EXPECT_EQ(a.x, b.x);
+  EXPECT_EQ(a.end, b.end);
+  EXPECT_EQ(a.feed_override, b.feed_override);
   EXPECT_EQ(a.wheel.in_work, b.wheel.in_work);
   EXPECT_EQ(a.wheel.clear_y, b.wheel.clear_y);
   EXPECT_EQ(a.wheel.lift, b.wheel.lift);

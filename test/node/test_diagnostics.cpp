@@ -266,11 +266,6 @@ TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
   EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
 }
 
-TEST_F(DiagnosticsTest, NoSetpointsLeaveNoMargin) {
-  watch();
-  expect(&Diagnostics::reportLimits, DiagnosticStatus::OK, "no setpoints");
-}
-
 TEST_F(DiagnosticsTest, MarginOfPositionIsTheNearerLimits) {
   // X from -0.1 to 0.3: 0.05 of half a range of 0.2 are left; Y from -0.02 to 0.15: 0.015 of 0.085.
   write({-0.05, 0.135, 0.025, 0});
@@ -334,41 +329,30 @@ TEST_F(DiagnosticsTest, NextJobBeginsAfresh) {
   EXPECT_EQ(value(status, "axis_x velocity margin [%]"), "100");
 }
 
-TEST_F(DiagnosticsTest, SetpointThatWasRefusedIsAnError) {
-  watch();
-  sample_.state = MachineState::kFault;
-  sample_.fault.kind = FaultKind::kLimit;
-  sample_.fault.violation = {kA, LimitedQuantity::kVelocity, -25.132, 12.566, 8, 0, MoveKind::kStroke};
-  watch();
-  const auto status =
-      expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, "axis_a velocity at 200 % of its limit");
-  EXPECT_EQ(value(status, "axis_a velocity margin [%]"), "-100");
-  watch();
-  EXPECT_EQ(ask(&Diagnostics::reportLimits).message, "no setpoints");
-}
-
-TEST_F(DiagnosticsTest, RefusedPositionsAreErrors) {
+TEST_F(DiagnosticsTest, SetpointsThatWereRefusedAreErrorsOnce) {
   const struct {
+    int axis;
     LimitedQuantity quantity;
-    double position;
-    const char* message;
-  } rows[]{// 0.25 from the middle of -0.1 to 0.3, of 0.2.
-           {LimitedQuantity::kPosition, 0.35, "axis_x position at 125 % of its limit"},
-           {LimitedQuantity::kNotFinite, kNan, "axis_x position at nan % of its limit"}};
+    double value, limit;
+    const char *message, *name, *margin;
+  } rows[]{{kA, LimitedQuantity::kVelocity, -25.132, 12.566, "axis_a velocity at 200 % of its limit",
+            "axis_a velocity margin [%]", "-100"},
+           // 0.25 from the middle of -0.1 to 0.3, of 0.2.
+           {kX, LimitedQuantity::kPosition, 0.35, 0.3, "axis_x position at 125 % of its limit",
+            "axis_x position margin [%]", "-25"},
+           {kX, LimitedQuantity::kNotFinite, kNan, 0.3, "axis_x position at nan % of its limit",
+            "axis_x position margin [%]", "nan"}};
   for (const auto& row : rows) {
     sample_.state = MachineState::kReady;
     watch();
     sample_.state = MachineState::kFault;
     sample_.fault.kind = FaultKind::kLimit;
-    sample_.fault.violation = {kX, row.quantity, row.position, 0.3, 8, 0, MoveKind::kStroke};
+    sample_.fault.violation = {row.axis, row.quantity, row.value, row.limit, 8, 0, MoveKind::kStroke};
     watch();
-    expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, row.message);
+    EXPECT_EQ(value(expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, row.message), row.name), row.margin);
+    watch();
+    expect(&Diagnostics::reportLimits, DiagnosticStatus::OK, "no setpoints");
   }
-}
-
-TEST_F(DiagnosticsTest, DriveWithoutBufferIsReportedSo) {
-  watch();
-  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "the drive does not buffer");
 }
 
 TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
@@ -394,7 +378,9 @@ TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
   EXPECT_EQ(min(49).level, DiagnosticStatus::OK);
 }
 
-TEST_F(DiagnosticsTest, BufferIsEmptyWithoutPower) {
+TEST_F(DiagnosticsTest, BufferIsReportedOfADriveThatHasOneAndUnderPower) {
+  watch();
+  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "the drive does not buffer");
   sample_.drive.commands_waiting = 50;
   watch();
   ask(&Diagnostics::reportBuffer);

@@ -35,20 +35,6 @@ class JobGateTest : public testing::Test {
   bool held_ = false;
 };
 
-TEST_F(JobGateTest, NothingStartsWithoutAGoal) {
-  EXPECT_FALSE(start());
-  EXPECT_FALSE(gate_.hold());
-  EXPECT_EQ(started_, 0);
-}
-
-TEST_F(JobGateTest, AGoalStartsOnce) {
-  open();
-  EXPECT_TRUE(start());
-  EXPECT_FALSE(held_);
-  EXPECT_FALSE(start());
-  EXPECT_EQ(started_, 1);
-}
-
 TEST_F(JobGateTest, ACancelAheadOfTheStartKeepsItFromStarting) {
   for (const auto& cancel : {id("job"), kAll, id("", 10), id("", 11), id("another", 10)}) {
     open();
@@ -111,13 +97,18 @@ TEST_F(JobGateTest, ResumeTakesALatchedHoldBack) {
   EXPECT_FALSE(gate_.resume()) << "from now on it is for the loop";
 }
 
-TEST_F(JobGateTest, AHoldOfOneGoalIsNotForTheNext) {
+TEST_F(JobGateTest, AGoalStartsOnceAndNothingWithoutOneAndAHoldOfOneIsNotForTheNext) {
   open();
   EXPECT_TRUE(gate_.hold());
   gate_.close();
+  EXPECT_FALSE(start());
+  EXPECT_FALSE(gate_.hold());
+  EXPECT_EQ(started_, 0);
   open(id("next", 20));
   EXPECT_TRUE(start());
   EXPECT_FALSE(held_);
+  EXPECT_FALSE(start());
+  EXPECT_EQ(started_, 1);
 }
 
 TEST_F(JobGateTest, OnceShutItStaysShut) {

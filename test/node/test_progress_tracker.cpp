@@ -18,11 +18,11 @@ namespace test_progress_tracker {
 const ToothPass kFirst{0, 0};
 
 /// One tooth in as many passes.
-GrindProgram program(int passes) {
+GrindProgram program(int passes, const Axes& offset = Axes::Zero()) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   job.process.infeed = job.process.depth / passes;
   const Machine machine = test_support::machineConfig().machine;
-  return {ValidJob(job), machine, machine.park};
+  return {ValidJob(job), machine, {machine.park, {}, offset}};
 }
 
 /// Index of the stroke of a pass.
@@ -54,7 +54,14 @@ class ProgressTrackerTest : public ::testing::Test {
     status_.strokes_ended_at = strokeOf(program, pass) + 1;
     tracker_.update(status_);
   }
+  /// A job that is canceled after so many passes.
+  void grind(const GrindProgram& program, const std::string& digest, int passes) {
+    begin(program, digest);
+    for (int pass = 0; pass < passes; ++pass) endStroke(program, pass);
+    tracker_.end(status_, "canceled");
+  }
 
+  const GrindProgram two_ = program(2);
   const test_support::TempFolder folder_;
   JournalWriter writer_{folder_.path() / "journal", "/test"};
   ProgressTracker tracker_{writer_};
@@ -62,41 +69,36 @@ class ProgressTrackerTest : public ::testing::Test {
 };
 
 TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
-  const GrindProgram two = program(2);
-  begin(two, "job");
+  begin(two_, "job");
   EXPECT_EQ(onDisk().next.pass, 0);
   EXPECT_TRUE(onDisk().wheel.in_work) << "until its end";
-  endStroke(two, 0);
+  endStroke(two_, 0);
   EXPECT_EQ(onDisk().next.pass, 1);
   EXPECT_FALSE(onDisk().finished);
-  endStroke(two, 1);
+  endStroke(two_, 1);
   EXPECT_TRUE(onDisk().finished);
-  EXPECT_DOUBLE_EQ(onDisk().x, two.strokeTo());
+  EXPECT_DOUBLE_EQ(onDisk().x, two_.strokeTo());
   tracker_.end(status_, "canceled");
   EXPECT_FALSE(onDisk().wheel.in_work);
 }
 
 TEST_F(ProgressTrackerTest, EntersHowAJobEndedAndItsFeedOverride) {
-  const GrindProgram two = program(2);
   status_.feed_override = 0.36;
   tracker_.update(status_);
-  begin(two, "job");
+  begin(two_, "job");
   EXPECT_EQ(onDisk().feed_override, 0.36) << "before its first stroke";
   EXPECT_EQ(onDisk().end, "") << "as long as it runs";
   status_.feed_override = 0.8;
-  endStroke(two, 0);
+  endStroke(two_, 0);
   EXPECT_EQ(onDisk().feed_override, 0.8);
   tracker_.end(status_, "canceled");
   EXPECT_EQ(onDisk().end, "canceled");
-  begin(two, "next");
+  begin(two_, "next");
   EXPECT_EQ(onDisk().end, "");
 }
 
 TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
-  const GrindProgram three = program(3);
-  begin(three, "long");
-  for (int pass = 0; pass < 3; ++pass) endStroke(three, pass);
-  tracker_.end(status_, "canceled");
+  grind(program(3), "long", 3);
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
@@ -109,24 +111,18 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
 }
 
 TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
-  const GrindProgram two = program(2);
-  begin(two, "left");
-  endStroke(two, 0);
-  tracker_.end(status_, "canceled");
+  grind(two_, "left", 1);
   const Progress before = onDisk();
-  tracker_.begin(two, "refused", "refused.yaml", status_.jobs_started + 1);
+  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1);
   EXPECT_EQ(onDisk().job_digest, "refused");
   tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);
   EXPECT_EQ(onDisk().next.pass, before.next.pass);
 }
 
-TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
-  const GrindProgram two = program(2);
+TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOtherAndAFinishedOneOfNone) {
   EXPECT_EQ(tracker_.refusal("job", kFirst), "");
-  begin(two, "job");
-  endStroke(two, 0);
-  tracker_.end(status_, "canceled");
+  grind(two_, "job", 1);
   EXPECT_EQ(tracker_.refusal("job", {0, 1}), "") << "it is continued";
   EXPECT_NE(tracker_.refusal("job", kFirst), "") << "from its beginning";
   const std::string other = tracker_.refusal("other", kFirst);
@@ -134,6 +130,9 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOther) {
             std::string::npos)
       << other;
   EXPECT_NE(other.find("discard"), std::string::npos);
+  grind(two_, "job", 2);
+  EXPECT_EQ(tracker_.refusal("other", kFirst), "");
+  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
 }
 
 TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
@@ -146,15 +145,10 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
 }
 
 TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
-  GrindJob job = readJobFile("test/jobs/paper.yaml");
-  job.process.infeed = job.process.depth / 2;
-  const Machine machine = test_support::machineConfig().machine;
   const Axes offset(0.1, 0.03, 0, 0.5);
-  const GrindProgram two(ValidJob(job), machine, {machine.park, {}, offset});
-  begin(two, "job");
+  const GrindProgram shifted = program(2, offset);
+  grind(shifted, "job", 1);
   EXPECT_TRUE((onDisk().offset == offset).all());
-  endStroke(two, 0);
-  tracker_.end(status_, "canceled");
   EXPECT_EQ(tracker_.offsetRefusal("job", offset), "");
   EXPECT_EQ(tracker_.offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
   EXPECT_EQ(tracker_.offsetRefusal("job", {0.1, 0.03125, 0, 0}),
@@ -165,21 +159,9 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
                             Axes(0.1, 0.03, 0, 0.5 - 1.1e-6), Axes(std::nan(""), 0.03, 0, 0.5)}) {
     EXPECT_NE(tracker_.offsetRefusal("job", other), "") << other.transpose();
   }
-  begin(two, "job");
-  endStroke(two, 0);
-  endStroke(two, 1);
-  tracker_.end(status_, "canceled");
+  grind(shifted, "job", 2);
   EXPECT_EQ(tracker_.offsetRefusal("job", Axes::Zero()), "") << "it is finished";
   EXPECT_TRUE(onDisk().finished);
-}
-
-TEST_F(ProgressTrackerTest, AFinishedOneIsNot) {
-  const GrindProgram one = program(1);
-  begin(one, "job");
-  endStroke(one, 0);
-  tracker_.end(status_, "canceled");
-  EXPECT_EQ(tracker_.refusal("other", kFirst), "");
-  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
 }
 
 TEST_F(ProgressTrackerTest, TheWheelIsEnteredWithoutAJobToo) {

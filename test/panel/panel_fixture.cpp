@@ -116,12 +116,11 @@ void Panel::press(const char* name) {
   click(name);
 }
 
-void Panel::doubleClick(QAbstractButton& button, int pause, const std::function<void()>& between) {
+void Panel::doubleClick(QAbstractButton& button, int pause) {
   constexpr int kDesktopsDoubleClick = 400;
   const QPoint place = button.mapTo(panel_.get(), button.rect().center());
   const int begun = ++QTest::lastMouseTimestamp;
   clickAt(place, QEvent::MouseButtonPress);
-  between();
   QTest::lastMouseTimestamp = begun + pause;
   clickAt(place, pause <= kDesktopsDoubleClick ? QEvent::MouseButtonDblClick : QEvent::MouseButtonPress);
   QTest::lastMouseTimestamp += 1000;

@@ -17,7 +17,6 @@
 #include <QtTest>
 #include <pluginlib/class_loader.hpp>
 
-#include <functional>
 #include <memory>
 #include <set>
 #include <string>
@@ -66,10 +65,8 @@ class Panel {
   void plan();
   /// Clicks a button, once it takes clicks.
   void press(const char* name);
-  /// Clicks a button, and once more at the same place, whatever is there by then. @param pause between them, as the
-  /// events have it [ms]. @param between what happens meanwhile.
-  void doubleClick(
-      QAbstractButton& button, int pause, const std::function<void()>& between = [] {});
+  /// Clicks a button, and once more at the same place. @param pause between them, as the events have it [ms].
+  void doubleClick(QAbstractButton& button, int pause);
   std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
   std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
   /// Whether a text of the panel, or a label of it, has this in it.

@@ -397,28 +397,53 @@ TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
   EXPECT_EQ(panel.label("place"), "No job runs");
 }
 
-TEST_F(OnStage, PlanAndDryRunSayTheSame) {
+TEST_F(OnStage, WhatAPlanSaysIsShown) {
+  const auto verdict = [&] { return panel.text("verdict"); };
+  const std::string shank = "\nThe first pass cuts 0.375 mm more than its infeed out of the shank.";
+  flute_grinder::FeedLimit limit;
+  limit.cause = "axis A velocity";
+  limit.from_x = 0.003;
+  limit.to_x = 0.0052;
   stage.change([&] {
+    stage.plan.duration = 725;
+    stage.plan.statistics.min_feed = 0.4 / 60;
+    stage.plan.statistics.max_feed = 0.6 / 60;
+    stage.plan.statistics.feed_limits = {limit};
+  });
+  panel.plan();
+  EXPECT_EQ(verdict(),
+            "Takes 12:05 min.\nFeed 400.0 to 600.0 mm/min, limited by\naxis A velocity, X 3.000 to 5.200 mm" + shank);
+  stage.change([&] {
+    stage.plan = {};
+    stage.plan.valid = 1;
     stage.plan.duration = 7.03;
     stage.plan.closest_bodies = {"wheel", "collet"};
     stage.plan.closest_distance = 1.4214e-3;
     stage.plan.closest_x = 0.037;
     stage.plan.warnings = {"X was never set; Y was never set"};
   });
-  const std::string verdict =
+  panel.press("plan");
+  const std::string good =
       "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
-      "Zero points: X was never set; Y was never set.\nThe feed is never reached.\n"
-      "The first pass cuts 0.375 mm more than its infeed out of the shank.";
-  panel.plan();
-  EXPECT_EQ(panel.text("verdict"), verdict);
+      "Zero points: X was never set; Y was never set.\nThe feed is never reached." +
+      shank;
+  WAIT_FOR(verdict() == good);
   panel.press("dry_run");
-  WAIT_FOR(panel.text("verdict") == "Planning ..." && goals().size() == 1);
-  flute_grinder::GrindResult good;
-  good.error_string = "planned and checked; nothing moved";
-  stage.end(goals().at(0).goal_id.id, good);
-  WAIT_FOR(panel.text("verdict") == verdict && panel.enabled("start"));
+  WAIT_FOR(verdict() == "Planning ..." && goals().size() == 1);
+  flute_grinder::GrindResult dry;
+  dry.error_string = "planned and checked; nothing moved";
+  stage.end(goals().at(0).goal_id.id, dry);
+  WAIT_FOR(verdict() == good && panel.enabled("start"));
   EXPECT_EQ(said(panel), "Planned and checked; nothing moved");
   panel.picture("dry_run");
+  const std::vector<std::string> reasons{
+      "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
+      "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
+  stage.change([&] { stage.plan.valid = 0, stage.plan.reasons = reasons; });
+  panel.press("plan");
+  WAIT_FOR(verdict() == "Cannot be ground:\n" + reasons[0] + '\n' + reasons[1]);
+  WAIT_FOR(panel.enabledRequests() == (Names{"disable", "home"}));
+  panel.picture("cannot_be_ground");
 }
 
 TEST_F(OnStage, ADryRunCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
@@ -449,18 +474,6 @@ class BeforeTheSwivelIsSet : public OnStage {
   bool asks() { return panel.isVisible("confirm_swivel"); }
 };
 
-TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmed) {
-  start();
-  EXPECT_EQ(panel.text("swivel_question"), "Set the swivel to 31.769 deg. Is it set and clamped?");
-  panel.picture("swivel_question");
-  panel.press("confirm_swivel");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(asks());
-  ASSERT_EQ(swivels().size(), 1U);
-  EXPECT_DOUBLE_EQ(swivels()[0], 31.769 * M_PI / 180);
-  EXPECT_FALSE(goals().at(0).goal.discard);
-}
-
 TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
   EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
   setSwivel(43.32 * M_PI / 180, false);
@@ -477,8 +490,10 @@ TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
   WAIT_FOR(panel.label("swivel").empty());
 }
 
-TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
+TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmedOnly) {
   start();
+  EXPECT_EQ(panel.text("swivel_question"), "Set the swivel to 31.769 deg. Is it set and clamped?");
+  panel.picture("swivel_question");
   panel.press("decline_swivel");
   WAIT_FOR(!asks());
   EXPECT_TRUE(panel.enabled("start")) << "the plan is still good";
@@ -488,7 +503,14 @@ TEST_F(BeforeTheSwivelIsSet, NothingIsStartedWithoutTheConfirmation) {
   WAIT_FOR(panel.says("messages", "Confirm-swivel refused: for a test"));
   EXPECT_FALSE(asks());
   EXPECT_EQ(goals().size(), 0U);
-  EXPECT_EQ(swivels().size(), 1U);
+  stage.change([&] { stage.swivel_refusal = ""; });
+  start();
+  panel.press("confirm_swivel");
+  WAIT_FOR(goals().size() == 1);
+  EXPECT_FALSE(asks());
+  ASSERT_EQ(swivels().size(), 2U);
+  EXPECT_DOUBLE_EQ(swivels()[1], 31.769 * M_PI / 180);
+  EXPECT_FALSE(goals().at(0).goal.discard);
 }
 
 TEST_F(BeforeTheSwivelIsSet, TheQuestionGoesWhenSomebodyElseConfirmsIt) {
@@ -540,9 +562,6 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
       "Once this job starts it cannot be continued.");
   EXPECT_FALSE(panel.isVisible("keep")) << "the chosen file is another job";
   panel.picture("discard_question");
-  panel.press("decline_unfinished");
-  WAIT_FOR(!panel.isVisible("discard"));
-  startAndBeAsked("discard");
   EXPECT_EQ(goals().size(), 0U);
   panel.press("discard");
   WAIT_FOR(goals().size() == 1);
@@ -638,34 +657,6 @@ TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
   WAIT_FOR(stage.get(&Stage::overrides).size() == 2);
   EXPECT_EQ(stage.get(&Stage::overrides).at(1), 0);
   WAIT_FOR(panel.shows("meaning", "override is 0 %"));
-}
-
-TEST_F(OnStage, WhatForbidsAJobIsShownAndTheJobIsNotStarted) {
-  const std::vector<std::string> reasons{
-      "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
-      "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
-  stage.change([&] { stage.plan.valid = 0, stage.plan.reasons = reasons; });
-  panel.press("plan");
-  WAIT_FOR(panel.text("verdict") == "Cannot be ground:\n" + reasons[0] + '\n' + reasons[1]);
-  WAIT_FOR(panel.enabledRequests() == (Names{"disable", "home"}));
-  panel.picture("cannot_be_ground");
-}
-
-TEST_F(OnStage, WhatLimitsTheFeedIsShown) {
-  flute_grinder::FeedLimit limit;
-  limit.cause = "axis A velocity";
-  limit.from_x = 0.003;
-  limit.to_x = 0.0052;
-  stage.change([&] {
-    stage.plan.duration = 725;
-    stage.plan.statistics.min_feed = 0.4 / 60;
-    stage.plan.statistics.max_feed = 0.6 / 60;
-    stage.plan.statistics.feed_limits = {limit};
-  });
-  panel.plan();
-  EXPECT_EQ(panel.text("verdict"),
-            "Takes 12:05 min.\nFeed 400.0 to 600.0 mm/min, limited by\naxis A velocity, X 3.000 to 5.200 mm\n"
-            "The first pass cuts 0.375 mm more than its infeed out of the shank.");
 }
 
 TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {

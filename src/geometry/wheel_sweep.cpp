@@ -118,11 +118,12 @@ double WheelSweep::lowestPoint(double axis_x) const noexcept {
   return centre_ + axis_x * y_per_x_ + deepest_deviation_ - wheel_.maxRadius();
 }
 
-double WheelSweep::outside(const Pose& p, double y, double z) const noexcept {
+WheelSweep::FromWheel WheelSweep::fromWheel(const Pose& p, double y, double z) const noexcept {
   const double dy = y - p.y, dz = z - p.z;
   const double w = dz * cos_ - p.dx * sin_;
   const double t = dz * sin_ + p.dx * cos_;
-  return std::sqrt(dy * dy + t * t) - wheel_.radius(std::clamp(w, wheel_.lowerFace(), wheel_.upperFace()));
+  const double from_axis = std::sqrt(dy * dy + t * t);
+  return {from_axis, from_axis - wheel_.radius(std::clamp(w, wheel_.lowerFace(), wheel_.upperFace()))};
 }
 
 WheelSweep::Window WheelSweep::reach(double x, double r) const noexcept {
@@ -171,26 +172,36 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
   const double lowest = p.y - wheel_.maxRadius();
   if (lowest >= r) return std::nullopt;
   // Where the circle lies between the wheel's faces and not below its lowest point.
-  const double open = std::acos(std::clamp(lowest / r, 0.0, 1.0));
-  const auto at_face = [&](double w) { return std::asin(std::clamp((p.z + (w + p.dx * sin_) / cos_) / r, -1.0, 1.0)); };
-  const double min = std::max(-open, at_face(wheel_.lowerFace()));
-  const double max = std::min(open, at_face(wheel_.upperFace()));
-  if (!(min < max)) return std::nullopt;
+  const double cos_open = std::max(0.0, lowest / r), sin_open = std::sqrt(1 - cos_open * cos_open);
+  const auto sin_at_face = [&](double w) { return (p.z + (w + p.dx * sin_) / cos_) / r; };
+  const double sin_min = sin_at_face(wheel_.lowerFace()), sin_max = sin_at_face(wheel_.upperFace());
+  if (!(std::max(-sin_open, sin_min) < std::min(sin_open, sin_max))) return std::nullopt;
+  const double open = std::acos(cos_open);
+  const double min = -sin_open < sin_min ? std::asin(sin_min) : -open;
+  const double max = sin_max < sin_open ? std::asin(sin_max) : open;
 
   // From the end inward to the first point that is in the wheel.
   const double end = high ? max : min;
   const double step = ((high ? min : max) - end) / kAnglesPerPose;
   const double cos_step = std::cos(step), sin_step = std::sin(step);
   double y = r * std::cos(end), z = r * std::sin(end);
-  PlaceOnCircle before{end, outside(p, y, z)}, nearest = before;
+  double closest = kInfinite;  // to the spindle's axis
+  const auto placeAt = [&](double theta) {
+    const FromWheel from = fromWheel(p, y, z);
+    closest = std::min(closest, from.spindle);
+    return PlaceOnCircle{theta, from.outside};
+  };
+  PlaceOnCircle before = placeAt(end), nearest = before;
   if (before.outside <= 0) return end;
   for (int i = 1; i <= kAnglesPerPose; ++i) {
     std::tie(y, z) = std::make_tuple(y * cos_step - z * sin_step, z * cos_step + y * sin_step);
-    const PlaceOnCircle here{end + i * step, outside(p, y, z)};
+    const PlaceOnCircle here = placeAt(end + i * step);
     if (here.outside <= 0) return endBetween(p, r, here, before);
     if (here.outside < nearest.outside) nearest = here;
     before = here;
   }
+  // The distance from the axis changes by no more than the way along the circle.
+  if (closest > wheel_.maxRadius() + r * std::abs(step) / 2) return std::nullopt;
   const auto f = [&](double theta) { return outside(p, r * std::cos(theta), r * std::sin(theta)); };
   std::uintmax_t steps = kMaxPoseSteps;
   const double way = std::abs(step);

@@ -124,8 +124,12 @@ class WheelSweep {
   /// Where the circle leaves the wheel. @param in a place in the wheel. @param out one outside.
   double endBetween(const Pose& pose, double r, PlaceOnCircle in, PlaceOnCircle out) const noexcept;
   double endOver(double x, double axis_x, double r, bool high) const;
-  /// How far a point of the section is outside the wheel: below 0 in it [m].
-  double outside(const Pose& pose, double y, double z) const noexcept;
+  /// How far a point of the section is from the spindle's axis, and outside the wheel: below 0 in it [m].
+  struct FromWheel {
+    double spindle, outside;
+  };
+  FromWheel fromWheel(const Pose& pose, double y, double z) const noexcept;
+  double outside(const Pose& pose, double y, double z) const noexcept { return fromWheel(pose, y, z).outside; }
   struct Extremum {
     double value;
     double axis_x;

@@ -29,7 +29,7 @@ class WithOffsets : public testing::TestWithParam<int> {
   std::mt19937 random_{static_cast<unsigned>(GetParam())};
   Axes offset_{between(-0.09, 0.26), between(-0.018, 0.041), between(-0.049, 0.09), between(-120, 120)};
 };
-INSTANTIATE_TEST_SUITE_P(, WithOffsets, testing::Range(0, randomCases(100)));
+INSTANTIATE_TEST_SUITE_P(, WithOffsets, testing::Range(0, randomCases(30)));
 
 /// Whether c is p + o, rounded once.
 bool isSum(double c, double p, double o) {

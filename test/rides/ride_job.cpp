@@ -13,7 +13,7 @@ namespace grinder::test_support {
 
 namespace {
 
-constexpr double kMostCycles = 20000;  ///< of an undisturbed job
+constexpr double kMostCycles = 8000;  ///< of an undisturbed job
 
 Machine randomMachine(Random& random) {
   Machine m;

@@ -30,7 +30,6 @@ using S = MachineState;
 
 constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
-constexpr double kEventEvery = 300;    ///< cycles
 constexpr double kRecoverEvery = 100;  ///< cycles; at once when no event is to come
 
 /// Axes that reach every command at once, and what can go wrong with them.
@@ -123,7 +122,8 @@ struct RideResult {
 
 class Ride {
  public:
-  explicit Ride(std::uint64_t number) : random_(number), job_(randomJob(random_)), watch_(job_.asked) {
+  explicit Ride(std::uint64_t number)
+      : random_(number), job_(randomJob(random_)), event_every_(acrossDecades(random_, 30, 300)), watch_(job_.asked) {
     drive_.place(job_.machine.park);
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
     loop_->postSwivel(job_.job->process.setup_swivel);
@@ -154,7 +154,7 @@ class Ride {
   }
 
   void cycle() {
-    if (result_.events < kMostEvents && flip(random_, 1 / kEventEvery)) happen();
+    if (result_.events < kMostEvents && flip(random_, 1 / event_every_)) happen();
     if (result_.events >= kMostEvents || flip(random_, 1 / kRecoverEvery)) recover();
     keepJogging();
     late_ = periods_ > 1;
@@ -268,6 +268,7 @@ class Ride {
 
   Random random_;
   RideJob job_;
+  double event_every_;  ///< cycles
   second_opinion::Watch watch_;
   RideDrive drive_;
   std::unique_ptr<ControlLoop> loop_;

@@ -26,7 +26,10 @@ Real spline(Real t) {
   if (t > 3) t = 6 - t;
   constexpr int choose[]{1, 6, 15};
   Real sum = 0;
-  for (int j = 0; j < 3 && t > j; ++j) sum += (j % 2 == 0 ? choose[j] : -choose[j]) * std::pow(t - j, Real(5));
+  for (int j = 0; j < 3 && t > j; ++j) {
+    const Real part = t - j;
+    sum += (j % 2 == 0 ? choose[j] : -choose[j]) * part * part * part * part * part;
+  }
   return sum / 120;
 }
 

@@ -395,6 +395,20 @@ class TestSlowDisk(JournalTest):
         run.wait()
         self.assertEqual((run.status, run.setpoints), ('PREEMPTED', []))
 
+    def test_strokes_go_on_and_progress_waits_for_the_disk(self):
+        run = self.hold_in_stroke_of(0, 1)
+        journal = self.wait_left(run)
+        gc.poll(lambda: self.client.fresh_state().progress.x == journal['x_m'], 'the place reported')
+        self.disk.stop()
+        self.assertTrue(self.client.set_feed_override(1).success)
+        self.assertTrue(self.client.resume().success)
+        run.wait_past(lambda s: (s.tooth, s.pass_) == (2, 0), 'the last tooth')
+        self.check_reported(journal)
+        self.assertEqual(self.read_journal(), journal)
+        self.disk.release()
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+
 
 class TestFailingDisk(JournalTest):
     """What cannot be entered is not ground."""

@@ -49,6 +49,7 @@ flute_grinder::JobProgress progress() {
   progress.job_name = "mill";
   progress.job_digest = "0123456789abcdef";
   progress.cutter.end_diameter = 0.012;
+  progress.cutter.flute_length = 0.0625;
   progress.cutter.tooth_angles = {0, 1, 2};
   progress.tooth = 1;
   progress.pass = 4;
@@ -75,10 +76,15 @@ TEST(StatusJson, CountsFromOneAndInShopUnits) {
   state.state_name = "running";
   state.state = flute_grinder::GrinderState::RUNNING;
   state.swivel = 0.5;
+  state.enabled = state.homed = state.coolant_commanded = state.wheel_in_work = 1;
+  state.position = {0.001, 0, 0, 0};
+  state.work_position = {0, 0.004, 0, 0};
+  state.distance_to_go = {0, 0, 0.008, 0};
   state.feed = 0.01;
   state.override = 0.75;
   state.tooth = 2;
   state.progress = progress();
+  state.progress.cutter.cone_angle = state.progress.cutter.spiral_angle = state.progress.cutter.rake_angle = 0.5;
   const Json json = toJson("/left", state, nullptr);
   EXPECT_EQ(json["grinder"], "/left");
   EXPECT_NEAR(json["swivel_deg"].get<double>(), 90 / M_PI, 1e-12);
@@ -87,8 +93,23 @@ TEST(StatusJson, CountsFromOneAndInShopUnits) {
   EXPECT_EQ(json["tooth"], 3);
   EXPECT_EQ(json["pass"], 1);
   EXPECT_TRUE(json["zero_points"].is_null());
+  for (const char* set : {"enabled", "homed", "coolant_commanded", "wheel_in_work"}) {
+    EXPECT_EQ(json[set], true) << set;
+  }
+  for (const char* unset :
+       {"spindle_at_speed", "coolant_on", "spindle_commanded", "emergency_stop", "swivel_measured"}) {
+    EXPECT_EQ(json[unset], false) << unset;
+  }
+  EXPECT_EQ(json["machine"]["x_mm"], 1);
+  EXPECT_EQ(json["work"]["y_mm"], 4);
+  EXPECT_EQ(json["to_go"]["z_mm"], 8);
   EXPECT_EQ(json["last_job"]["pass"], 5);
+  EXPECT_NEAR(json["last_job"]["x_mm"].get<double>(), 12.3456, 1e-9);
   EXPECT_EQ(json["last_job"]["cutter"]["teeth"], 3);
+  EXPECT_EQ(json["last_job"]["cutter"]["flute_length_mm"], 62.5);
+  for (const char* angle : {"cone_angle_deg", "spiral_angle_deg", "rake_angle_deg"}) {
+    EXPECT_NEAR(json["last_job"]["cutter"][angle].get<double>(), 90 / M_PI, 1e-12) << angle;
+  }
   state.state = flute_grinder::GrinderState::READY;
   state.progress.job_digest.clear();
   EXPECT_TRUE(toJson("/left", state, nullptr)["tooth"].is_null());

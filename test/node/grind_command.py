@@ -4,12 +4,11 @@ import contextlib
 import fcntl
 import json
 import os
+import pathlib
 import pty
-import shutil
 import signal
 import struct
 import subprocess
-import tempfile
 import termios
 import threading
 import unittest
@@ -30,15 +29,13 @@ class CommandLine(unittest.TestCase):
     """Runs commands to their end."""
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
 
     def path(self, name):
         return os.path.join(self.folder, name)
 
     def write(self, name, text):
-        with open(self.path(name), 'w') as file:
-            file.write(text)
+        pathlib.Path(self.path(name)).write_text(text)
         return self.path(name)
 
     def grind(self, status, *arguments):
@@ -52,8 +49,7 @@ class CommandLine(unittest.TestCase):
         """That what cannot be printed is no success: to a disk that is full, and with no standard output."""
         for close in (None, lambda: os.close(1)):
             with open('/dev/full', 'w') as full:
-                done = subprocess.run([gc.program('grind'), *arguments], stdout=full, stderr=subprocess.PIPE,
-                                      universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=close)
+                done = gc.grind(*arguments, stdout=full, preexec_fn=close)
             self.assertEqual(done.returncode, 1, arguments)
             self.assertTrue(done.stderr.endswith('standard output: write failed\n'), done.stderr)
 
@@ -119,8 +115,7 @@ class Command:
 
 class RunTest(unittest.TestCase):
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
 
     def grind(self, *arguments, **options):
         command = Command(*arguments, **options)
@@ -130,6 +125,14 @@ class RunTest(unittest.TestCase):
     def short_job(self, **changes):
         return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
                            clearance_mm=1, **changes)
+
+    def grind_into_stroke(self, *arguments, client=None, **options):
+        """The paper's job, whatever the journal keeps; once it is in its stroke, with how many batches there were ahead of it."""
+        client = client or gc.grinder()
+        seen = len(client.batches)
+        command = self.grind('--node', client.name, 'run', PAPER_JOB, '--discard', '--ignore-offset-check', *arguments, **options)
+        self.wait_in_stroke(client, seen)
+        return command, seen
 
     @staticmethod
     def wait_in_stroke(client, seen):

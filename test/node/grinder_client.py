@@ -2,17 +2,21 @@
 
 import contextlib
 import copy
+import json
 import math
 import os
+import pathlib
 import re
 import shutil
 import signal
+import socket
 import struct
 import subprocess
 import tempfile
 import threading
 import time
 import unittest
+import urllib.parse
 import xml.etree.ElementTree as xml
 from functools import lru_cache, partialmethod
 
@@ -21,6 +25,7 @@ import rosgraph
 import roslib.packages
 import rospkg
 import rospy
+import rosservice
 import rosunit.xmlrunner
 import yaml
 from actionlib_msgs.msg import GoalStatus
@@ -87,22 +92,29 @@ def package_file(path):
     return rospkg.RosPack().get_path('flute_grinder') + '/' + path
 
 
-def grind(*arguments, timeout=PATIENCE, stdin=subprocess.DEVNULL):
+def grind(*arguments, environment=(), **options):
     """Runs the command line to its end."""
-    return subprocess.run([program('grind'), *arguments], stdin=stdin, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                          universal_newlines=True, timeout=timeout)
+    pipe = subprocess.PIPE
+    options = dict({'stdin': subprocess.DEVNULL, 'stdout': pipe, 'stderr': pipe, 'timeout': PATIENCE}, **options)
+    return subprocess.run([program('grind'), *arguments], universal_newlines=True, env=dict(os.environ, **dict(environment)),
+                          **options)
+
+
+def temp_folder(clean_up):
+    """A folder that goes with the test, the class or the module whose `clean_up` is given."""
+    folder = tempfile.mkdtemp()
+    clean_up(shutil.rmtree, folder)
+    return folder
 
 
 def reamer_file(path):
     """Writes jobs/taper_reamer_d6_t6.yaml to `path`, with reliefs that are over soon: in one pass each, at ten times the feed."""
-    with open(package_file('jobs/taper_reamer_d6_t6.yaml')) as original:
-        text = original.read()
+    text = pathlib.Path(package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
     for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.05', ' infeed_mm: 2'),
                      ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels'))):
         assert old in text, old
         text = text.replace(old, new)
-    with open(path, 'w') as changed:
-        changed.write(text)
+    pathlib.Path(path).write_text(text)
     return path
 
 
@@ -188,8 +200,7 @@ SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
 
 def job_file(path, **changes):
     """Writes test/jobs/paper.yaml to `path`; with other values, as feed_mm_min=60, for tests of the motion, like MOTION."""
-    with open(package_file('test/jobs/paper.yaml')) as original:
-        text = original.read()
+    text = pathlib.Path(package_file('test/jobs/paper.yaml')).read_text()
     if changes:
         motion = dict(ANY_TOOL, shank_diameter_mm=1, depth_mm=0.5, infeed_mm=0.5, overtravel_mm='[1, 1]')
         changes = dict(motion, **changes)
@@ -197,8 +208,7 @@ def job_file(path, **changes):
     for key, value in changes.items():
         text, count = re.subn(r'(?m)^( +%s:) *(\[.*?\]|\{.*?\}|[^ #\n]+)' % key, r'\g<1> %s' % value, text)
         assert count == 1, key
-    with open(path, 'w') as changed:
-        changed.write(text)
+    pathlib.Path(path).write_text(text)
     return path
 
 
@@ -220,6 +230,22 @@ def receive(connection, length):
     return text
 
 
+def listening(pid, protocol='tcp'):
+    """The local addresses, as 127.0.0.1:11311, of all sockets on which a process listens."""
+    sockets = subprocess.run(['ss', '-Hlnp', '--' + protocol], check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
+    return {line.split()[3] for line in sockets.splitlines() if 'pid=%d,' % pid in line}
+
+
+def connect_to_service(name, kind, caller):
+    """A connection for any number of requests, as bytes."""
+    address = urllib.parse.urlparse(rosservice.get_service_uri(name))
+    connection = socket.create_connection((address.hostname, address.port), timeout=PATIENCE)
+    connection.sendall(tcpros_header({'service': name, 'md5sum': kind._md5sum, 'type': kind._type, 'callerid': caller,
+                                      'persistent': '1'}))
+    receive(connection, *struct.unpack('<I', receive(connection, 4)))
+    return connection
+
+
 def poll(condition, what, timeout=PATIENCE, interval=0.005):
     """Waits for a condition that nothing announces, and returns its value."""
     deadline = time.monotonic() + timeout
@@ -235,6 +261,23 @@ def poll(condition, what, timeout=PATIENCE, interval=0.005):
 def axes_of(joint_state):
     """The positions of the axes, X, Y, Z, A."""
     return tuple(joint_state.position[joint_state.name.index(name)] for name in JOINTS)
+
+
+def publisher(clean_up, topic, kind):
+    """To somebody who listens."""
+    made = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)
+    clean_up(made.unregister)
+    poll(lambda: made.get_num_connections() > 0, 'a subscriber of ' + topic)
+    return made
+
+
+def received(clean_up, topic, kind):
+    """A list, to which is added what somebody publishes from now on."""
+    messages = []
+    subscriber = rospy.Subscriber(topic, kind, messages.append, queue_size=10000)
+    clean_up(subscriber.unregister)
+    poll(lambda: subscriber.get_num_connections() > 0, 'a publisher of ' + topic)
+    return messages
 
 
 class Run:
@@ -396,19 +439,15 @@ class Grinder:
     def probing(self, within, cycle=ProbeGoal.END_FACE, **fields):
         """Has a probing cycle run for a client that repeats that it is alive. Gives the action's client, whose `touches` are
         the places and touches of the feedback."""
-        alive = rospy.Publisher('/%s/probe_alive' % self.name, Header, queue_size=1, tcp_nodelay=True)
         client = actionlib.SimpleActionClient('/%s/probe' % self.name, ProbeAction)
         assert client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
-        poll(lambda: alive.get_num_connections() > 0, 'a connection')
-        timer = rospy.Timer(rospy.Duration(0.05), lambda _: alive.publish(Header(stamp=rospy.Time.now())))
         client.touches = []
-        try:
+        with contextlib.ExitStack() as stack:
+            alive = publisher(stack.callback, '/%s/probe_alive' % self.name, Header)
+            stack.callback(rospy.Timer(rospy.Duration(0.05), lambda _: alive.publish(Header(stamp=rospy.Time.now()))).shutdown)
             client.send_goal(ProbeGoal(cycle=cycle, within=within, **fields),
                              feedback_cb=lambda feedback: client.touches.append((feedback.place, feedback.touch)))
             yield client
-        finally:
-            timer.shutdown()
-            alive.unregister()
 
     def probe(self, within, cycle=ProbeGoal.END_FACE, **fields):
         """The result of a probing cycle."""
@@ -594,8 +633,7 @@ def machine_file(path, **changes):
 def plugin_package(folder, of, library, plugin, base):
     """Makes of a folder a ROS package with a plugin of the package `of`, and gives the environment in which it is found: the
     class `plugin` of this build's `library` under the name tested/Plugin."""
-    with open(os.path.join(folder, 'package.xml'), 'w') as file:
-        file.write("""<package format="2">
+    pathlib.Path(folder, 'package.xml').write_text("""<package format="2">
   <name>tested</name>
   <version>0.1.0</version>
   <description>A plugin of tests.</description>
@@ -607,8 +645,7 @@ def plugin_package(folder, of, library, plugin, base):
   </export>
 </package>
 """ % (of, of))
-    with open(os.path.join(folder, 'plugins.xml'), 'w') as file:
-        file.write("""<library path="lib/libflute_grinder_%s">
+    pathlib.Path(folder, 'plugins.xml').write_text("""<library path="lib/libflute_grinder_%s">
   <class name="tested/Plugin" type="%s" base_class_type="%s">
     <description>Of tests.</description>
   </class>
@@ -684,8 +721,19 @@ class OwnNode(unittest.TestCase):
         (clean_up or self.addCleanup)(self.client.close)
         return self.client
 
-    def grind(self, *arguments, **options):
-        return grind('--node', self.node.name, *arguments, **options)
+    def grind(self, status, *arguments, **options):
+        done = grind('--node', self.node.name, *arguments, **options)
+        self.assertEqual(done.returncode, status, '%s: %s\n%s' % (arguments, done.stdout, done.stderr))
+        return done
+
+    def said(self, *arguments):
+        """What a command prints that succeeds and has nothing to warn of."""
+        done = self.grind(0, *arguments)
+        self.assertEqual(done.stderr, '', arguments)
+        return done.stdout
+
+    def json(self, *arguments):
+        return json.loads(self.said(*arguments, '--json'))
 
 
 class SlowDisk:

@@ -1,10 +1,10 @@
-"""Checks of streamed setpoints: the axes' limits and the lift; and the cutter's mathematics, independent of the grinder's own."""
+"""Checks of streamed setpoints: the axes' limits; and the cutter's mathematics, independent of the grinder's own."""
 
 import math
 
 from flute_grinder.msg import Cutter
 
-from grinder_client import A, JOINTS, LIFT, X, Y, Z
+from grinder_client import JOINTS
 
 EPSILON = 2.0 ** -52
 
@@ -72,13 +72,3 @@ def excesses(setpoints, limits, period):
 def is_gapless(setpoints):
     """Whether the cycles go from 0 up by one."""
     return len(setpoints) > 0 and [s.cycle for s in setpoints] == list(range(len(setpoints)))
-
-
-def check_lifted(test, stop, lift, height):
-    """The setpoints after a stop lift the wheel and do nothing else: radially, never back, up to a height."""
-    test.assertEqual({s.move for s in lift}, {LIFT})
-    for axis in (X, Z, A):
-        test.assertEqual({s.position[axis] for s in lift}, {stop.position[axis]})
-    heights = [s.position[Y] for s in [stop, *lift]]
-    test.assertEqual(heights, sorted(heights))
-    test.assertAlmostEqual(heights[-1], height, delta=1e-12)

@@ -22,8 +22,8 @@ from pages import read_page, write_file  # noqa: E402
 class TestClient(CommandLine):
     def setUp(self):
         super().setUp()
-        with open(gc.package_file('docs/ros-interface.md')) as page:
-            client, = [item for item in read_page(page.read()) if item.kind == 'file']
+        page = pathlib.Path(gc.package_file('docs/ros-interface.md')).read_text()
+        client, = [item for item in read_page(page) if item.kind == 'file']
         write_file(pathlib.Path(self.path('client.py')), client.lines)
         grinder().make_ready()
 

@@ -1,7 +1,5 @@
 """Shows what /diagnostics reports of a running node at rest. Faults, figures and thresholds are gone through in test_diagnostics.cpp."""
 
-import unittest
-
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
@@ -14,10 +12,11 @@ NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffe
 class Reports:
     """All that a node reports on /diagnostics."""
 
-    def __init__(self, node):
+    def __init__(self, clean_up, node):
         self.node = node
         self.statuses = {name: [] for name in NAMES}
-        self.subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, self.on_message, queue_size=1000)
+        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, self.on_message, queue_size=1000)
+        clean_up(subscriber.unregister)
 
     def on_message(self, message):
         for status in message.status:
@@ -45,24 +44,12 @@ class Reports:
         return found()[0]
 
 
-class TestDiagnostics(unittest.TestCase):
-    name = 'diagnosed'
-
-    @classmethod
-    def setUpClass(cls):
-        cls.node = gc.NodeProcess(cls.name, gc.machine())
-        cls.addClassCleanup(cls.node.close)
-        cls.grinder = cls.node.client()
-        cls.addClassCleanup(cls.grinder.close)
-        cls.reports = Reports(cls.name)
-        cls.addClassCleanup(cls.reports.subscriber.unregister)
-
-    def setUp(self):
-        self.grinder.make_ready()
-
+class TestDiagnostics(gc.OwnNode):
     def test_at_rest_all_is_well(self):
-        mark = self.reports.mark()
+        self.start(gc.machine()).make_ready()
+        reports = Reports(self.addCleanup, self.node.name)
+        mark = reports.mark()
         for name, text in (('Drive link', 'enabled'), ('Following error', 'within'), ('Limit margin', 'no setpoints'),
                            ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'),
                            ('History', 'kept')):
-            self.assertEqual(self.reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')
+            self.assertEqual(reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')

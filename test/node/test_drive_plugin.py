@@ -1,10 +1,9 @@
 """Shows what the node does with drive plugins from a package of their own: those of another version of the drive interface it
 refuses before it makes the drive, those that cannot do what the machine needs before they get power, and it waits for slow ones."""
 
+import contextlib
 import re
-import shutil
 import signal
-import tempfile
 import unittest
 
 import rosgraph
@@ -21,8 +20,7 @@ class TestDrivePlugin(unittest.TestCase):
     started = 0
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
 
     def start(self, library, plugin, **hardware):
         environment = gc.plugin_package(self.folder, 'flute_grinder', library, plugin, 'grinder::Drive')
@@ -68,9 +66,7 @@ class TestDrivePlugin(unittest.TestCase):
     def test_callbacks_during_init(self):
         """One that waits for a message in init() gets it."""
         node = self.awkward('waits')
-        go = rospy.Publisher('/%s/hardware/go' % node.name, Empty, queue_size=1)
-        gc.poll(lambda: go.get_num_connections() > 0, 'init() to listen')
-        go.publish()
+        gc.publisher(self.addCleanup, '/%s/hardware/go' % node.name, Empty).publish()
         grinder = node.client()
         self.addCleanup(grinder.close)
         grinder.wait_state(GrinderState.DISABLED)
@@ -80,11 +76,10 @@ class TestDrivePlugin(unittest.TestCase):
         """It ends a drive that waits for ever, and leaves nothing at the master."""
         for with_signal in signal.SIGINT, signal.SIGTERM:
             node = self.awkward('waits')
-            go = rospy.Publisher('/%s/hardware/go' % node.name, Empty, queue_size=1)
-            gc.poll(lambda: go.get_num_connections() > 0, 'init() to listen')
-            self.assertEqual(node.end(with_signal), 0, node.output)
+            with contextlib.ExitStack() as stack:
+                gc.publisher(stack.callback, '/%s/hardware/go' % node.name, Empty)
+                self.assertEqual(node.end(with_signal), 0, node.output)
             self.assertIn('ended by a signal while the drive tested/Plugin was being initialised', node.output)
-            go.unregister()
             self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
 
     def test_signal_during_prepare(self):

@@ -3,11 +3,9 @@ exporter's restart, the grinder's end and its return; and that nothing knows of 
 
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 import unittest
 import urllib.request
 
@@ -28,8 +26,7 @@ JOB = gc.paper(flute_length=8 * MM, feed=80 * MM_MIN, clearance=1 * MM, tooth_an
 
 class TestExporter(unittest.TestCase):
     def setUp(self):
-        self.parameters = dict(gc.machine(pace=5), history=os.path.join(tempfile.mkdtemp(), 'history'))
-        self.addCleanup(shutil.rmtree, os.path.dirname(self.parameters['history']))
+        self.parameters = dict(gc.machine(pace=5), history=os.path.join(gc.temp_folder(self.addCleanup), 'history'))
         self.addCleanup(self.close_node)
         self.port = free_port()
         self.start_exporter()
@@ -73,9 +70,7 @@ class TestExporter(unittest.TestCase):
         """The master's books name no node but the others, and what listens of the exporter is one port on loopback."""
         books = rosgraph.Master(rospy.get_name()).getSystemState()
         self.assertEqual({node for book in books for _, nodes in book for node in nodes} - {'/rosout'}, {'/shown', rospy.get_name()})
-        listening = subprocess.run(['ss', '-Hltnp'], check=True, stdout=subprocess.PIPE, universal_newlines=True).stdout
-        own = [line.split()[3] for line in listening.splitlines() if 'pid=%d,' % self.exporter.pid in line]
-        self.assertEqual(own, ['127.0.0.1:%d' % self.port])
+        self.assertEqual(gc.listening(self.exporter.pid), {'127.0.0.1:%d' % self.port})
 
     def test_follows_the_grinder(self):
         metrics = self.wait('state disabled')

@@ -8,7 +8,6 @@ import socket
 import struct
 import time
 import unittest
-import urllib.parse
 
 import genpy
 import rosgraph
@@ -119,21 +118,13 @@ class Service:
 
     def __init__(self, name, kind, fuzzer):
         self.name, self._kind, self._fuzzer = name, kind, fuzzer
-        address = urllib.parse.urlparse(rosservice.get_service_uri(name))
-        self._connection = socket.create_connection((address.hostname, address.port), timeout=gc.PATIENCE)
-        fields = {'service': name, 'md5sum': kind._md5sum, 'type': kind._type, 'callerid': CALLER, 'persistent': '1'}
-        self._connection.sendall(gc.tcpros_header(fields))
-        self._receive()
-
-    def _receive(self):
-        length, = struct.unpack('<I', gc.receive(self._connection, 4))
-        gc.receive(self._connection, length)
+        self._connection = gc.connect_to_service(name, kind, CALLER)
 
     def send(self):
         text = self._fuzzer.message(self._kind._request_class)
         self._connection.sendall(struct.pack('<I', len(text)) + text)
         gc.receive(self._connection, 1)
-        self._receive()
+        gc.receive(self._connection, *struct.unpack('<I', gc.receive(self._connection, 4)))
 
     def close(self):
         self._connection.close()

@@ -2,7 +2,6 @@
 comes of it, and that a service refuses what the state does not allow. Every moment and state is gone through in test/control and
 test/motion."""
 
-import itertools
 import unittest
 
 from flute_grinder.msg import GrinderState, GrindResult
@@ -15,94 +14,39 @@ from grinder_client import DEG, MM, MM_MIN, X, grinder
 JOB = gc.paper(cone_angle=10 * DEG, feed=100 * MM_MIN)
 END = 31 * MM
 
-# Encoder counts, as in config/grinder.yaml.
-RESOLUTION = (1e-7, 1e-7, 1e-7, 1e-6)
-
-
-def runs_of(items):
-    """The items without those that repeat the one before."""
-    return [item for item, _ in itertools.groupby(items)]
-
 
 class TestInterference(unittest.TestCase):
-    """One job that is held, retracted, resumed and slowed down in its stroke; what came of it is kept for the tests."""
+    def accept(self, service, *arguments):
+        reply = getattr(grinder(), service)(*arguments)
+        self.assertEqual((reply.success, reply.message), (True, ''))
 
-    @classmethod
-    def setUpClass(cls):
+    def test_job_that_is_held_retracted_resumed_and_slowed_down(self):
         g = grinder()
         g.make_ready_at_park()
-        cls.replies = [g.set_feed_override(0.1)]
-        first_state = len(g.states)
-        cls.job_run = run = g.send(JOB).wait_in_stroke(3 * MM)
-        cls.replies.append(g.hold())
-        cls.held = cls.rest_at(g, GrinderState.HELD)
-        cls.others = [g.send(gc.SHORT).wait(), g.send(gc.SHORT, dry_run=True).wait()]
-        cls.replies += [g.hold(), g.retract()]
-        cls.retracted = cls.rest_at(g, GrinderState.RETRACTED)
-        cls.replies += [g.resume(), g.set_feed_override(0.2)]
-        # Without feed it would not come back to the path.
-        g.wait_for(lambda: run.done or g.states[-1].state == GrinderState.RUNNING and cls.feed_is(g, 0.2),
-                   'a fifth of the feed in the stroke')
-        cls.replies.append(g.set_feed_override(0))
-        g.wait_for(lambda: cls.feed_is(g, 0), 'no feed')
-        cls.stopped = cls.rest_at(g, GrinderState.RUNNING)
-        cls.replies.append(g.set_feed_override(1))
+        self.accept('set_feed_override', 0.1)
+        run = g.send(JOB).wait_in_stroke(3 * MM)
+        for service, state in (('hold', GrinderState.HELD), ('retract', GrinderState.RETRACTED)):
+            self.accept(service)
+            self.assertEqual(g.wait_state(state).feed, 0)
+            g.wait_rest()
+            seen = len(run.feedback)
+            g.wait_for(lambda: len(run.feedback) > seen + 2, 'feedback')
+            on_path = max(s.position[X] for s in run.setpoints)
+            self.assertAlmostEqual(run.feedback[-1].stroke_fraction, (on_path + 1 * MM) / (END + 1 * MM), delta=1e-4)
+            for fields in ({}, {'dry_run': True}):
+                other = g.send(gc.SHORT, **fields).wait()
+                self.assertEqual((other.status, other.code), ('REJECTED', GrindResult.BUSY))
+        self.accept('resume')
+        g.wait_state(GrinderState.RUNNING)
+        self.assertTrue(g.plan(gc.goal_of(gc.SHORT)).valid)
+        self.assertFalse(run.done)
+        self.accept('set_feed_override', 1)
         run.wait_complete()
-        g.wait_state(GrinderState.READY)
-        cls.states = runs_of(s.state_name for s in g.states[first_state:])
-        cls.setpoints = run.setpoints
-
-    @classmethod
-    def feed_is(cls, g, override):
-        state = g.states[-1]
-        return state.override == override and abs(state.feed - override * JOB['process.feed']) <= 1e-6 * JOB['process.feed']
-
-    @classmethod
-    def rest_at(cls, g, state):
-        """Waits for a state in which the axes rest, and keeps what is published in it. The setpoints come by a connection of
-        their own, on a busy host later than the positions."""
-        shown = g.wait_state(state)
-        at = g.wait_rest()
-        cls.job_run.wait_past(lambda s: all(abs(p - c) <= 1.01 * r for p, c, r in zip(at, s.position, RESOLUTION)),
-                              'the setpoint at which the axes rest')
-        setpoints, feedback = len(cls.job_run.setpoints), len(cls.job_run.feedback)
-        positions = g.positions_over(1)
-        g.wait_for(lambda: len(cls.job_run.feedback) > feedback + 2, 'feedback')
-        return {'feedback': len(cls.job_run.feedback), 'state': shown, 'at': at, 'positions': positions, 'last': cls.job_run.last,
-                'new': len(cls.job_run.setpoints) - setpoints, 'fraction': cls.job_run.feedback[-1].stroke_fraction}
-
-    def test_requests_are_accepted(self):
-        self.assertEqual({(reply.success, reply.message) for reply in self.replies}, {(True, '')})
-
-    def test_states_follow_one_another(self):
-        states = self.states[1:] if self.states[0] == 'ready' else self.states
-        # One that passes by itself may not be published on a host that stalls.
-        passing = ('starting', 'holding', 'retracting', 'resuming')
-        self.assertEqual([s for s in states if s not in passing], ['running', 'held', 'retracted', 'running', 'ready'])
-
-    def test_axes_rest_while_held_retracted_and_without_feed(self):
-        for rest in (self.held, self.retracted, self.stopped):
-            self.assertEqual({tuple(position) for position in rest['positions']}, {tuple(rest['at'])})
-            self.assertEqual((rest['new'], rest['state'].feed), (0, 0))
-
-    def test_fraction_of_the_stroke_stays_while_the_wheel_is_lifted(self):
-        reached = (self.held['last'].position[X] + 1 * MM) / (END + 1 * MM)
-        for rest in (self.held, self.retracted):
-            self.assertAlmostEqual(rest['fraction'], reached, delta=1e-4)
-        # On the way back, of which a host that stalls may publish nothing.
-        back = {f.stroke_fraction for f in self.job_run.feedback[self.stopped['feedback']:] if f.x < self.held['last'].position[X]}
-        self.assertLessEqual(back, {1})
-
-    def test_another_goal_is_busy(self):
-        for run in self.others:
-            self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.BUSY))
-
-    def test_goal_succeeds_with_every_setpoint(self):
-        self.assertEqual((self.job_run.status, self.job_run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), self.job_run.text)
-        self.assertTrue(checks.is_gapless(self.setpoints))
-        self.assertEqual(len(self.setpoints), self.job_run.result.setpoints_written)
-        self.assertGreater(len(self.setpoints), self.job_run.result.statistics.setpoints)
-        self.assertEqual(list(self.setpoints[-1].position), grinder().park())
+        self.assertEqual((run.status, run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), run.text)
+        self.assertTrue(checks.is_gapless(run.setpoints))
+        self.assertEqual(len(run.setpoints), run.result.setpoints_written)
+        self.assertGreater(len(run.setpoints), run.result.statistics.setpoints)
+        self.assertEqual(list(run.setpoints[-1].position), g.park())
 
 
 class TestRefusals(unittest.TestCase):

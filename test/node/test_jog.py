@@ -73,10 +73,8 @@ class Button:
 class JogTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.publisher = rospy.Publisher('/grinder/jog', Jog, queue_size=1, tcp_nodelay=True)
-        cls.stops = rospy.Publisher('/grinder/stop', Stop, queue_size=1, tcp_nodelay=True)
-        for publisher in (cls.publisher, cls.stops):
-            gc.poll(lambda p=publisher: p.get_num_connections() > 0, 'a connection')
+        cls.publisher = gc.publisher(cls.addClassCleanup, '/grinder/jog', Jog)
+        cls.stops = gc.publisher(cls.addClassCleanup, '/grinder/stop', Stop)
 
     def setUp(self):
         return_to_park()
@@ -144,20 +142,17 @@ class TestContinuous(JogTest):
 
     def test_a_refusal_is_published_once_until_the_button_is_released(self):
         g = grinder()
-        refusals = []
-        topic = rospy.Subscriber('/grinder/jog_refusal', String, lambda message: refusals.append(message.data))
-        self.addCleanup(topic.unregister)
-        gc.poll(lambda: topic.get_num_connections() > 0, 'a connection')
+        refusals = gc.received(self.addCleanup, '/grinder/jog_refusal', String)
         button = self.press(Z, -0.05)
         gc.poll(lambda: refusals, 'a refusal')
-        self.assertEqual(refusals, ['jog refused: axis Z stands at -50 mm, the end of its way'])
+        self.assertEqual(refusals, [String('jog refused: axis Z stands at -50 mm, the end of its way')])
         g.positions_over(0.5)  # the button stays pressed
         self.assertEqual(len(refusals), 1)
         button.let_go()
         g.positions_over(1.5)  # longer than jog_timeout
         self.press(X, 1.0)
         gc.poll(lambda: len(refusals) > 1, 'another refusal')
-        self.assertRegex(refusals[1], '^jog refused: speed of axis X = 60000 mm/min; allowed: ')
+        self.assertRegex(refusals[1].data, '^jog refused: speed of axis X = 60000 mm/min; allowed: ')
 
     def test_a_message_from_long_ago_moves_nothing(self):
         g = grinder()

@@ -5,20 +5,18 @@ finished. The journal belongs to one node, and no job that is not finished is fo
 import hashlib
 import os
 import random
-import shutil
 import signal
-import tempfile
 import time
 
 import flute_grinder.job
-import rospy
 import yaml
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 import path_checks as checks
 from grinder_client import MM, STROKE, X, Y
+from test_diagnostics import Reports
 
 CUTTER = ['end_diameter', 'cone_angle', 'spiral_angle', 'rake_angle', 'flute_length', 'tooth_angles']
 CUTTER_KEYS = ['end_diameter_m', 'cone_angle_rad', 'spiral_angle_rad', 'rake_angle_rad', 'flute_length_m',
@@ -31,13 +29,6 @@ SEED = 20
 
 # The stroke's ends.
 FROM, TO = -1 * MM, 3 * MM
-
-
-def write_job(folder, **changes):
-    """Three teeth in two passes, over soon."""
-    values = dict(flute_length_mm=2, feed_mm_min=3000, clearance_mm=0.5, teeth=3, infeed_mm=0.3)
-    values.update(changes)
-    return gc.job_file(os.path.join(folder, 'job.yaml'), **values)
 
 
 PASSES = [(tooth, pass_) for tooth in range(3) for pass_ in range(2)]
@@ -56,16 +47,6 @@ def quick_machine(journal, at=None, park=(-0.004, 0.002)):
                                         'axis_a': (1000.0, 100000.0)}.items():
         parameters['joint_limits'][joint].update({'max_acceleration': acceleration, 'max_jerk': jerk})
     return parameters
-
-
-def sealed(content):
-    """The content with its checksum."""
-    return content + b'checksum: %s\n' % hashlib.sha256(content).hexdigest().encode()
-
-
-def end_of(reported):
-    """How many passes of the job are finished, by what is reported of its progress."""
-    return PASSES.index((reported.tooth, reported.pass_)) + reported.finished
 
 
 def strokes_of(setpoints):
@@ -89,10 +70,11 @@ class JournalTest(gc.OwnNode):
     park = (-0.004, 0.002)
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
         self.journal = os.path.join(self.folder, 'journal')
-        self.job_path = write_job(self.folder)
+        # Three teeth in two passes, over soon.
+        self.job_path = gc.job_file(os.path.join(self.folder, 'job.yaml'), flute_length_mm=2, feed_mm_min=3000, clearance_mm=0.5,
+                                    teeth=3, infeed_mm=0.3)
         self.job = gc.job_from_file(self.job_path)
 
     def start(self, **arguments):
@@ -121,7 +103,8 @@ class JournalTest(gc.OwnNode):
     def read_journal(self):
         with open(self.journal, 'rb') as file:
             content = file.read()
-        self.assertEqual(content, sealed(content[:content.rindex(b'checksum: ')]))
+        body = content[:content.rindex(b'checksum: ')]
+        self.assertEqual(content, body + b'checksum: %s\n' % hashlib.sha256(body).hexdigest().encode())
         journal = yaml.safe_load(content)
         self.assertEqual(set(journal), KEYS)
         return journal
@@ -145,33 +128,6 @@ class JournalTest(gc.OwnNode):
         self.assertEqual([getattr(reported.cutter, name) for name in CUTTER[:-1]],
                          [journal[key] for key in CUTTER_KEYS[:-1]])
         self.assertEqual(list(reported.cutter.tooth_angles), journal['tooth_angles_rad'])
-
-    def grind(self, status, *arguments):
-        done = super().grind(*arguments)
-        self.assertEqual(done.returncode, status, '%s\n%s' % (done.stdout, done.stderr))
-        return done
-
-    def reports(self):
-        """What /diagnostics say of the journal from now on."""
-        reports = []
-
-        def on_report(message):
-            reports.extend(s for s in message.status if self.node.name in s.name and 'Journal' in s.name)
-
-        subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, on_report)
-        self.addCleanup(subscriber.unregister)
-        gc.poll(lambda: reports, 'diagnostics')
-        return reports
-
-    def check_trouble_is_reported(self):
-        """That the journal cannot be used is in the log and in the diagnostics, and nothing can be continued."""
-        self.assertIn('journal ' + self.journal, self.node.output)
-        state = self.client.fresh_state()
-        self.assertEqual((state.progress.job_digest, state.progress.finished), ('', False))
-        report = self.reports()[-1]
-        self.assertEqual(report.level, DiagnosticStatus.ERROR)
-        self.assertIn('journal ' + self.journal, report.message)
-        self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
 
     def hold_in_stroke_of(self, tooth, pass_, override=0.02):
         """Holds a job in the midst of a stroke. The feed is low so that it does not get away."""
@@ -211,7 +167,8 @@ class TestKills(JournalTest):
         self.assertTrue(begin <= end <= begin + len(ended) + 1, 'the journal is ahead of the strokes')
         for state in states:
             if state.header.stamp > run.batches[0].header.stamp:
-                self.assertLessEqual(end_of(state.progress), end, 'a pass that was reported as finished is not')
+                reported = PASSES.index((state.progress.tooth, state.progress.pass_)) + state.progress.finished
+                self.assertLessEqual(reported, end, 'a pass that was reported as finished is not')
         return end
 
     def test_no_pass_reported_as_finished_is_ground_again_and_none_is_left_out(self):
@@ -269,7 +226,7 @@ class TestContinue(JournalTest):
         state = self.client.fresh_state()
         self.assertEqual((bool(state.wheel_in_work), state.override), (True, 0.02))
         self.assertTrue(self.client.set_feed_override(1).success)
-        status = self.grind(0, 'status').stdout
+        status = self.said('status')
         self.assertRegex(status, r'(?m)^last job .*tooth 2, pass 1 not finished, X %.3f mm' % (at.position[X] / MM))
         self.assertIn(JOB_NAME, status)
         self.assertTrue(self.client.enable().success)
@@ -287,7 +244,7 @@ class TestContinue(JournalTest):
         self.check_depths(setpoints)
 
         self.wait_finished()
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^last job .*finished')
+        self.assertRegex(self.said('status'), r'(?m)^last job .*finished')
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^the job is finished: ')
 
 
@@ -307,7 +264,8 @@ class TestContinueARelief(JournalTest):
         self.start_ready()
         self.client.confirm_swivel(self.job.process.setup_swivel)
         self.assertTrue(self.client.set_feed_override(1).success)
-        self.assertNotEqual(self.grind(1, 'run', path, '--operation', 'secondary', '--continue').stderr, '')
+        other = self.grind(1, 'run', path, '--operation', 'secondary', '--continue')
+        self.assertIn("the grinder's last job was another one", other.stderr)
         self.assertEqual(self.client.batches, [])
         self.grind(0, 'run', path, '--operation', 'primary', '--continue')
         self.client.fresh_state()
@@ -321,11 +279,13 @@ class TestDamagedJournal(JournalTest):
         with open(self.journal, 'wb') as file:
             file.write(b'nothing of a journal')
         self.start()
-        self.check_trouble_is_reported()
+        self.assertIn('journal ' + self.journal, self.node.output)
         state = self.client.fresh_state()
+        self.assertEqual((state.progress.job_digest, state.progress.finished, state.journal_damaged), ('', False, True))
         self.assertIn('journal ' + self.journal, state.journal_error)
-        self.assertTrue(state.journal_damaged)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^wheel in work +not known$')
+        Reports(self.addCleanup, self.node.name).wait('Journal', DiagnosticStatus.ERROR, 'journal ' + self.journal)
+        self.assertRegex(self.said('status'), r'(?m)^wheel in work +not known$')
+        self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
         with open(self.journal, 'rb') as file:
             self.assertEqual(file.read(), b'nothing of a journal', 'it is left as it is until the next job')
         self.assertTrue(self.client.enable().success)
@@ -448,7 +408,6 @@ class TestSlowDisk(JournalTest):
         self.disk.release()
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.check_reported(self.wait_finished())
 
 
 class TestFailingDisk(JournalTest):

@@ -1,7 +1,6 @@
 """Shows that what another program sends to the node's ports by mistake costs neither the stroke nor more than a little memory."""
 
 import contextlib
-import glob
 import io
 import os
 import random
@@ -14,7 +13,6 @@ import urllib.parse
 import xmlrpc.client
 
 import rosgraph
-import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
 from flute_grinder.srv import Plan, PlanRequest
@@ -79,12 +77,9 @@ class Attacked(unittest.TestCase):
         self.addCleanup(connection.close)
         return connection
 
-    def service(self, name, kind):
-        connection = self.connect(self.tcpros_port)
-        connection.sendall(gc.tcpros_header({'service': '/attacked/' + name, 'md5sum': kind._md5sum, 'type': kind._type,
-                                             'callerid': CALLER, 'persistent': '1'}))
-        length, = struct.unpack('<I', gc.receive(connection, 4))
-        gc.receive(connection, length)
+    def connect_to_plan(self):
+        connection = gc.connect_to_service('/attacked/plan', Plan, CALLER)
+        self.addCleanup(connection.close)
         return connection
 
     def plan(self):
@@ -92,7 +87,7 @@ class Attacked(unittest.TestCase):
         request = PlanRequest(gc.goal_of(gc.paper()))
         text = io.BytesIO()
         request.serialize(text)
-        connection = self.service('plan', Plan)
+        connection = self.connect_to_plan()
         connection.sendall(struct.pack('<I', text.tell()) + text.getvalue())
         return gc.receive(connection, 1) == b'\x01'
 
@@ -114,23 +109,15 @@ class Attacked(unittest.TestCase):
 class TestPeers(Attacked):
     def test_datagram_that_nobody_reads(self):
         """roscpp has a port for datagrams, of topics that are not spoken that way."""
-        socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', ('127.0.0.1', self.datagram_port()))
+        address, = gc.listening(self.node.process.pid, 'udp')
+        host, port = address.split(':')
+        socket.socket(socket.AF_INET, socket.SOCK_DGRAM).sendto(b'x', (host, int(port)))
         begin, used = time.monotonic(), self.processor_time()
         for _ in range(10):
             self.grinder.fresh_state()
         # Of one that watches what it does not read, it is all.
         self.assertLess(self.processor_time() - used, 0.5 * (time.monotonic() - begin))
         self.check()
-
-    def datagram_port(self):
-        inodes = set()
-        for link in glob.glob('/proc/%d/fd/*' % self.node.process.pid):
-            with contextlib.suppress(FileNotFoundError):  # closed meanwhile
-                inodes.add(os.readlink(link)[len('socket:['):-1])
-        with open('/proc/net/udp') as table:
-            lines = [line.split() for line in list(table)[1:]]
-        port, = [int(fields[1].split(':')[1], 16) for fields in lines if fields[9] in inodes]
-        return port
 
     def processor_time(self):
         """What all threads of the node have had of a processor [s]."""
@@ -139,14 +126,14 @@ class TestPeers(Attacked):
         return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
 
     def test_header_and_request_that_claim_much(self):
-        for connect in (lambda: self.connect(self.tcpros_port), lambda: self.service('plan', Plan)):
+        for connect in (lambda: self.connect(self.tcpros_port), self.connect_to_plan):
             for size in (300000000, 1000000000, 0xffffffff):
                 connect().sendall(struct.pack('<I', size))
             self.check()
 
     def test_what_follows_a_message_that_is_too_long_arrives(self):
-        cancels, goals = (self.publisher('/attacked/grind/' + name, kind) for name, kind in
-                          (('cancel', GoalID), ('goal', GrindActionGoal)))
+        cancels = gc.publisher(self.addCleanup, '/attacked/grind/cancel', GoalID)
+        goals = gc.publisher(self.addCleanup, '/attacked/grind/goal', GrindActionGoal)
         reported = len(self.node.output)
         too_long = 'x' * (LONGEST_MESSAGE + 1)
         cancels.publish(GoalID(id=too_long))
@@ -169,12 +156,6 @@ class TestPeers(Attacked):
         self.assertEqual(len(re.findall(r'a message of \d+ bytes on /attacked/grind/(?:cancel|goal) is dropped; allowed: 262144',
                                         self.node.output[reported:])), 3)
         self.check_memory()
-
-    def publisher(self, topic, kind):
-        publisher = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)
-        self.addCleanup(publisher.unregister)
-        gc.poll(lambda: publisher.get_num_connections() > 0, 'a connection')
-        return publisher
 
     def test_random_bytes(self):
         chance = random.Random(9)

@@ -2,14 +2,11 @@
 that the work offsets follow; and that a stop ends it."""
 
 import contextlib
-import json
 import math
 import os
 import re
-import shutil
 import signal
 import subprocess
-import tempfile
 
 import rospy
 import yaml
@@ -31,8 +28,7 @@ TOUCH = 5e-6
 
 class ProbeTest(gc.OwnNode):
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
 
     def start(self, blank=BLANK, **changes):
         """Starts a node, ready, with the probe swung in before the blank."""
@@ -62,12 +58,10 @@ class ProbeTest(gc.OwnNode):
 
     def cycle(self, *arguments):
         """Runs `grind probe`; what it printed, by its names."""
-        done = self.grind('probe', *arguments)
-        self.assertEqual((done.returncode, done.stderr), (0, ''), done.stdout)
-        return dict(re.split(r'  +', line, maxsplit=1) for line in done.stdout.splitlines())
+        return dict(re.split(r'  +', line, maxsplit=1) for line in self.said('probe', *arguments).splitlines())
 
     def offset(self, axis):
-        return json.loads(self.grind('offsets', '--json').stdout)['axes']['xyza'[axis]]
+        return self.json('offsets')['axes']['xyza'[axis]]
 
 
 def number(text):
@@ -83,7 +77,7 @@ class TestCycles(ProbeTest):
             self.assertRegex(said[figure], r'^\d+\.\d{4} mm(, spread 0\.\d{4} mm)?$')
         self.assertAlmostEqual(number(said['end face']), 17, delta=TOUCH / MM)
         self.assertAlmostEqual(number(said['stick-out']), 45, delta=TOUCH / MM)
-        zeros = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
+        zeros = self.json('zeros', JOB, '--stickout', '45')
         self.assertAlmostEqual(self.offset(X)['offset_mm'], zeros['x_mm'], delta=TOUCH / MM)
         self.assertIn('@', self.offset(X)['set_by'])
         # Off the surface again.
@@ -92,27 +86,23 @@ class TestCycles(ProbeTest):
     def test_zeros_become_the_offsets_by_the_grinders_own_geometry(self):
         geometry = gc.machine()['geometry']
         self.start(geometry=dict(geometry, collet_face={'x': geometry['collet_face']['x'] + 1 * MM}))
-        reported = json.loads(self.grind('zeros', JOB, '--stickout', '45', '--json').stdout)
-        done = self.grind('zeros', JOB, '--stickout', '45', '--set')
-        self.assertEqual((done.returncode, done.stderr), (0, ''))
+        reported = self.json('zeros', JOB, '--stickout', '45')
+        self.said('zeros', JOB, '--stickout', '45', '--set')
         for axis, value in ((X, reported['x_mm'] + 1), (Y, reported['y_mm']), (Z, reported['z_mm'])):
             self.assertAlmostEqual(self.offset(axis)['offset_mm'], value, delta=1e-9)
         self.assertIsNone(self.offset(A)['set_by'])
-        refused = self.grind('zeros', JOB, '--stickout', '20', '--set')
-        self.assertEqual(refused.returncode, 1)
-        self.assertIn('--stickout = 20 mm; allowed: ', refused.stderr)
+        self.assertIn('--stickout = 20 mm; allowed: ', self.grind(1, 'zeros', JOB, '--stickout', '20', '--set').stderr)
 
     def test_a_flange_mistyped_changes_x_only_if_confirmed(self):
         self.start()
         self.bring_ball(12 * MM, 0)
         end_face = 'probe', 'end-face', '--job', JOB, '--flange'
-        self.assertEqual(self.grind(*end_face, '2').returncode, 0)
+        self.grind(0, *end_face, '2')
         before = self.offset(X)['offset_mm']
-        refused = self.grind(*end_face, '50')
-        self.assertEqual(refused.returncode, 1)
-        self.assertRegex(refused.stderr, 'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
+        self.assertRegex(self.grind(1, *end_face, '50').stderr,
+                         'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
         self.assertEqual(self.offset(X)['offset_mm'], before)
-        self.assertEqual(self.grind(*end_face, '50', '--yes').returncode, 0)
+        self.grind(0, *end_face, '50', '--yes')
         self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
 
     def test_the_first_tooth_gives_the_offset_of_a(self):
@@ -129,7 +119,7 @@ class TestCycles(ProbeTest):
         angle = 0.7
         self.start(dict(BLANK, run_out=0.0, rake_face={'height': 1.2 * MM, 'angle': angle}))
         self.bring_ball(12 * MM, 3 * MM)
-        self.assertIn('probe the end face first', self.grind('probe', 'tooth', '--job', path).stderr)
+        self.assertIn('probe the end face first', self.grind(1, 'probe', 'tooth', '--job', path).stderr)
         self.jog(A, angle + math.pi / 2)  # what is left of the end face comes before the ball
         self.cycle('end-face', '--job', path)
         self.jog(A, -2)
@@ -158,8 +148,7 @@ class TestTouches(ProbeTest):
     def test_a_blank_clamped_too_short_gives_its_figures_and_no_offset(self):
         self.start(dict(BLANK, end_face=42 * MM))
         self.bring_ball(37 * MM, 0)
-        done = self.grind('probe', 'end-face', '--job', JOB)
-        self.assertEqual(done.returncode, 1)
+        done = self.grind(1, 'probe', 'end-face', '--job', JOB)
         found = re.match(r"probing ended: stick-out = (\S+) mm; allowed: the flutes' length or more, ", done.stderr).group(1)
         self.assertIn('stick-out       %s mm\n' % found, done.stdout)
         self.assertAlmostEqual(float(found), 20, delta=TOUCH / MM)
@@ -176,9 +165,8 @@ class TestTouches(ProbeTest):
         geometry = gc.machine()['geometry']
         del geometry['probe']
         self.start(None, geometry=geometry)
-        done = self.grind('probe', 'diameter')
-        self.assertEqual((done.returncode, done.stderr),
-                         (1, 'probing refused: the machine has no parameter geometry/probe\n'))
+        self.assertEqual(self.grind(1, 'probe', 'diameter').stderr,
+                         'probing refused: the machine has no parameter geometry/probe\n')
 
 
 class TestStop(ProbeTest):

@@ -7,11 +7,10 @@ import html.parser
 import json
 import math
 import os
+import pathlib
 import re
-import shutil
 import signal
 import subprocess
-import tempfile
 import unittest
 import xml.etree.ElementTree as xml
 import xmlrpc.client
@@ -24,10 +23,10 @@ import browser
 import grinder_client as gc
 import path_checks as checks
 from flute_grinder.msg import GrinderState
+from grind_command import PAPER_JOB, CommandLine
 from grinder_client import DEG, JOINTS, MM, ODD, STROKE, UM, X
 
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
-PAPER_JOB = gc.package_file('test/jobs/paper.yaml')
 SVG = '{http://www.w3.org/2000/svg}'
 HREF = '{http://www.w3.org/1999/xlink}href'
 UNITS = [MM, MM, MM, DEG]
@@ -102,9 +101,7 @@ class Recording:
 
 
 def setUpModule():
-    folder = tempfile.mkdtemp()
-    unittest.addModuleCleanup(shutil.rmtree, folder)
-    FILES['folder'] = folder
+    folder = FILES['folder'] = gc.temp_folder(unittest.addModuleCleanup)
     FILES['recording'] = Recording(folder)
     FILES['plan'] = os.path.join(folder, 'plan.csv')
     FILES['printed'] = gc.grind('plan', PAPER_JOB, '--csv', FILES['plan']).stdout
@@ -239,8 +236,7 @@ class ReportCase(unittest.TestCase):
 
     def kept(self):
         """The record of the job that was run to its end."""
-        with open(FILES['recording'].record) as file:
-            return json.load(file)
+        return json.loads(pathlib.Path(FILES['recording'].record).read_text())
 
     def rewritten(self, name, change):
         """The bag with every message through a function, which says whether it is left in."""
@@ -266,17 +262,12 @@ class ReportCase(unittest.TestCase):
             self.assertLess(picture.vertices(), 30000, name)
             self.assertTrue(sum(len(m) for m in picture.marks()) > 5 or picture.vertices() > 8, name + ' is blank')
             self.assertRegex(page.captions[name], r'\b(mm|ms|deg)\b', name)
-            self.assert_nothing_outside(picture)
+            # A line beyond what a panel shows, such as a limit, is cut off by its clip path.
+            for number in (1, 2):
+                for x, y in sum(picture.marks(number), []) if picture.panel(number) is not None else ():
+                    self.assertTrue(0 <= x <= picture.size[0] and 0 <= y <= picture.size[1], (x, y))
             for element in picture.root.iter():
                 self.assertTrue(element.get(HREF, '#' + name).startswith('#' + name), name)
-
-    def assert_nothing_outside(self, picture):
-        # A line beyond what a panel shows, such as a limit, is cut off by its clip path.
-        for number in range(1, 3):
-            if picture.panel(number) is None:
-                continue
-            for x, y in sum(picture.marks(number), []):
-                self.assertTrue(0 <= x <= picture.size[0] and 0 <= y <= picture.size[1], (x, y))
 
     def assert_drawn(self, marks, data):
         """Points stand in a picture as the data do: X to the right, values upward, each on one linear scale."""
@@ -288,12 +279,6 @@ class ReportCase(unittest.TestCase):
             self.assertGreater(sign * (drawn_high - drawn_low), 60)
             for mark, point in zip(marks, data):
                 self.assertAlmostEqual(mark[axis], drawn_low + scale * (point[axis] - low[axis]), delta=0.01)
-
-
-def read_csv(path):
-    with open(path) as lines:
-        names = next(lines).strip().split(',')
-        return [dict(zip(names, line.strip().split(','))) for line in lines]
 
 
 def timestamp(utc):
@@ -308,7 +293,7 @@ class TestTable(ReportCase):
         self.assert_page(page, PATH)
         self.assertIn('the points of a table have no time', page.text)
         helix = checks.Helix(gc.PAPER)
-        points = [(float(row['x_mm']), float(row['a_rad'])) for row in read_csv(FILES['table'])]
+        points = [(float(row['x_mm']), float(row['a_rad'])) for row in CommandLine.csv(FILES['table'])]
         self.assertEqual(len(points), 153)
         for name, first, last in (('path', 0, 152), ('path-start', 0, 9), ('path-end', 143, 152)):
             shown = list(enumerate(points))[first:last + 1]
@@ -325,7 +310,7 @@ class TestPlan(ReportCase):
     def setUpClass(cls):
         cls.page = cls.report(cls(), FILES['plan'])
         cls.found = cls.data(cls(), FILES['plan'])
-        cls.rows = read_csv(FILES['plan'])
+        cls.rows = CommandLine.csv(FILES['plan'])
 
     def test_page(self):
         self.assert_page(self.page, ['feed'] + COMMANDED + PATH)
@@ -358,10 +343,8 @@ class TestPlan(ReportCase):
             self.assertAlmostEqual(axis['speed']['rapid'], largest[False] * scale, delta=1e-6 * scale)
 
     def test_limits_are_those_of_another_machine(self):
-        with open(gc.package_file('config/grinder.yaml')) as file:
-            text = file.read().replace('max_acceleration: 0.5,', 'max_acceleration: 0.75,')
-        with open(self.path('machine.yaml'), 'w') as file:
-            file.write(text)
+        text = pathlib.Path(gc.package_file('config/grinder.yaml')).read_text()
+        pathlib.Path(self.path('machine.yaml')).write_text(text.replace('max_acceleration: 0.5,', 'max_acceleration: 0.75,'))
         page = self.report(FILES['plan'], '--machine', self.path('machine.yaml'))
         self.assertEqual([row[3] for row in page.tables['Acceleration of the axes'][1:4]], ['750 mm/s²'] * 3)
 
@@ -629,8 +612,7 @@ class TestVerdict(ReportCase):
         self.assertEqual((data['verdict'], data['verdict_because']), ('unfinished', ['the end of the job is not in the file']))
 
     def data_of(self, record, **changes):
-        with open(self.path('changed.json'), 'w') as file:
-            json.dump(record, file)
+        pathlib.Path(self.path('changed.json')).write_text(json.dumps(record))
         return self.judged(self.path('changed.json'), job=None, **changes)
 
     def test_record_of_a_drive_that_read_nan(self):
@@ -644,8 +626,7 @@ class TestVerdict(ReportCase):
         for text, reason in (('{"record": 1}', 'is no complete record of a job: machine is missing'),
                              ('{"record": 2}', 'is no record of a job that this program knows; allowed: "record": 1'),
                              ('{', 'is no record of a job: .*')):
-            with open(self.path('bad.json'), 'w') as file:
-                file.write(text)
+            pathlib.Path(self.path('bad.json')).write_text(text)
             done = gc.grind('report', self.path('bad.json'), '--json')
             self.assertEqual((done.returncode, done.stdout), (2, ''))
             self.assertRegex(done.stderr.rstrip('\n'), '^%s: %s$' % (re.escape(self.path('bad.json')), reason))
@@ -710,9 +691,7 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assertEqual((judged['rake'], judged['feed constancy']), ('not measured', 'failed'))
 
     def test_last_is_the_newest(self):
-        environment = {**os.environ, 'HOME': FILES['folder']}
-        done = subprocess.run([gc.program('grind'), '--node', 'recorded', 'report', '--last', '--json'], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, env=environment)
+        done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder']})
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.assertEqual(json.loads(done.stdout)['outcome'], 'canceled')
 
@@ -806,39 +785,31 @@ class TestLayout(ReportCase):
         for text in ('paper.yaml', 'FAILED', 'path deviation', 'spiral angle', 'late cycles', 'Ø 10'):
             self.assertIn(self.flat(text), self.flat(self.sheets[0]))
 
-    def test_pdf_that_cannot_be_written(self):
-        path = self.path('no/such/folder.pdf')
-        done = gc.grind('report', FILES['short'], '--pdf', path)
-        self.assertEqual((done.returncode, done.stderr), (2, path + ': cannot be written: No such file or directory\n'))
-
     def test_without_a_browser(self):
-        environment = {**os.environ, 'PATH': self.path('nothing')}
-        done = subprocess.run([gc.program('grind'), 'report', FILES['short'], '--pdf', self.path('none.pdf')], env=environment,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        done = gc.grind('report', FILES['short'], '--pdf', self.path('none.pdf'), environment={'PATH': self.path('nothing')})
         self.assertEqual(done.returncode, 2)
         self.assertIn('cannot be printed without a browser; install chromium', done.stderr)
         self.assertFalse(os.path.exists(self.path('none.pdf')))
 
 
 class TestMissingSetpoints(ReportCase):
+    def part(self, name, *slices):
+        """Some lines of the plan."""
+        lines = pathlib.Path(FILES['plan']).read_text().splitlines(keepends=True)
+        pathlib.Path(self.path(name)).write_text(''.join(''.join(lines[part]) for part in slices))
+        return self.path(name)
+
     def test_gap_is_reported_and_not_taken_for_motion(self):
-        with open(FILES['plan']) as file:
-            lines = file.readlines()
         # In a rapid: the difference over the gap would be far beyond the limit.
-        with open(self.path('gap.csv'), 'w') as file:
-            file.writelines(lines[:401] + lines[501:])
-        page, found = self.report(self.path('gap.csv')), self.data(self.path('gap.csv'))
+        gap = self.part('gap.csv', slice(401), slice(501, None))
+        page, found = self.report(gap), self.data(gap)
         self.assertEqual(page.rows['missing'], ['100 setpoints are not in the file'])
         for axis in found['axes']:
             for key in ('speed', 'acceleration'):
                 self.assertLessEqual(max(axis[key]['stroke'], axis[key]['rapid']), axis[key]['limit'] * (1 + 1e-4))
 
     def test_job_that_ended_ahead_of_its_stroke(self):
-        with open(FILES['plan']) as file:
-            lines = file.readlines()
-        with open(self.path('early.csv'), 'w') as file:
-            file.writelines(lines[:1501])
-        page = self.report(self.path('early.csv'))
+        page = self.report(self.part('early.csv', slice(1501)))
         self.assertEqual(list(page.pictures), COMMANDED)
         self.assertIn('the job ended before its first stroke', page.text)
         self.assertNotIn('maximum odd error', page.rows)
@@ -849,28 +820,22 @@ class TestBadFiles(ReportCase):
 
     def check(self, source, reason, *arguments):
         output = self.path('kept.html')
-        with open(output, 'w') as file:
-            file.write('kept')
+        pathlib.Path(output).write_text('kept')
         done = gc.grind('report', source, '-o', output, *arguments)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertEqual(done.stdout, '')
         self.assertRegex(done.stderr.rstrip('\n'), r'^%s: %s$' % (re.escape(source), reason))
-        with open(output) as file:
-            self.assertEqual(file.read(), 'kept')
+        self.assertEqual(pathlib.Path(output).read_text(), 'kept')
 
     def changed(self, name, change):
         """The short plan with other lines."""
-        with open(FILES['short']) as file:
-            lines = file.read().splitlines()
-        with open(self.path(name), 'w') as file:
-            file.write('\n'.join(change(lines)))
+        lines = pathlib.Path(FILES['short']).read_text().splitlines()
+        pathlib.Path(self.path(name)).write_text('\n'.join(change(lines)))
         return self.path(name)
 
     def cut_bag(self, size):
-        path = self.path('cut.bag')
-        with open(FILES['recording'].bag, 'rb') as whole, open(path, 'wb') as cut:
-            cut.write(whole.read()[:size])
-        return path
+        pathlib.Path(self.path('cut.bag')).write_bytes(pathlib.Path(FILES['recording'].bag).read_bytes()[:size])
+        return self.path('cut.bag')
 
     def replace(self, lines, line, column, value):
         row = lines[line - 1].split(',')
@@ -917,18 +882,17 @@ class TestBadFiles(ReportCase):
                    r'the bag has setpoints \(.*\) on no topic; allowed: one topic')
 
     def test_output_that_cannot_be_written(self):
-        output = self.path('no/such/folder.html')
-        done = gc.grind('report', FILES['short'], '-o', output)
-        self.assertEqual(done.returncode, 2)
-        self.assertEqual(done.stderr, output + ': cannot be written: No such file or directory\n')
+        output = self.path('no/such/folder')
+        for option in ('-o', '--pdf'):
+            done = gc.grind('report', FILES['short'], option, output)
+            self.assertEqual((done.returncode, done.stderr), (2, output + ': cannot be written: No such file or directory\n'))
 
     def test_full_disk(self):
         for arguments in (('-o', '/dev/full'), ('--pdf', '/dev/full')):
             done = gc.grind('report', FILES['short'], *arguments)
             self.assertEqual((done.returncode, done.stderr), (1, '/dev/full: write failed: No space left on device\n'))
         with open('/dev/full', 'w') as full:
-            done = subprocess.run([gc.program('grind'), 'report', FILES['short'], '--json'], stdout=full, stderr=subprocess.PIPE,
-                                  universal_newlines=True)
+            done = gc.grind('report', FILES['short'], '--json', stdout=full)
         self.assertEqual((done.returncode, done.stderr), (1, 'standard output: write failed\n'))
 
     def test_reader_of_the_data_that_has_ended(self):

@@ -103,9 +103,7 @@ class TestBar(RunTest):
 
     def test_messages_do_not_tear_the_line(self):
         grinder().make_ready(SLOW)
-        seen = len(grinder().batches)
-        command = self.grind(*RUN, PAPER_JOB, columns=200)
-        self.wait_in_stroke(grinder(), seen)
+        command, _ = self.grind_into_stroke(columns=200)
         grinder().inject('coolant_lost')
         command.wait_text('  retracted  ')
         command.send(signal.SIGINT)
@@ -125,12 +123,6 @@ class TestEnd(RunTest):
         super().setUp()
         grinder().make_ready(SLOW)
 
-    def start(self, **options):
-        seen = len(grinder().batches)
-        command = self.grind(*RUN, PAPER_JOB, **options)
-        self.wait_in_stroke(grinder(), seen)
-        return command, seen
-
     def check_stopped(self, seen):
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         setpoints = [s for batch in grinder().batches_of_goal(seen) for s in batch.setpoints]
@@ -142,7 +134,7 @@ class TestEnd(RunTest):
         self.assertEqual(len(set(grinder().positions_over(0.1))), 1)
 
     def test_terminal_that_goes_away(self):
-        command, seen = self.start(columns=80)
+        command, seen = self.grind_into_stroke(columns=80)
         command.send(signal.SIGHUP)
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'canceled; stopped on the path \(stroke, .* mm\) \(code -11\)')
@@ -153,7 +145,7 @@ class TestEnd(RunTest):
             default_signals()
             signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
-        command, seen = self.start(before=nohup)
+        command, seen = self.grind_into_stroke(before=nohup)
         command.send(signal.SIGHUP)
         self.assertEqual(grinder().fresh_state().state, GrinderState.RUNNING)
         command.send(signal.SIGTERM)
@@ -172,7 +164,7 @@ class TestEnd(RunTest):
         self.check_stopped(seen)
 
     def test_killed_it_leaves_the_job_to_others(self):
-        command, seen = self.start()
+        command, seen = self.grind_into_stroke()
         command.send(signal.SIGKILL)
         command.end()
         self.assertEqual(grinder().fresh_state().state, GrinderState.RUNNING)
@@ -234,9 +226,7 @@ class TestStuck(RunTest):
 class TestHold(RunTest):
     def test_ctrl_z_holds_on_the_path_and_does_not_suspend(self):
         grinder().make_ready(SLOW)
-        seen = len(grinder().batches)
-        command = self.grind(*RUN, PAPER_JOB)
-        self.wait_in_stroke(grinder(), seen)
+        command, _ = self.grind_into_stroke()
         command.send(signal.SIGTSTP)
         command.wait_text("holding: 'grind resume' goes on, Ctrl-C cancels\n")
         grinder().wait_state(GrinderState.HELD)
@@ -258,9 +248,7 @@ class TestRecord(RunTest):
 
     def test_second_run_leaves_the_first_and_its_file_alone(self):
         grinder().make_ready(SLOW)
-        seen = len(grinder().batches)
-        first = self.grind(*RUN, PAPER_JOB, '--csv', self.csv)
-        self.wait_in_stroke(grinder(), seen)
+        first, _ = self.grind_into_stroke('--csv', self.csv)
         written = os.stat(self.csv).st_size
         self.assertGreater(written, 0)
         for csv in (self.csv, os.path.join(self.folder, 'second.csv')):
@@ -279,9 +267,7 @@ class TestRecord(RunTest):
 
     def test_full_disk_hides_no_emergency_stop(self):
         grinder().make_ready(SLOW)
-        seen = len(grinder().batches)
-        command = self.grind(*RUN, PAPER_JOB, '--csv', '/dev/full')
-        self.wait_in_stroke(grinder(), seen)
+        command, _ = self.grind_into_stroke('--csv', '/dev/full')
         grinder().inject('emergency_stop')
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'emergency stop \(stroke, .* mm\) \(code -9\)\n'
@@ -309,20 +295,13 @@ class TestOwnNode(RunTest, gc.OwnNode):
 
     def start_node(self, **hardware):
         parameters = gc.machine()
-        for key, value in hardware.items():
-            if isinstance(value, dict):
-                parameters['hardware'][key].update(value)
-            else:
-                parameters['hardware'][key] = value
+        parameters['hardware'].update(hardware)
         self.start(parameters)
         self.addCleanup(self.node.process.send_signal, signal.SIGCONT)
 
     def start_run(self):
         self.client.make_ready(SLOW_AT_PACE_1)
-        seen = len(self.client.batches)
-        command = self.grind('--node', self.node.name, *RUN, PAPER_JOB)
-        self.wait_in_stroke(self.client, seen)
-        return command
+        return self.grind_into_stroke(client=self.client)[0]
 
     def check_lost(self, command):
         self.assertEqual(command.end(), 1)
@@ -345,7 +324,7 @@ class TestOwnNode(RunTest, gc.OwnNode):
         self.check_lost(command)
 
     def test_interrupt_breaks_homing_off(self):
-        slow = {'homing_velocity': 1e-3, 'home_position': 0.02}
+        slow = dict(gc.machine()['hardware']['axis_x'], homing_velocity=1e-3, home_position=0.02)
         self.start_node(absolute_encoders=False, axis_x=slow)
         self.assertTrue(self.client.enable().success)
         command = self.grind('--node', self.node.name, 'home')

@@ -110,8 +110,8 @@ class TestStandIn(RunTest):
         self.assertEqual((done.returncode, reported.returncode), (0, 0), done.stderr + reported.stderr)
         return done.stdout, json.loads(reported.stdout)
 
-    def start_run(self, *arguments):
-        command = self.grind('run', PAPER_JOB, *arguments)
+    def start_run(self, *arguments, **options):
+        command = self.grind('run', PAPER_JOB, *arguments, **options)
         return command, self.node.await_goal()
 
     def test_planning_is_shown_and_can_be_canceled(self):
@@ -128,17 +128,13 @@ class TestStandIn(RunTest):
         self.assertEqual(command.stdout, '')
 
     def test_planning_on_a_terminal(self):
-        command, goal = self.start_run_on_terminal(30)
+        command, goal = self.start_run('--dry-run', columns=30)
         goal.publish_feedback(GrindFeedback(state='planning', planned=0.5))
         command.wait_text('planning 50 %')
         goal.set_succeeded(GrindResult())
         self.assertEqual(command.end(), 0, command.text)
         self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\n$')
         self.assertIn('flutes complete      X 0.000 to 30.000 mm\n', command.stdout)
-
-    def start_run_on_terminal(self, columns):
-        command = self.grind('run', PAPER_JOB, '--dry-run', columns=columns)
-        return command, self.node.await_goal()
 
     def test_hold_while_a_job_is_planned_holds_its_start(self):
         command, goal = self.start_run()
@@ -205,13 +201,17 @@ class TestStandIn(RunTest):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=False)
         self.assertEqual((command.end(), command.text), (0, ''))
 
+    def start_lift(self):
+        self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
+        lifts = self.node.lifts
+        command = self.grind('lift')
+        gc.poll(lambda: self.node.lifts > lifts, 'the lift')
+        return command
+
     def test_lift_is_held_by_ctrl_c_and_ctrl_z(self):
         for key in (signal.SIGINT, signal.SIGTSTP):
             self.node.stops.clear()
-            self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
-            lifts = self.node.lifts
-            command = self.grind('lift')
-            gc.poll(lambda: self.node.lifts > lifts, 'the lift')
+            command = self.start_lift()
             command.send(key)
             gc.poll(lambda: self.node.stops == [Stop.HOLD], 'the hold')
             self.node.set(GrinderState.READY, 'ready')
@@ -233,9 +233,6 @@ class TestStandIn(RunTest):
         self.assertEqual([b'persistent=1' in header for header in FeedOverride.headers], [True])
 
     def test_fault_amid_a_lift(self):
-        self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
-        lifts = self.node.lifts
-        command = self.grind('lift')
-        gc.poll(lambda: self.node.lifts > lifts, 'the lift')
+        command = self.start_lift()
         self.node.set(GrinderState.FAULT, 'fault', fault='emergency stop')
         self.assertEqual((command.end(), command.text), (1, 'emergency stop\n'))

@@ -2,7 +2,6 @@
 the drive measures it; how a client sees it, and that the machine homes. What the control loop makes of reference and angle, at
 every moment of a job, is shown in test/control."""
 
-import json
 import math
 
 from flute_grinder.msg import GrinderState, GrindResult, Reason
@@ -10,7 +9,6 @@ from flute_grinder.msg import GrinderState, GrindResult, Reason
 import grinder_client as gc
 from grinder_client import DEG
 
-WANTED = 31.769
 TO_SET = 'set it to 31.769 deg and confirm it: grind confirm-swivel 31.769'
 
 
@@ -32,13 +30,12 @@ class TestHoming(gc.OwnNode):
         self.assertEqual(run.setpoints, [])
         run = g.send(gc.SHORT, dry_run=True).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.assertRegex(self.grind('status').stdout, r'(?m)^homed +no$')
+        self.assertRegex(self.said('status'), r'(?m)^homed +no$')
         self.assertEqual(set(g.positions_over(0.2)), {(0, 0, 0, 0)}, 'it does not home by itself')
 
-        home = self.grind('home')
-        self.assertEqual((home.returncode, home.stdout, home.stderr), (0, 'homed\n', ''))
+        self.assertEqual(self.said('home'), 'homed\n')
         self.assertTrue(g.fresh_state().homed)
-        self.assertRegex(self.grind('status').stdout, r'(?m)^homed +yes$')
+        self.assertRegex(self.said('status'), r'(?m)^homed +yes$')
         for joint, position in zip(gc.JOINTS, g.wait_rest()):
             self.assertAlmostEqual(position, hardware[joint]['home_position'], delta=1e-6)
         run = g.run(gc.SHORT)
@@ -56,27 +53,15 @@ class TestSwivel(gc.OwnNode):
         g.wait_state(GrinderState.READY)
         return g
 
-    def grind(self, status, *arguments):
-        done = super().grind(*arguments)
-        self.assertEqual(done.returncode, status, done.stderr)
-        return done
-
     def send(self, job=gc.SHORT, **fields):
         return self.client.send(job, confirm=False, **fields)
 
-    def check_refused(self, detail, angle, text):
+    def check_refused(self, text):
         """The goal and the command line's job are refused at once, and nothing moves."""
         rest = self.client.wait_rest()
         run = self.send().wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY), run.text)
-        reason, = run.result.reasons
-        self.assertEqual((reason.kind, reason.detail, reason.unit), (Reason.SWIVEL, detail, Reason.RADIAN))
-        self.assertAlmostEqual(reason.limit, WANTED * DEG, delta=1e-12)
-        self.assertAlmostEqual(reason.low, 0.05 * DEG, delta=1e-12)
-        if angle is None:
-            self.assertTrue(math.isnan(reason.value))
-        else:
-            self.assertAlmostEqual(reason.value, angle * DEG, delta=1e-12)
+        self.assertEqual([reason.kind for reason in run.result.reasons], [Reason.SWIVEL])
         self.assertEqual([f.state for f in run.feedback], [], 'it was not even planned')
         done = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--ignore-offset-check')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: ' + text, done.stderr)
@@ -89,12 +74,12 @@ class TestSwivel(gc.OwnNode):
 
     def test_confirmed_by_an_operator(self):
         g = self.start_ready()
-        self.check_refused('', None, 'the swivel is not confirmed; ' + TO_SET)
+        self.check_refused('the swivel is not confirmed; ' + TO_SET)
         state = g.fresh_state()
         self.assertTrue(math.isnan(state.swivel))
         self.assertFalse(state.swivel_measured)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^swivel +not confirmed$')
-        status = json.loads(self.grind(0, 'status', '--json').stdout)
+        self.assertRegex(self.said('status'), r'(?m)^swivel +not confirmed$')
+        status = self.json('status')
         self.assertEqual((status['swivel_deg'], status['swivel_measured']), (None, False))
         self.check_runs(dry_run=True)
         self.assertTrue(g.plan(gc.goal_of(gc.SHORT)).valid)
@@ -106,20 +91,19 @@ class TestSwivel(gc.OwnNode):
         for angle in ('-31.769', '31.769'):
             self.grind(0, 'confirm-swivel', angle)
             self.assertAlmostEqual(g.fresh_state().swivel, float(angle) * DEG, delta=1e-15)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^swivel +31\.769 deg, confirmed$')
-        status = json.loads(self.grind(0, 'status', '--json').stdout)
+        self.assertRegex(self.said('status'), r'(?m)^swivel +31\.769 deg, confirmed$')
+        status = self.json('status')
         self.assertAlmostEqual(status['swivel_deg'], 31.769, delta=1e-12)
         self.check_runs()
         self.assertTrue(g.confirm_swivel(31.829 * DEG).success)
-        self.check_refused('confirmed', 31.829,
-                           'the swivel is confirmed at 31.829 deg; allowed: within 0.05 deg of that; ' + TO_SET)
+        self.check_refused('the swivel is confirmed at 31.829 deg; allowed: within 0.05 deg of that; ' + TO_SET)
 
     def test_measured_by_the_drive(self):
         g = self.start_ready(31.8)
         state = g.fresh_state()
         self.assertAlmostEqual(state.swivel, 31.8 * DEG, delta=1e-15)
         self.assertTrue(state.swivel_measured)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^swivel +31\.8 deg, measured$')
+        self.assertRegex(self.said('status'), r'(?m)^swivel +31\.8 deg, measured$')
         done = self.grind(1, 'confirm-swivel', '31.769')
         self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which stands at 31.8 deg; '
                                       'nothing is to be confirmed\n')

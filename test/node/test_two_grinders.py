@@ -7,7 +7,6 @@ import re
 import shutil
 import signal
 import subprocess
-import tempfile
 import unittest
 import xmlrpc.client
 
@@ -53,8 +52,7 @@ def setpoints(path):
 class TestTwoJobsAtOnce(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.folder = gc.temp_folder(cls.addClassCleanup)
         cls.jobs = {name: gc.job_file(os.path.join(cls.folder, name.replace('/', '_') + '.yaml'), **changes)
                     for name, changes in CHANGES.items()}
         cls.left, cls.right = clients()
@@ -104,13 +102,6 @@ class TestTwoJobsAtOnce(unittest.TestCase):
             self.assertEqual((progress.job_digest, progress.finished), (journal['job_digest'], True))
             digests.append(journal['job_digest'])
         self.assertNotEqual(*digests)
-
-    def test_each_knows_its_own_job_alone(self):
-        own = gc.grind('--node', 'left/grinder', 'run', self.jobs['left/grinder'], '--continue')
-        self.assertEqual((own.returncode, own.stderr.strip()), (1, 'the job is finished: every pass of it is ground'))
-        other = gc.grind('--node', 'left/grinder', 'run', self.jobs['right/grinder'], '--continue')
-        self.assertEqual(other.returncode, 1)
-        self.assertIn("the grinder's last job was another one", other.stderr)
 
     def test_status_and_offsets_say_which_grinder(self):
         for name in NAMES:
@@ -170,8 +161,7 @@ class TestEndOfOne(unittest.TestCase):
     """With the same launch once more, in a namespace above."""
 
     def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
+        folder = gc.temp_folder(self.addCleanup)
         launch = subprocess.Popen(['roslaunch', '--wait', gc.package_file('test/node/two_grinders.test'), '__ns:=shop'],
                                   env=dict(os.environ, TMPDIR=folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(launch.wait, gc.PATIENCE)

@@ -3,15 +3,14 @@
 and that the node outlives its master, and is found by everybody under the next one: topics, services and the action, without being
 started anew. The masters are the test's own."""
 
+import contextlib
 import os
 import re
-import shutil
 import signal
 import socket
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 import xmlrpc.client
 
@@ -32,16 +31,12 @@ CANCEL = NODE + '/grind/cancel'
 
 def wait_for(condition, what):
     """Waits until a condition holds; a master that does not answer yet counts as no."""
-    deadline = time.monotonic() + gc.PATIENCE
-    while True:
-        try:
-            if condition():
-                return
-        except (OSError, rosgraph.MasterException):
-            pass
-        if time.monotonic() > deadline:
-            raise AssertionError('no ' + what)
-        time.sleep(0.02)
+
+    def holds():
+        with contextlib.suppress(OSError, rosgraph.MasterException):
+            return condition()
+
+    gc.poll(holds, what, interval=0.02)
 
 
 class Master:
@@ -91,9 +86,7 @@ class Master:
         self.log.close()
 
     def grind(self, *arguments):
-        return subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, **self.environment),
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True,
-                              timeout=gc.PATIENCE)
+        return gc.grind(*arguments, environment=self.environment)
 
 
 class TestNodeWithoutMaster(unittest.TestCase):
@@ -103,9 +96,7 @@ class TestNodeWithoutMaster(unittest.TestCase):
         self.port = free_port()
         self.environment = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:%d' % self.port)
         # Several write to it, each at its end, while it is read.
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.log = open(os.path.join(folder.name, 'log'), 'a+')
+        self.log = open(os.path.join(gc.temp_folder(self.addCleanup), 'log'), 'a+')
         self.addCleanup(self.log.close)
 
     def start(self, arguments):
@@ -223,8 +214,7 @@ class TestMasterWatch(unittest.TestCase):
     """The node outlives its master, and is found under the next one."""
 
     def setUp(self):
-        folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, folder)
+        folder = gc.temp_folder(self.addCleanup)
         self.master = Master.of_grinder(folder)
         self.addCleanup(self.master.close)
         self.api = self.master.api

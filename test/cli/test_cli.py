@@ -26,20 +26,12 @@ from grinder_client import DEG  # noqa: E402
 class TestTable(CommandLine):
     """`grind table` gives the paper's figures."""
 
-    def rows(self, text):
-        found = re.findall(r'(?m)^ *(\d+) +(\S+) +(\S+) +(\S+) +(\S+)$', text)
-        return {int(row[0]): row[1:] for row in found}
-
-    def test_figures_for_the_papers_step_lengths(self):
-        for length, points, last_x, largest in (('0.2', 152, '30.2684', '3.9785e-05'),
-                                                ('0.5', 62, '30.8667', '2.4780e-04')):
-            printed = self.grind(0, 'table', PAPER_JOB, '--step-length', length).stdout
-            self.assertIn('\n%d points\n' % points, printed)
-            self.assertRegex(printed, r'maximum error +%s rad' % re.escape(largest))
-            self.assertEqual(self.rows(printed)[points][0], last_x)
-            if length == '0.2':
-                self.assertRegex(printed, r'maximum at even points +3\.5000e-07 rad')
-
+    def test_the_papers_figures_are_printed(self):
+        printed = self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2').stdout
+        self.assertIn('\n152 points\n', printed)
+        self.assertRegex(printed, r'maximum error +3\.9785e-05 rad')
+        self.assertRegex(printed, r'maximum at even points +3\.5000e-07 rad')
+        self.assertRegex(printed, r'(?m)^ *152 +30\.2684( +\S+){3}$')
 
     def test_json_has_every_bit(self):
         for arguments, rule in (([], 'published'), (['--even-step', 'third_order'], 'third_order')):
@@ -137,10 +129,6 @@ class TestPlan(CommandLine):
         self.assertFalse(reported['valid'])
         self.assertEqual(reported['reasons'], reasons.rstrip('\n').split('\n'))
         self.assertEqual(len(reported['reasons']), 4)
-
-    def test_missing_file(self):
-        reason = self.grind(2, 'plan', self.path('nothing.yaml')).stderr
-        self.assertEqual(reason, self.path('nothing.yaml') + ': cannot be read: No such file or directory\n')
 
     def test_fifo_is_no_file(self):
         fifo = self.path('fifo.yaml')
@@ -262,10 +250,6 @@ class TestOutput(CommandLine):
 
 
 class TestUsage(CommandLine):
-    def test_version_is_the_packages(self):
-        version = re.search('<version>(.*)</version>', open(gc.package_file('package.xml')).read()).group(1)
-        self.assertEqual(self.grind(0, '--version').stdout, 'flute_grinder %s\n' % version)
-
     def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
                           ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['goal', PAPER_JOB], ['--help'],

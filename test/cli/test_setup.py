@@ -98,17 +98,13 @@ class TestRefusals(TestSetup):
 
 class TestTouchOff(TestSetup):
     def test_wheel_above_the_swivel(self):
-        """The sheet of Z counts by how much turning the swivel lowers the wheel."""
         source = os.path.join(JOBS, 'unequal_d12_t4.yaml')
-        found = self.setup(source)
-        self.assertAlmostEqual(found['wheel_above_swivel_mm'], 0, delta=1e-9)
-        self.assertAlmostEqual(found['touch_z_mm'], 1.5 - found['height_mm'], delta=1e-9)
         machine = self.write('machine.yaml', self.text(gc.package_file('config/grinder.yaml')).replace(
             'flange: 0.0035 ', 'flange: 0.0235 '))
         higher = self.setup(source, '--machine', machine)
         self.assertAlmostEqual(higher['wheel_above_swivel_mm'], 20, delta=1e-9)
-        lowered = 20 * (1 - math.cos(found['swivel_deg'] * DEG))
-        self.assertAlmostEqual(found['touch_z_mm'] - higher['touch_z_mm'], lowered, delta=1e-9)
+        lowered = 20 * (1 - math.cos(higher['swivel_deg'] * DEG))
+        self.assertAlmostEqual(higher['touch_z_mm'], 1.5 - higher['height_mm'] - lowered, delta=1e-9)
         self.assertIn('with the wheel\'s middle 20.000 mm above', self.grind(0, 'setup', source, '--machine', machine).stdout)
         self.assertIsNone(self.setup(PAPER_JOB)['wheel_above_swivel_mm'])
 

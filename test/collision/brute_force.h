@@ -56,17 +56,28 @@ struct Shape {
     return std::hypot(std::max(0.0, p.head<2>().norm() - radius), std::max(0.0, std::abs(p.z()) - half_length));
   }
 
-  /// Distance of another shape: the least over all points of this one. Independent of support functions and GJK.
-  double distance(const Shape& other) const {
+  /// Distance of another convex body: the least over all points of this one. Independent of support functions and GJK.
+  template <typename Body>
+  double distance(const Body& other, double within = 1e-9) const {
     const double z_half = is_box ? half.z() : half_length;
     const double x_half = is_box ? half.x() : radius;
-    return minOf(-z_half, z_half, [&](double z) {
-      return minOf(-x_half, x_half, [&](double x) {
+    const auto over = [&](double half, const auto& value) { return minOf(-half, half, value, within); };
+    return over(z_half, [&](double z) {
+      return over(x_half, [&](double x) {
         const double y_half = is_box ? half.y() : std::sqrt(std::max(0.0, radius * radius - x * x));
-        return minOf(-y_half, y_half, [&](double y) { return other.distance(pose * Eigen::Vector3d(x, y, z)); });
+        return over(y_half, [&](double y) { return other.distance(Eigen::Vector3d(pose * Eigen::Vector3d(x, y, z))); });
       });
     });
   }
 };
+
+/// A straight wheel in the cutter's frame; its axis is along (-sin s, 0, cos s).
+inline Shape wheelAt(const Eigen::Vector3d& centre, double swivel, double radius, double width) {
+  Shape wheel;
+  wheel.pose = Eigen::Translation3d(centre) * Eigen::AngleAxisd(-swivel, Eigen::Vector3d::UnitY());
+  wheel.radius = radius;
+  wheel.half_length = width / 2;
+  return wheel;
+}
 
 }  // namespace grinder

@@ -69,14 +69,7 @@ TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
     const Axes to = axes(between(0.01, 0.05), between(-0.002, 0.03), between(-0.01, 0.01), between(-20, 20));
     const double expected = minOf(0, 1, [&](double part) {
       const Axes at = (1 - part) * from + part * to;
-      Shape wheel;
-      wheel.radius = 0.05;
-      wheel.half_length = 0.003;
-      wheel.pose.translation() << at[kX], 0.055 + at[kY], height + at[kZ];
-      wheel.pose.linear().col(0) << std::cos(swivel), 0, std::sin(swivel);
-      wheel.pose.linear().col(1) << 0, 1, 0;
-      wheel.pose.linear().col(2) << -std::sin(swivel), 0, std::cos(swivel);
-      return wheel.distance(collet);
+      return wheelAt({at[kX], 0.055 + at[kY], height + at[kZ]}, swivel, 0.05, 0.006).distance(collet);
     });
     EXPECT_NEAR(closestOf(SmallMachine().urdf(), plainJob(swivel, height), {from, to}).distance, expected, kAccuracy)
         << i;
@@ -138,14 +131,6 @@ TEST(CollisionCheck, AWheelMayBeTooLargeForItsOwnHead) {
   const ClosestPlace place = closestOf(shippedUrdf(), job, {axes(-0.05, 0.05), axes(-0.05, 0.06)});
   EXPECT_NEAR(place.distance, 0.082 - 0.0816, kAccuracy);
   EXPECT_EQ(place.first + " and " + place.second, "wheel and swivel");
-}
-
-TEST(CollisionCheck, ASpindleSwivelledTowardTheWorkHeadComesCloserToIt) {
-  const auto distance = [](double swivel) {
-    return closestOf(shippedUrdf(), plainJob(swivel), {axes(0, 0.05), axes(0, 0), axes(0.012, 0)}).distance;
-  };
-  EXPECT_LT(distance(-40 * kDegree), distance(40 * kDegree) - 5e-3);
-  EXPECT_EQ(distance(-60 * kDegree), 0);
 }
 
 /// A straight flute of 1.6 mm in a cylinder of 10 mm: the rim leaves the shank in the plane Z = 0.

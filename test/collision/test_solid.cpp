@@ -24,12 +24,6 @@ TEST(Solid, BodiesThatTouchHaveNoGap) {
   EXPECT_EQ(gap(cylinder, Solid::box({0.1, 0.1, 0.006}), {0.05, 0, 0.0059}).distance, 0);
 }
 
-TEST(Solid, AShiftMovesTheSecondBody) {
-  const Solid sphere = Solid::sphere(0.01);
-  EXPECT_NEAR(gap(sphere, sphere, {0.03, 0, 0.04}).distance, 0.03, kAccuracy);
-  EXPECT_TRUE(gap(sphere, sphere, {0.03, 0, 0.04}).normal.isApprox(Vector3d(0.6, 0, 0.8), 1e-3));
-}
-
 /// Of everything from a hair's breadth to half a metre apart, and of slender bodies as well as flat ones.
 TEST(Solid, RandomPairsAgreeWithBruteForce) {
   auto between = numbers(11);

@@ -83,65 +83,24 @@ EvenStepRule drawRule() {
   return *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
 }
 
-RC_GTEST_PROP(OddEvenInterpolatorProperty, APairIsThatOfTheRulesFormulas, ()) {
+RC_GTEST_PROP(OddEvenInterpolatorProperty, APairBeginsOnTheCurveAndIsThatOfTheRulesFormulas, ()) {
   const Place place = Place::draw();
   const EvenStepRule rule = drawRule();
   const double step = place.drawStep(0.1);
   OddEvenInterpolator interpolator(place.curve, place.scale, rule, place.x);
   const CurvePoint start = interpolator.position();
+  RC_ASSERT(start.x == place.x);
+  RC_ASSERT(std::abs(errorOf(place.reference, start)) <= 8 * kEps * (1 + std::abs(start.a)));
+  RC_ASSERT(interpolator.stepLengthForAdvance(0) == 0);
   const OddEvenPair pair = interpolator.next(step);
+  RC_ASSERT(interpolator.position().x == pair.even.x);
+  RC_ASSERT(interpolator.position().a == pair.even.a);
   const ReferencePair expected = test_support::referencePair(rule, place.reference, place.scale, place.x, step);
   const Real x_tolerance = 1e-13 * std::abs(step) + 4 * kEps * std::abs(place.x);
   RC_ASSERT(std::abs(Real(pair.odd.x) - place.x - expected.x1) <= x_tolerance);
   RC_ASSERT(std::abs(Real(pair.even.x) - place.x - expected.x2) <= x_tolerance);
   RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
   RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, WholePathsFollowTheFormulasWithStepsThatChange, ()) {
-  const CutterGeometry g = *test_support::cutterGeometry();
-  const ReferenceCurve reference(g);
-  const double scale = *test_support::logUniform(0.1e-3, 10e-3);
-  const EvenStepRule rule = drawRule();
-  const LogCurve curve = curveOf(g);
-  OddEvenInterpolator interpolator(curve, scale, rule, 0);
-  CurvePoint start = interpolator.position();
-  const int pairs = *test_support::whole(10, 60);
-  for (int i = 0; i < pairs; ++i) {
-    const Real slope = scale * reference.slope(start.x);
-    const double longest = std::min(g.flute_length / pairs / 4, advanceOfGrowth(curve, start.x, 0.1));
-    const double step = longest * *uniform(0.2, 1) * static_cast<double>(std::sqrt(1 + slope * slope));
-    const OddEvenPair pair = interpolator.next(step);
-    const ReferencePair expected = test_support::referencePair(rule, reference, scale, start.x, step);
-    RC_ASSERT(std::abs(Real(pair.odd.a) - start.a - expected.a1) <= Real(1e-11));
-    RC_ASSERT(std::abs(Real(pair.even.a) - start.a - expected.a2) <= Real(1e-11));
-    RC_ASSERT(pair.even.x == interpolator.position().x);
-    RC_ASSERT(pair.even.a == interpolator.position().a);
-    start = interpolator.position();
-  }
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, StartsOnTheCurveAndNeedsNoStepToStayThere, ()) {
-  const Place place = Place::draw();
-  const OddEvenInterpolator interpolator(place.curve, place.scale, drawRule(), place.x);
-  RC_ASSERT(interpolator.position().x == place.x);
-  RC_ASSERT(std::abs(errorOf(place.reference, interpolator.position())) <=
-            8 * kEps * (1 + std::abs(interpolator.position().a)));
-  RC_ASSERT(interpolator.stepLengthForAdvance(0) == 0);
-}
-
-RC_GTEST_PROP(OddEvenInterpolatorProperty, BothStepsOfExactHaveTheGivenLengthAndTheSecondEndsOnTheCurve, ()) {
-  const Place place = Place::draw();
-  const double step = place.drawStep(0.1);
-  OddEvenInterpolator interpolator(place.curve, place.scale, EvenStepRule::kExact, place.x);
-  const CurvePoint start = interpolator.position();
-  const OddEvenPair pair = interpolator.next(step);
-  const double rounding = 16 * kEps * (std::abs(start.x) + place.scale * (1 + std::abs(start.a)));
-  const double odd = std::hypot(pair.odd.x - start.x, place.scale * (pair.odd.a - start.a));
-  const double even = std::hypot(pair.even.x - pair.odd.x, place.scale * (pair.even.a - pair.odd.a));
-  RC_ASSERT(std::abs(odd - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
-  RC_ASSERT(std::abs(even - std::abs(step)) <= 1e-13 * std::abs(step) + rounding);
-  RC_ASSERT(std::abs(errorOf(place.reference, pair.even)) <= 8 * kEps * (1 + std::abs(pair.even.a)));
 }
 
 RC_GTEST_PROP(OddEvenInterpolatorProperty, StepLengthForAdvanceAdvancesByThat, ()) {

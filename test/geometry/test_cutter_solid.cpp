@@ -150,18 +150,21 @@ TEST(CutterSolid, ReportsWhatEachTriangleIs) {
 TEST(CutterSolid, RefusesWhatCannotBeShown) {
   const GroundCutter ground = cylinder().ground(4);
   const double nan = std::nan("");
-  EXPECT_THROW(cutterSolid(ground, {0, 0}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0.01, 0}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {nan, 0.01}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, nan}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01, 0, 0.02}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01, nan, 0.02}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01, 0.01, nan}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {1, 64, 180}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {60, 1, 180}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {60, 64, 2}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{1, 1}), std::invalid_argument);
-  EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{0, 4}), std::invalid_argument);
+  for (const SolidExtent& extent : {SolidExtent{0, 0},
+                                    {0.01, 0},
+                                    {nan, 0.01},
+                                    {0, nan},
+                                    {0, 0.01, 0, 0.02},
+                                    {0, 0.01, nan, 0.02},
+                                    {0, 0.01, 0.01, nan}}) {
+    EXPECT_THROW(cutterSolid(ground, extent), std::invalid_argument) << extent.from << ' ' << extent.to;
+  }
+  for (const SolidResolution& resolution : {SolidResolution{1, 64, 180}, {60, 1, 180}, {60, 64, 2}}) {
+    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, resolution), std::invalid_argument) << resolution.sections;
+  }
+  for (const double to : {1.0, 5.0}) {
+    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{1, to}), std::invalid_argument) << to;
+  }
 }
 
 }  // namespace test_cutter_solid

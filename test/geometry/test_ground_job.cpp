@@ -133,20 +133,16 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   }
 }
 
-TEST(GroundJob, AWheelSwivelledToTheSpiralAngleIsRefusedForItsRake) {
-  const Reason reason = reasonOf(checked(cylinder(30)), ReasonKind::kRake);
+TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
+  const Reason reason = reasonOf(checked(cylinder(30)), ReasonKind::kRake);  // swivelled to the spiral angle
   EXPECT_NEAR(reason.value / kDegree, 25.420, 0.002);
   EXPECT_DOUBLE_EQ(reason.limit, 8 * kDegree);
   EXPECT_EQ(reason.x, 0);
-  EXPECT_TRUE(checked(cylinder(38)).reasons.empty());  // 7.886 deg
-}
-
-TEST(GroundJob, TheToleranceDecidesWhichRakeWillDo) {
-  GrindJob job = cylinder(38);
-  job.cutter.rake_tolerance = 0.115 * kDegree;
-  EXPECT_TRUE(checked(job).reasons.empty());
-  job.cutter.rake_tolerance = 0.113 * kDegree;
-  EXPECT_FALSE(checked(job).reasons.empty());
+  GrindJob job = cylinder(38);  // 7.886 deg
+  for (const double tolerance : {0.115, 0.113}) {
+    job.cutter.rake_tolerance = tolerance * kDegree;
+    EXPECT_EQ(checked(job).reasons.empty(), tolerance > 0.114);
+  }
 }
 
 TEST(GroundJob, AChordOffByMoreThanItsToleranceIsRefused) {

@@ -271,9 +271,7 @@ TEST(SetupSheet, ReportsHowHighTheWheelStands) {
 TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
   for (const char* name : {"primary", "secondary"}) {
     const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, name);
-    const auto result = solveJobSetup(job, kMachine, std::nullopt);
-    ASSERT_TRUE(std::holds_alternative<JobSetup>(result)) << std::get<std::string>(result);
-    const JobSetup& setup = std::get<JobSetup>(result);
+    const JobSetup setup = solved(job);
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
     EXPECT_NEAR(setup.job.process.setup_swivel, job.operations[0].process.setup_swivel, 1e-4 * kDegree);
     EXPECT_NEAR(setup.job.process.setup_height, job.process.setup_height, 0.05e-3);
@@ -284,13 +282,16 @@ TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
     EXPECT_EQ(setup.edits[0].key, "operations[" + std::to_string(job.operation) + "].setup.swivel_deg");
   }
   const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
-  EXPECT_EQ(std::get<std::string>(solveJobSetup(job, kMachine, SetupFigure::kHeight)),
-            "--keep height; allowed for a relief: swivel");
+  EXPECT_EQ(refused(job, kMachine, SetupFigure::kHeight), "--keep height; allowed for a relief: swivel");
+  GrindJob kept = job;
+  kept.process.setup_swivel += 0.5 * kDegree;
+  const GrindProcess with_kept = solved(kept, SetupFigure::kSwivel).job.process;
+  EXPECT_EQ(with_kept.setup_swivel, kept.process.setup_swivel);
+  EXPECT_NE(with_kept.setup_height, solved(job).job.process.setup_height);
   // A wheel too narrow for the land of the last relief.
   GrindJob narrow = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary");
   for (GrindProcess* p : {&narrow.process, &narrow.operations[2].process}) p->wheel_width = 1e-3;
-  const auto refused = solveJobSetup(narrow, kMachine, std::nullopt);
-  EXPECT_NE(std::get<std::string>(refused).find("mm wide, this one is 1 mm"), std::string::npos);
+  expectContains(refused(narrow), "mm wide, this one is 1 mm");
 }
 
 }  // namespace test_job_setup

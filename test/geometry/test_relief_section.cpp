@@ -8,6 +8,7 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
+#include "geometry/relief_setup.h"
 
 #include <gtest/gtest.h>
 
@@ -111,7 +112,8 @@ struct Tool {
         wheel(wheelOf(start, hand * swivel, width, contact)),
         path(cone, start, wheel),
         edge(edgeOf()),
-        relieved(cone, cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), {{sweep()}})) {}
+        relieved(cone, cutter.flutes(), cutter.teeth(),
+                 std::vector<Reliefs>(cutter.flutes().size(), {{reliefSweep(cone, path, wheel, edge)}})) {}
 
   ReliefWheel wheelOf(const ReliefStart& start, double swivel, double width, double contact) const {
     ReliefWheel w{50 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};
@@ -122,34 +124,18 @@ struct Tool {
     const double x = job.cutter.flute_length / 2;
     return *cutter.section(x).teeth[0].edge - LogCurve(cone).a(x);
   }
-  GrindStroke stroke() const {
-    GrindStroke s;
-    s.from = path.lead() - path.beyondEnd();
-    s.to = job.cutter.flute_length + path.lead() + path.beyondShank();
-    s.y = path.y();
-    s.y_per_x = path.taper();
-    s.a = path.a() + edge;
-    return s;
-  }
-
-  WheelSweep sweep() const {
-    const WheelProfile profile = WheelProfile::straight(2 * wheel.nominal_radius, wheel.width);
-    return {path.cutter(), profile, wheel.nominal_radius, {wheel.swivel, wheel.height, path.lead()}, stroke()};
-  }
-
   Stroke reliefStroke() const {
-    const GrindStroke s = stroke();
-    return {s.from,
-            s.to,
+    return {path.lead() - path.beyondEnd(),
+            job.cutter.flute_length + path.lead() + path.beyondShank(),
             wheel.nominal_radius,
             wheel.width,
             wheel.swivel,
-            job.cutter.end_diameter / 2 + wheel.nominal_radius + s.y,
-            cone.tanCone() + s.y_per_x,
+            job.cutter.end_diameter / 2 + wheel.nominal_radius + path.y(),
+            cone.tanCone() + path.taper(),
             wheel.height,
             cone.tanCone() * path.cutter().zPerY(),
             LogCurve(cone, path.lead()),
-            s.a};
+            path.a() + edge};
   }
   /// Of the tooth behind the first one.
   Stroke nextFlute() const {

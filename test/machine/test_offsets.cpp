@@ -83,10 +83,9 @@ TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
   const auto found = mismatches(offsetsFor(basisOf()), job);
   ASSERT_EQ(axesOf(found), "Y");
   EXPECT_EQ(found[0].reason, "Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); this job has D 10 mm");
-  ASSERT_TRUE(found[0].change);
-  EXPECT_NEAR(*found[0].change, 0.002, 1e-15);
 }
 
+// Where X does not fit, the wheel is another or stands elsewhere: nothing can be computed from the figures.
 TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
   struct Row {
     const char* axes;
@@ -115,19 +114,8 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
     EXPECT_EQ(axesOf(found), row.axes) << row.has;
     for (const auto& mismatch : found) {
       EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
+      if (row.axes[0] == 'X') EXPECT_FALSE(mismatch.change) << row.has;
     }
-  }
-}
-
-TEST(OffsetFit, OfAnotherWheelSwivelOrWidthNothingIsComputed) {
-  for (const auto change :
-       {+[](OffsetBasis& b) { b.wheel_digest[0] = 'b'; }, +[](OffsetBasis& b) { b.wheel_name = "b.yaml"; },
-        +[](OffsetBasis& b) { b.swivel = 0; }, +[](OffsetBasis& b) { b.wheel_width = 0.002; }}) {
-    OffsetBasis job = basisOf();
-    job.height += 0.001;
-    change(job);
-    for (const auto& mismatch : mismatches(offsetsFor(basisOf()), job))
-      EXPECT_FALSE(mismatch.change) << mismatch.reason;
   }
 }
 

@@ -177,10 +177,8 @@ bool isRideable(const RideJob& ride) {
   for (double cycles = 0; stream.next(p); ++cycles) {
     if (cycles > kMostCycles) return false;
     if (p.step == StepKind::kNone) continue;
-    const auto& tooth = ride.asked.teeth[p.tooth];
-    const auto x = static_cast<second_opinion::Real>(p.position[kX]);
-    const auto radius = ride.asked.radius + (x - tooth.lead) * tooth.growth;
-    if (!(std::abs(p.position[kA] - watch.curve(tooth, x)) * radius <= ride.asked.deviation)) return false;
+    const auto off = watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], p.position[kA]);
+    if (!(std::abs(off) <= ride.asked.deviation)) return false;
   }
   return stream.finished();
 }

@@ -55,6 +55,12 @@ Real Watch::curve(const Tooth& t, Real x) const {
   return t.a + (t.b == 0 ? t.k * way : t.k / t.b * std::log1p(t.b * way));
 }
 
+Real Watch::deviation(const Tooth& t, Real x, Real a) const {
+  // The helix goes round by radius * k a way along the cone.
+  const Real around = asked_.radius * t.k / std::hypot(Real(1), t.growth);
+  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / std::hypot(Real(1), around);
+}
+
 Real Watch::z(const Tooth& t, Real x) const {
   Real z = x * t.growth * t.z_per_y;
   for (std::size_t i = 0; i < t.coefficients.size(); ++i) {
@@ -146,7 +152,7 @@ void Watch::checkPlace(const Row& row) {
   if (!(x >= low - noise && x <= high + noise)) throw Violation(text("in the work, place", 0, x, x < low ? low : high));
   if (!(y >= lowest(x) - noise)) throw Violation(text("depth: place", 1, y, lowest(x)));
   // Wherever the wheel is near the work, it is on the path of the tooth.
-  const Real off = (row.work[3] - curve(tooth, x)) * (asked_.radius + (x - tooth.lead) * tooth.growth);
+  const Real off = deviation(tooth, x, row.work[3]);
   const Real a_noise = noiseOf(3) * (asked_.radius + std::abs(x)) + 1e-15L;
   if (!(std::abs(off) <= asked_.deviation * (1 + 1e-9L) + a_noise)) {
     throw Violation(text("off the curve: deviation", 3, off, asked_.deviation));

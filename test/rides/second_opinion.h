@@ -34,7 +34,7 @@ struct Asked {
   std::vector<Pass> passes;
   Real from = 0, to = 0;  ///< X of a stroke's ends
   Real clearance = 0;     ///< above the surface, at which only strokes go across
-  Real deviation = 0;     ///< of A at the surface [m]
+  Real deviation = 0;     ///< of A at the surface, across the helix [m]
   Real radius = 0;        ///< of the surface at X = lead
   Real period = 0;        ///< [s]
   std::array<double, 4> velocity{}, acceleration{}, jerk{};
@@ -71,6 +71,8 @@ class Watch {
   std::size_t ground() const { return ground_; }
 
   Real curve(const Tooth& tooth, Real x) const;
+  /// How far a place of A is off the curve: at the surface, across the helix [m].
+  Real deviation(const Tooth& tooth, Real x, Real a) const;
   Real z(const Tooth& tooth, Real x) const;
 
  private:

@@ -15,7 +15,8 @@ namespace grinder {
 
 namespace {
 
-constexpr double kNoStep = 1e-9;  ///< [m]
+constexpr double kNoStep = 1e-9;           ///< [m]
+constexpr std::size_t kShankSections = 8;  ///< at once, until one is whole
 
 struct Layer {
   double x;
@@ -55,22 +56,33 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
   const auto at = [&](std::size_t i) {
     return i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
   };
-  std::vector<std::vector<PolarPoint>> outlines(resolution.sections);
-  onAllCores(outlines.size(),
-             [&](std::size_t i) { outlines[i] = sectionOutline(cutter, at(i), cutter.cutter().radius(at(i)), grid); });
-  for (std::size_t i = 0; i < outlines.size(); ++i) add(at(i), std::move(outlines[i]));
+  const auto outlines = [&](std::size_t count, const auto& x_of, const auto& radius_of) {
+    std::vector<std::vector<PolarPoint>> all(count);
+    onAllCores(count, [&](std::size_t i) { all[i] = sectionOutline(cutter, x_of(i), radius_of(x_of(i)), grid); });
+    return all;
+  };
+  auto of_cone = outlines(resolution.sections, at, [&](double x) { return cutter.cutter().radius(x); });
+  for (std::size_t i = 0; i < of_cone.size(); ++i) add(at(i), std::move(of_cone[i]));
   if (!(extent.shank_to > extent.to)) return layers;
   const double shank = extent.shank_diameter / 2;
   const auto is_whole = [&] {
     const auto& outline = layers.back().outline;
     return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
   };
-  double x = extent.to;
   // Without a step there is no ring between cone and shank: it would be seen as a line of slivers.
   const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
-  for (int i = 1; x < extent.shank_to; ++i) {
-    if (is_step || i > 1) add(x, sectionOutline(cutter, x, shank, grid));
-    x = is_whole() ? extent.shank_to : std::min(extent.shank_to, extent.to + i * step);
+  const std::size_t first = is_step ? 0 : 1;
+  const auto shank_x = [&](std::size_t i) {
+    return std::min(extent.shank_to, extent.to + static_cast<double>(i) * step);
+  };
+  std::vector<std::vector<PolarPoint>> of_shank;
+  for (std::size_t i = first; shank_x(i) < extent.shank_to && (i == 0 || !is_whole()); ++i) {
+    const std::size_t next = (i - first) % kShankSections;
+    if (next == 0) {
+      of_shank = outlines(
+          kShankSections, [&](std::size_t k) { return shank_x(i + k); }, [&](double) { return shank; });
+    }
+    add(shank_x(i), std::move(of_shank[next]));
   }
   add(extent.shank_to, sectionOutline(cutter, extent.shank_to, shank, grid));
   return layers;

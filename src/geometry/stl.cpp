@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 
 #include <Eigen/Geometry>
+#include <boost/endian/conversion.hpp>
 
 #include <cstring>
 #include <string>
@@ -16,7 +17,8 @@ constexpr std::size_t kTriangleSize = 50;
 
 /// Appends a number, its lowest byte first.
 void append(std::string& bytes, std::uint32_t number) {
-  for (int shift = 0; shift < 32; shift += 8) bytes.push_back(static_cast<char>(number >> shift & 0xff));
+  boost::endian::native_to_little_inplace(number);
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
 
 void append(std::string& bytes, const Eigen::Vector3f& v) {

@@ -13,8 +13,6 @@ namespace grinder::test_support {
 
 namespace {
 
-constexpr double kMostCycles = 8000;  ///< of an undisturbed job
-
 Machine randomMachine(Random& random) {
   Machine m;
   m.limits.min_position << -1, -1, -1, -1e5;
@@ -169,13 +167,13 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine) {
   return asked;
 }
 
-/// Whether a plan accepts it: no point off the curve by more than its tolerance; and it is short enough for a ride.
-bool isRideable(const RideJob& ride) {
+/// Whether a plan accepts it: no point off the curve by more than its tolerance; and it takes `most` cycles at most.
+bool isRideable(const RideJob& ride, double most) {
   SetpointStream stream(GrindProgram(ride.job, ride.machine, RunStart(ride.machine.park, {}, ride.offset)));
   const second_opinion::Watch watch(ride.asked);
   Setpoint p;
   for (double cycles = 0; stream.next(p); ++cycles) {
-    if (cycles > kMostCycles) return false;
+    if (cycles > most) return false;
     if (p.step == StepKind::kNone) continue;
     const auto off = watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], p.position[kA]);
     if (!(std::abs(off) <= ride.asked.deviation)) return false;
@@ -195,8 +193,8 @@ std::optional<RideJob> draw(Random& random) {
   if (flip(random, 0.5))
     offset << between(random, -0.05, 0.05), between(random, -0.01, 0.01), 1e-3, between(random, -3, 3);
   machine.park << between(random, -0.02, 0.02), clear + offset[kY] + between(random, 0, 5e-3), 0, 0;
-  RideJob ride{job, machine, offset, askedOf(job, machine)};
-  if (!isRideable(ride)) return std::nullopt;
+  RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine)};
+  if (!isRideable(ride, ride.cycles)) return std::nullopt;
   return ride;
 }
 

@@ -20,6 +20,7 @@ struct RideJob {
   ValidJob job;
   Machine machine;
   Axes offset = Axes::Zero();  ///< of the work [m], A [rad]
+  double cycles = 0;           ///< that it takes at most, undisturbed
   second_opinion::Asked asked;
 };
 

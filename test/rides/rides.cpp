@@ -30,7 +30,6 @@ using S = MachineState;
 
 constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
-constexpr double kRecoverEvery = 100;  ///< cycles; at once when no event is to come
 
 /// Axes that reach every command at once, and what can go wrong with them.
 class RideDrive : public Drive {
@@ -123,7 +122,11 @@ struct RideResult {
 class Ride {
  public:
   explicit Ride(std::uint64_t number)
-      : random_(number), job_(randomJob(random_)), event_every_(acrossDecades(random_, 30, 300)), watch_(job_.asked) {
+      : random_(number),
+        job_(randomJob(random_)),
+        event_every_(job_.cycles * acrossDecades(random_, 0.004, 0.04)),
+        recover_every_(acrossDecades(random_, 10, 100)),
+        watch_(job_.asked) {
     drive_.place(job_.machine.park);
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
     loop_->postSwivel(job_.job->process.setup_swivel);
@@ -155,7 +158,7 @@ class Ride {
 
   void cycle() {
     if (result_.events < kMostEvents && flip(random_, 1 / event_every_)) happen();
-    if (result_.events >= kMostEvents || flip(random_, 1 / kRecoverEvery)) recover();
+    if (result_.events >= kMostEvents || flip(random_, 1 / recover_every_)) recover();
     keepJogging();
     late_ = periods_ > 1;
     const ros::Duration period(job_.machine.period * std::exchange(periods_, 1.0));
@@ -234,12 +237,19 @@ class Ride {
       case S::kFault: return post(E::kReset);
       case S::kDisabled: return post(E::kEnable);
       case S::kHeld:
-      case S::kRetracted: return status.homed ? post(E::kResume) : loop_->postStop(E::kCancel);
+      case S::kRetracted:
+        if (flip(random_, 0.3)) return lookAtTheWork(status.state);
+        return status.homed ? post(E::kResume) : loop_->postStop(E::kCancel);
       case S::kReady:
         if (status.wheel.in_work) return post(E::kLift);
         return status.homed ? startRun(status) : post(E::kHome);
       default: return;
     }
+  }
+
+  void lookAtTheWork(S state) {
+    if (state == S::kHeld) return post(E::kRetract);
+    jogStep(static_cast<int>(fraction(random_) * kAxisCount));
   }
 
   void startRun(const LoopStatus& status) {
@@ -268,7 +278,8 @@ class Ride {
 
   Random random_;
   RideJob job_;
-  double event_every_;  ///< cycles
+  double event_every_;    ///< cycles
+  double recover_every_;  ///< cycles; at once when no event is to come
   second_opinion::Watch watch_;
   RideDrive drive_;
   std::unique_ptr<ControlLoop> loop_;

@@ -57,8 +57,8 @@ Real Watch::curve(const Tooth& t, Real x) const {
 
 Real Watch::deviation(const Tooth& t, Real x, Real a) const {
   // The helix goes round by radius * k a way along the cone.
-  const Real around = asked_.radius * t.k / std::hypot(Real(1), t.growth);
-  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / std::hypot(Real(1), around);
+  const Real around = asked_.radius * asked_.radius * t.k * t.k / (1 + t.growth * t.growth);
+  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / std::sqrt(1 + around);
 }
 
 Real Watch::z(const Tooth& t, Real x) const {

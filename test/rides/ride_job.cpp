@@ -129,7 +129,7 @@ ValidJob withCorrections(Random& random, const ValidJob& job) {
   return job.withZCorrections(std::vector<ZCorrection>(static_cast<std::size_t>(job.teeth()), c));
 }
 
-second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine) {
+second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const Axes& offset) {
   second_opinion::Asked asked;
   using second_opinion::Real;
   for (int i = 0; i < job.teeth(); ++i) {
@@ -155,6 +155,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine) {
   asked.from = job.strokeLaw(0).from;
   asked.to = job.strokeLaw(0).to;
   asked.clearance = job->process.clearance;
+  asked.offset_y = offset[kY];
   asked.deviation = job->interpolation.tolerance;
   asked.radius = Real(job->cutter.end_diameter) / 2;
   asked.period = machine.period;
@@ -193,7 +194,7 @@ std::optional<RideJob> draw(Random& random) {
   if (flip(random, 0.5))
     offset << between(random, -0.05, 0.05), between(random, -0.01, 0.01), 1e-3, between(random, -3, 3);
   machine.park << between(random, -0.02, 0.02), clear + offset[kY] + between(random, 0, 5e-3), 0, 0;
-  RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine)};
+  RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine, offset)};
   if (!isRideable(ride, ride.cycles)) return std::nullopt;
   return ride;
 }

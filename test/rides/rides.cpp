@@ -126,6 +126,7 @@ class Ride {
         job_(randomJob(random_)),
         event_every_(job_.cycles * acrossDecades(random_, 0.004, 0.04)),
         recover_every_(acrossDecades(random_, 10, 100)),
+        failures_(acrossDecades(random_, 0.02, 0.5)),
         watch_(job_.asked) {
     drive_.place(job_.machine.park);
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
@@ -200,31 +201,41 @@ class Ride {
     ++result_.events;
     const int axis = static_cast<int>(fraction(random_) * kAxisCount);
     const int some = 1 + static_cast<int>(fraction(random_) * 200);
-    using F = RideDrive::Failure;
-    switch (static_cast<int>(fraction(random_) * 24)) {
+    flip(random_, failures_) ? fail(axis, some) : ask(axis, some);
+  }
+
+  void ask(int axis, int some) {
+    switch (static_cast<int>(fraction(random_) * 16)) {
       case 0:
       case 1:
-      case 2: return loop_->postStop(E::kHold);
-      case 3: return post(E::kResume);
-      case 4:
+      case 2:
+      case 3: return loop_->postStop(E::kHold);
+      case 4: return post(E::kResume);
       case 5: return post(E::kRetract);
-      case 6: return setOverride(between(random_, 0.05, 1.2));
-      case 7: return setOverride(kMaxFeedOverride);
-      case 8: return setOverride(0);
-      case 9: return loop_->postStop(E::kCancel);
-      case 10: return loop_->postStop(E::kDisable);
-      case 11: return jogStep(axis);
-      case 12: return beginJog(axis, some);
-      case 13: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
-      case 14: return post(flip(random_, 0.5) ? E::kSpindleOn : E::kCoolantOn);
-      case 15: periods_ = 3; return;
-      case 16: periods_ = 20; return;
-      case 17: return drive_.fail(F::kEmergencyStop, axis, some);
-      case 18: return drive_.fail(F::kFault, axis, some);
-      case 19: return drive_.fail(flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
-      case 20: return drive_.fail(F::kStale, axis, some);
-      case 21: return drive_.fail(F::kThrow, axis, 2);
-      case 22: return drive_.fail(flip(random_, 0.5) ? F::kSpindle : F::kCoolant, axis, some);
+      case 6:
+      case 7: return setOverride(between(random_, 0.05, 1.2));
+      case 8: return setOverride(kMaxFeedOverride);
+      case 9: return setOverride(0);
+      case 10: return loop_->postStop(E::kCancel);
+      case 11: return loop_->postStop(E::kDisable);
+      case 12: return jogStep(axis);
+      case 13: return beginJog(axis, some);
+      case 14: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
+      default: return post(flip(random_, 0.5) ? E::kSpindleOn : E::kCoolantOn);
+    }
+  }
+
+  void fail(int axis, int some) {
+    using F = RideDrive::Failure;
+    switch (static_cast<int>(fraction(random_) * 9)) {
+      case 0: periods_ = 3; return;
+      case 1: periods_ = 20; return;
+      case 2: return drive_.fail(F::kEmergencyStop, axis, some);
+      case 3: return drive_.fail(F::kFault, axis, some);
+      case 4: return drive_.fail(flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
+      case 5: return drive_.fail(F::kStale, axis, some);
+      case 6: return drive_.fail(F::kThrow, axis, 2);
+      case 7: return drive_.fail(flip(random_, 0.5) ? F::kSpindle : F::kCoolant, axis, some);
       default: return drive_.fail(flip(random_, 0.7) ? F::kProbe : F::kReference, axis, some);
     }
   }
@@ -238,7 +249,7 @@ class Ride {
       case S::kDisabled: return post(E::kEnable);
       case S::kHeld:
       case S::kRetracted:
-        if (flip(random_, 0.3)) return lookAtTheWork(status.state);
+        if (flip(random_, 0.5)) return lookAtTheWork(status.state);
         return status.homed ? post(E::kResume) : loop_->postStop(E::kCancel);
       case S::kReady:
         if (status.wheel.in_work) return post(E::kLift);
@@ -280,6 +291,7 @@ class Ride {
   RideJob job_;
   double event_every_;    ///< cycles
   double recover_every_;  ///< cycles; at once when no event is to come
+  double failures_;       ///< of the events
   second_opinion::Watch watch_;
   RideDrive drive_;
   std::unique_ptr<ControlLoop> loop_;

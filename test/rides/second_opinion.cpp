@@ -87,6 +87,7 @@ void Watch::see(const Row& row) {
     checkPlace(row);
     if (row.in_stroke) checkStroke(row);
   }
+  checkWayOut(row);
   last_ = row;
   has_last_ = true;
 }
@@ -134,6 +135,27 @@ Real Watch::lowest(Real x) const {
   return y;
 }
 
+/// Above all of the work.
+Real Watch::clearHeight() const {
+  const Real growth = asked_.teeth.front().growth;
+  return std::max(asked_.from * growth, asked_.to * growth) + asked_.clearance;
+}
+
+/// Whatever a job leaves in the work goes up, and nowhere else.
+void Watch::checkWayOut(const Row& row) {
+  if (row.at[1] - asked_.offset_y >= clearHeight() - noiseOf(1)) {
+    in_work_ = false;
+  } else if (row.of_job) {
+    const auto [low, high] = std::minmax(asked_.from, asked_.to);
+    in_work_ = row.work[0] >= low && row.work[0] <= high;
+  } else if (in_work_ && row.moves) {
+    const auto stays = [&](std::size_t axis) { return row.at[axis] == last_.at[axis]; };
+    if (!(stays(0) && stays(2) && stays(3) && row.at[1] >= last_.at[1])) {
+      throw Violation("the wheel leaves the work another way than up");
+    }
+  }
+}
+
 void Watch::checkPlace(const Row& row) {
   if (row.lifts) {
     // A run begins wherever the axes are.
@@ -147,8 +169,8 @@ void Watch::checkPlace(const Row& row) {
   const Real surface = x * tooth.growth;
   const Real noise = noiseOf(1);
   if (y >= surface + asked_.clearance - noise) return;
+  if (y >= clearHeight() - noise) return;
   const auto [low, high] = std::minmax(asked_.from, asked_.to);
-  if (y >= std::max(low * tooth.growth, high * tooth.growth) + asked_.clearance - noise) return;
   if (!(x >= low - noise && x <= high + noise)) throw Violation(text("in the work, place", 0, x, x < low ? low : high));
   if (!(y >= lowest(x) - noise)) throw Violation(text("depth: place", 1, y, lowest(x)));
   // Wherever the wheel is near the work, it is on the path of the tooth.

@@ -34,6 +34,7 @@ struct Asked {
   std::vector<Pass> passes;
   Real from = 0, to = 0;  ///< X of a stroke's ends
   Real clearance = 0;     ///< above the surface, at which only strokes go across
+  Real offset_y = 0;      ///< of the machine's Y from the work's [m]
   Real deviation = 0;     ///< of A at the surface, across the helix [m]
   Real radius = 0;        ///< of the surface at X = lead
   Real period = 0;        ///< [s]
@@ -78,8 +79,10 @@ class Watch {
  private:
   void checkMotion(const Row& row);
   void checkPlace(const Row& row);
+  void checkWayOut(const Row& row);
   void checkStroke(const Row& row);
   Real lowest(Real x) const;
+  Real clearHeight() const;
   Real noiseOf(int axis) const;
 
   Asked asked_;
@@ -89,6 +92,7 @@ class Watch {
   std::array<double, 4> farthest_{};  ///< of each axis from 0
   Row last_;
   bool has_last_ = false;
+  bool in_work_ = false;         ///< a job has left the wheel there
   std::array<Point, 3> ends_{};  ///< of the last pairs, newest first
   int broken_ = 0;               ///< pairs over which acceleration and jerk mean nothing, since the axes stood still
 };

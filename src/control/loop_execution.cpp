@@ -78,8 +78,6 @@ Refusal ControlLoop::executeStop(MachineEvent event) {
   if (jogging_ || state_ == MachineState::kLifting) {
     power_off_next_ |= off;
     axis_move_.setSpeed(0);
-    // The job rests already; this ends it.
-    if (stream_ && event != MachineEvent::kHold) stream_->hold();
   } else if (stream_) {
     power_off_next_ |= off;
     // A wheel that is being lifted continues to the height at which a canceled job leaves it.
@@ -203,7 +201,6 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   written_.job = sample_.job = ++next_status_.jobs_started;
   waited_ = 0;
   may_lift_off_ = true;
-  power_off_next_ = false;
   apply(MachineEvent::kStart);
   return Refusal::kNone;
 }
@@ -230,7 +227,6 @@ Refusal ControlLoop::lift() {
   const double to = std::max(command_[kY], liftTarget());
   axis_move_.begin(MoveKind::kLift, command_, kY, to, config_.machine.limits.max_velocity[kY]);
   limit_check_.restart();
-  power_off_next_ = false;
   apply(MachineEvent::kLift);
   return Refusal::kNone;
 }

@@ -29,7 +29,6 @@ Answer ControlLoop::executeJog(const JogRequest& jog) {
 Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {
   if (jog.velocity == 0) {
     dead_man_.release();
-    if (jogging_ && continuous_) axis_move_.setSpeed(0);
     return Refusal::kNone;
   }
   if (!dead_man_.press()) return Refusal::kStopped;
@@ -75,7 +74,6 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   next_status_.contact = {};
   next_status_.client_lost = false;
   ++next_status_.jogs_begun;
-  power_off_next_ = false;
   apply(MachineEvent::kJog);
   return Refusal::kNone;
 }

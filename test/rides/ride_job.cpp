@@ -158,6 +158,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   asked.offset_y = offset[kY];
   asked.deviation = job->interpolation.tolerance;
   asked.radius = Real(job->cutter.end_diameter) / 2;
+  asked.feed = kMaxFeedOverride * Real(job->process.feed);
   asked.period = machine.period;
   for (int i = 0; i < kAxisCount; ++i) {
     const auto axis = static_cast<std::size_t>(i);

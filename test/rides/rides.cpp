@@ -154,6 +154,8 @@ class Ride {
       throw second_opinion::Violation("done with " + std::to_string(watch_.ground()) + " of " +
                                       std::to_string(job_.asked.passes.size()) + " passes");
     }
+    if (ended && status.end == JobEnd::kDone && !((sample_.command - job_.machine.park).abs() <= 1e-12).all())
+      throw second_opinion::Violation("done, but not parked");
     return ended && watch_.ground() == job_.asked.passes.size();
   }
 

@@ -55,10 +55,13 @@ Real Watch::curve(const Tooth& t, Real x) const {
   return t.a + (t.b == 0 ? t.k * way : t.k / t.b * std::log1p(t.b * way));
 }
 
-Real Watch::deviation(const Tooth& t, Real x, Real a) const {
+Real Watch::edge(const Tooth& t) const {
   // The helix goes round by radius * k a way along the cone.
-  const Real around = asked_.radius * asked_.radius * t.k * t.k / (1 + t.growth * t.growth);
-  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / std::sqrt(1 + around);
+  return std::sqrt(1 + asked_.radius * asked_.radius * t.k * t.k / (1 + t.growth * t.growth));
+}
+
+Real Watch::deviation(const Tooth& t, Real x, Real a) const {
+  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / edge(t);
 }
 
 Real Watch::z(const Tooth& t, Real x) const {
@@ -97,7 +100,12 @@ void Watch::checkMotion(const Row& row) {
     if (row.at != last_.at) throw Violation("the command moves without a setpoint");
     return;
   }
-  if (row.cycle == 0) ends_.fill(row.at);
+  if (row.cycle == 0) {
+    ends_.fill(row.at);
+  } else if (row.cycle != cycle_ + 1) {
+    throw Violation("setpoint " + std::to_string(row.cycle) + " follows " + std::to_string(cycle_));
+  }
+  cycle_ = row.cycle;
   if (row.late) broken_ = 4;
   const Real t = asked_.period;
   for (int i = 0; i < 4; ++i) {
@@ -202,6 +210,7 @@ void Watch::checkStroke(const Row& row) {
     throw Violation("a stroke of tooth " + std::to_string(row.tooth) + ", pass " + std::to_string(row.pass) +
                     " after " + std::to_string(ground_) + " passes");
   }
+  checkFeed(row, asked_.teeth[static_cast<std::size_t>(row.tooth)]);
   const Pass& own = asked_.passes[next ? ground_ : ground_ - 1];
   const Real x = row.work[0];
   const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
@@ -214,6 +223,22 @@ void Watch::checkStroke(const Row& row) {
   if (std::abs(x - asked_.to) > noiseOf(0)) return;
   ++ground_;
   reached_ = asked_.from;
+}
+
+/// A stroke goes forward, and a pair no faster than the feed.
+void Watch::checkFeed(const Row& row, const Tooth& tooth) {
+  const Real forward = asked_.to < asked_.from ? -1 : 1;
+  const Real noise = 2 * noiseOf(0);
+  if (!(forward * (Real(row.work[0]) - last_.work[0]) >= -noise)) {
+    throw Violation(text("a stroke goes back: place", 0, row.work[0], last_.work[0]));
+  }
+  if (row.cycle % 2 != 0) {
+    pair_from_ = last_.work[0];
+    return;
+  }
+  const Real pair = std::abs(row.work[0] - pair_from_) * std::sqrt(1 + tooth.growth * tooth.growth) * edge(tooth);
+  const Real most = 2 * asked_.period * asked_.feed;
+  if (!(pair <= most * (1 + 1e-9L) + noise)) throw Violation(text("feed: way", 0, pair, most));
 }
 
 }  // namespace second_opinion

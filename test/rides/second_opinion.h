@@ -37,6 +37,7 @@ struct Asked {
   Real offset_y = 0;      ///< of the machine's Y from the work's [m]
   Real deviation = 0;     ///< of A at the surface, across the helix [m]
   Real radius = 0;        ///< of the surface at X = lead
+  Real feed = 0;          ///< the fastest along the edge [m/s]
   Real period = 0;        ///< [s]
   std::array<double, 4> velocity{}, acceleration{}, jerk{};
 };
@@ -72,6 +73,8 @@ class Watch {
   std::size_t ground() const { return ground_; }
 
   Real curve(const Tooth& tooth, Real x) const;
+  /// Length of the edge by that along the surface.
+  Real edge(const Tooth& tooth) const;
   /// How far a place of A is off the curve: at the surface, across the helix [m].
   Real deviation(const Tooth& tooth, Real x, Real a) const;
   Real z(const Tooth& tooth, Real x) const;
@@ -81,6 +84,7 @@ class Watch {
   void checkPlace(const Row& row);
   void checkWayOut(const Row& row);
   void checkStroke(const Row& row);
+  void checkFeed(const Row& row, const Tooth& tooth);
   Real lowest(Real x) const;
   Real clearHeight() const;
   Real noiseOf(int axis) const;
@@ -94,6 +98,8 @@ class Watch {
   bool has_last_ = false;
   bool in_work_ = false;         ///< a job has left the wheel there
   std::array<Point, 3> ends_{};  ///< of the last pairs, newest first
+  std::uint64_t cycle_ = 0;      ///< of the last setpoint
+  Real pair_from_ = 0;           ///< X at the last even setpoint of a stroke
   int broken_ = 0;               ///< pairs over which acceleration and jerk mean nothing, since the axes stood still
 };
 

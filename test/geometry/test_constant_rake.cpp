@@ -145,11 +145,11 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
   }
 }
 
-TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
+TEST(ConstantRake, OfAWornWheelTeethShareACorrectionWithTheirSpiralAngle) {
   GrindJob job = steepJob();
   job.tooth_angles = {0, 1.5, 3.1, 4.6};
   job.spiral_angles = {20 * kDegree, 20.2 * kDegree, 20 * kDegree, 20.2 * kDegree};
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process.wheel_wear = 5 * kMillimetre;
   const ValidJob with_law = withLaws(ValidJob(job));
   const auto same = [&](int i, int k) {
     return with_law.zCorrectionOf(i).coefficients == with_law.zCorrectionOf(k).coefficients;
@@ -159,16 +159,18 @@ TEST(ConstantRake, TeethShareACorrectionWithTheirSpiralAngle) {
   EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
 }
 
-TEST(ConstantRake, TheSameJobGivesTheSameBits) {
-  const ValidJob once = withLaws(ValidJob(steepJob()));
+TEST(ConstantRake, TheSameJobGivesTheSameBitsEitherWayOfTheStroke) {
+  GrindJob job = steepJob();
+  const ValidJob once = withLaws(ValidJob(job));
   // Of a job that was computed before nothing is taken.
   ZCorrection other = once.zCorrectionOf(0);
   other.coefficients[2] += 1e-6;
   const ValidJob again = withLaws(once.withZCorrections({other}));
   EXPECT_EQ(std::memcmp(&again.zCorrectionOf(0), &once.zCorrectionOf(0), sizeof(ZCorrection)), 0);
-  GrindJob published = steepJob();
-  published.process.z_law = ZLaw::kPublished;
-  EXPECT_EQ(withLaws(ValidJob(published)).zCorrectionOf(0).pieces, 0);
+  job.process.direction = StrokeDirection::kToEnd;
+  EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).coefficients, once.zCorrectionOf(0).coefficients);
+  job.process.z_law = ZLaw::kPublished;
+  EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).pieces, 0);
 }
 
 TEST(ConstantRake, ACylinderNeedsNoCorrection) {
@@ -179,19 +181,6 @@ TEST(ConstantRake, ACylinderNeedsNoCorrection) {
     const ZCorrection& c = with_law.zCorrectionOf(tooth);
     for (double x = -0.01; x < 0.04; x += 0.001) EXPECT_LT(std::abs(c.at(x).z), 1e-9);
   }
-}
-
-TEST(ConstantRake, TheWheelIsThatOfTheJobsStart) {
-  GrindJob job = steepJob();
-  job.process.wheel_wear = 5 * kMillimetre;
-  EXPECT_LT(rakeError(groundCutterOf(withLaws(ValidJob(job))), job), 0.005);
-}
-
-TEST(ConstantRake, EitherWayOfTheStrokeTheCorrectionIsTheSame) {
-  GrindJob job = steepJob();
-  const ValidJob there = withLaws(ValidJob(job));
-  job.process.direction = StrokeDirection::kToEnd;
-  EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).coefficients, there.zCorrectionOf(0).coefficients);
 }
 
 TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {

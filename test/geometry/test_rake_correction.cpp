@@ -19,16 +19,8 @@ ZCorrection bent(double from, double piece, int pieces) {
   return c;
 }
 
-TEST(ZCorrection, ItIsSmoothUpToTheThirdDerivativeWhichBelongsToZ) {
+TEST(ZCorrection, ItsDerivativesAreThoseOfZ) {
   const ZCorrection c = bent(-2, 1.5, 6);
-  for (int i = 1; i < c.pieces; ++i) {
-    const double knot = c.from + i * c.piece;
-    const auto before = c.at(knot - 1e-9), after = c.at(knot + 1e-9);
-    EXPECT_NEAR(before.z, after.z, 1e-7);
-    EXPECT_NEAR(before.first, after.first, 1e-7);
-    EXPECT_NEAR(before.second, after.second, 1e-7);
-    EXPECT_NEAR(before.third, after.third, 1e-7);
-  }
   for (double x = -3; x < 8; x += 0.37) {
     constexpr double kStep = 1e-5;
     const auto a = c.at(x - kStep), b = c.at(x + kStep), v = c.at(x);

@@ -117,7 +117,7 @@ ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
 
 // Documented: swivel 32.350, height 5.880, depth 2.656 and 2.616, lead 11.847 mm give rake 8.000 at both ends and 7.954
 // amid, the core to 2 um, the edge within 0.053 deg. Here the rake's error is shared out between ends and middle.
-TEST(SetupSolver, ThePapersCutterGetsTheAskedEdgeAndCore) {
+TEST(SetupSolver, ThePapersEdgeAndCoreAreSetAsDocumented) {
   const SetupRequest request = requestForAll({});
   const SolvedSetup s = solved(request);
   EXPECT_NEAR(s.setup.swivel / kDegree, 32.350, 0.015);
@@ -125,21 +125,17 @@ TEST(SetupSolver, ThePapersCutterGetsTheAskedEdgeAndCore) {
   EXPECT_NEAR(s.depth / kMillimetre, 2.656, 0.003);
   EXPECT_NEAR(s.depth_end / kMillimetre, 2.616, 0.003);
   EXPECT_NEAR(s.setup.lead / kMillimetre, 11.847, 0.015);
-  const ErrorsOverFlute errors = errorsOf(request, s);
-  EXPECT_LT(errors.rake, 0.05);
-  EXPECT_LT(errors.edge, 0.06);
-  EXPECT_LT(errors.core, 0.005);
 }
 
 TEST(SetupSolver, ConesGetTheAskedEdgeAndCore) {
-  for (const Shop& shop :
-       {Shop{8, 3, 25, 10, 20, 1, 80, 2}, Shop{12, 6, 20, 6, 20, 1.2, 75, 2}, Shop{6, 4, 20, 12, 20, 0.8, 80, 1.5}}) {
+  for (const Shop& shop : {Shop{}, Shop{8, 3, 25, 10, 20, 1, 80, 2}, Shop{12, 6, 20, 6, 20, 1.2, 75, 2},
+                           Shop{6, 4, 20, 12, 20, 0.8, 80, 1.5}}) {
     const SetupRequest request = requestForAll(shop);
     const SolvedSetup s = solved(request);
     SCOPED_TRACE(testing::Message() << shop.cone << " deg");
     EXPECT_NE(s.setup.lead, 0);
     const ErrorsOverFlute errors = errorsOf(request, s);
-    EXPECT_LT(errors.rake, 0.1);
+    EXPECT_LT(errors.rake, shop.diameter == Shop{}.diameter ? 0.05 : 0.1);
     EXPECT_LT(errors.edge, 0.06);
     EXPECT_LT(errors.core, 0.005);
   }

@@ -41,13 +41,10 @@ GrindJob tapered() {
 }
 
 TEST(TouchOff, ReportsWhatTheAxesRead) {
-  TouchReadings touch = touchReadings(paper());
+  const TouchReadings touch = touchReadings(paper());
   EXPECT_EQ(touch.y, 0);
   EXPECT_NEAR(touch.z_for_y / kMillimetre, -2.788, 1e-9);
   EXPECT_NEAR(touch.z / kMillimetre, 1.5 - 2.788, 1e-9);
-  touch = touchReadings(tapered());
-  EXPECT_NEAR(touch.y / kMillimetre, -0.25, 1e-9);
-  EXPECT_NEAR(touch.z_for_y / kMillimetre, -(2.788 + kEdge / kMillimetre), 1e-6);
 }
 
 TEST(TouchOff, AStraightWheelTouchesOverItsWidth) {
@@ -63,7 +60,6 @@ TEST(TouchOff, AStraightWheelTouchesOverItsWidth) {
 TEST(TouchOff, ATaperedWheelTouchesAtItsLargerFace) {
   const double edge = -2.788 * kMillimetre - kEdge;
   EXPECT_EQ(heightRefusal(tapered(), edge), "");
-  EXPECT_EQ(heightRefusal(tapered(), touchReadings(tapered()).z_for_y), "");
   EXPECT_NE(heightRefusal(tapered(), edge - 3 * kMicron), "");
   EXPECT_NE(heightRefusal(tapered(), -2.788 * kMillimetre).find("move Z to -4.0632"), std::string::npos)
       << heightRefusal(tapered(), -2.788 * kMillimetre);
@@ -134,7 +130,8 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
   for (const Case c : {Case{45, 0.5, 0.5}, Case{20, 0.1, 0.1}, Case{30, 0, 0.8}, Case{30, 0.8, 0}, Case{60, 0.3, 0.2},
                        Case{0, 0.5, 0.3}}) {
     for (const WheelFace side : {WheelFace::kUpper, WheelFace::kLower}) {
-      for (const WheelShape shape : {WheelShape::kAngled, WheelShape::kCup}) {
+      for (const WheelShape shape : {WheelShape::kStraight, WheelShape::kAngled, WheelShape::kCup}) {
+        if (shape == WheelShape::kStraight && c.angle != 0) continue;
         GrindJob job = worn();
         GrindProcess& p = job.process;
         p.wheel_profile = shape;
@@ -161,17 +158,10 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
   }
 }
 
-TEST(TouchOff, TheOtherProfilesMeasureTheirDiameterToo) {
+TEST(TouchOff, AFullRadiusAndPointsMeasureTheirDiameterToo) {
   GrindJob job = worn();
   GrindProcess& p = job.process;
   const double max = p.wheel_diameter / 2;
-  EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
-  p.wheel_corner_radius_lower = 0.2 * kMillimetre;
-  p.wheel_corner_radius_upper = 0.4 * kMillimetre;
-  EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
-  EXPECT_NEAR(wheelOf(job).radius(-0.0015), max - 0.0002, 1e-9);
-  EXPECT_NEAR(wheelOf(job).radius(0.0015), max - 0.0004, 1e-9);
-  p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
   p.wheel_profile = WheelShape::kFullRadius;
   EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
   EXPECT_NEAR(wheelOf(job).radius(0.0015 * std::sin(0.7)), max - 0.0015 + 0.0015 * std::cos(0.7), 1e-9);

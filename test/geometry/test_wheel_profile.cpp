@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -11,32 +10,6 @@ namespace grinder {
 namespace test_wheel_profile {
 
 using units::kDegree;
-
-TEST(WheelProfile, AFullRadiusIsASemicircle) {
-  const auto wheel = WheelProfile::fullRadius(0.1, 0.006);
-  for (const double w : {-0.003, -0.002, 0.0, 0.0011, 0.003}) {
-    EXPECT_NEAR(wheel.radius(w), 0.047 + std::sqrt(0.003 * 0.003 - w * w), 1e-12);
-  }
-  EXPECT_NEAR(wheel.maxRadius(), 0.05, 1e-15);
-}
-
-TEST(WheelProfile, TheSlopeIsThatOfTheRadius) {
-  for (const auto& wheel :
-       {WheelProfile::straight(0.1, 0.006), WheelProfile::angled(0.08, 0.005, 25 * kDegree, {8e-4, 3e-4}),
-        WheelProfile::fullRadius(0.1, 0.006)}) {
-    for (const double part : {0.02, 0.11, 0.3, 0.52, 0.77, 0.98}) {
-      const double w = wheel.lowerFace() + part * (wheel.upperFace() - wheel.lowerFace());
-      constexpr double kStep = 1e-8;
-      EXPECT_NEAR(wheel.slope(w), (wheel.radius(w + kStep) - wheel.radius(w - kStep)) / (2 * kStep), 1e-6) << part;
-    }
-  }
-}
-
-TEST(WheelProfile, InTheMirrorItsFacesChangePlaces) {
-  const auto wheel = WheelProfile::angled(0.08, 0.005, 25 * kDegree, {8e-4, 3e-4});
-  const auto mirrored = wheel.mirrored();
-  for (double w = -0.0025; w <= 0.0025; w += 0.0001) EXPECT_NEAR(mirrored.radius(-w), wheel.radius(w), 1e-15) << w;
-}
 
 TEST(WheelProfile, WhatIsNoWheelIsRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -63,6 +63,8 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
        "process.depth_mm = 5 mm; allowed: less than 5 mm, the cutter's radius at the small end"},
       {[](GrindJob& j) { backTaper(j, 10e-3, 0), j.process.depth = 0.5e-3; },
        "process.depth_mm = 0.5 mm; allowed: less than 0.4759222072 mm, the cutter's radius at the flute's end"},
+      {[](GrindJob& j) { j.process.depth_end = 7.63e-3; },
+       "process.depth_end_mm = 7.63 mm; allowed: less than 7.624659906 mm, the cutter's radius at the flute's end"},
       {[](GrindJob& j) { chord(j, 1.5e-3); },
        "cutter.chordal_rake_depth_mm = 1.5 mm; allowed: less than 1.5 mm, the asked depth of the flute"},
       {[](GrindJob& j) { j.process.finish_infeed = 0.6e-3; },
@@ -107,6 +109,7 @@ TEST(GrindJob, TakesAsMuchAsIsAllowed) {
       [](GrindJob& j) { j.process.overtravel_end = 57e-3; },
       [](GrindJob& j) { backTaper(j, 18e-3, 1e-3), j.process.overtravel_end = 100e-3; },
       [](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 - 1e-6)); },
+      [](GrindJob& j) { j.process.depth_end = 7.62e-3; },
       [](GrindJob& j) { chord(j, 1.499e-3); },
       [](GrindJob& j) {
         j.tooth_angles = {0, 88 * kDeg, 180 * kDeg, 268 * kDeg, 359.999 * kDeg};

@@ -313,48 +313,5 @@ TEST(JobFuzz, AllowedJobsOfAllKindsAreAnswered) {
   EXPECT_GT(tally.refused, 300);
 }
 
-/// Does to a stream whatever an operator can, and more, at random moments.
-void meddle(Dice& dice, SetpointStream& stream, bool resting) {
-  if (!resting && !dice.once(150)) return;
-  switch (resting ? dice.below(4) : dice.below(5)) {
-    case 0: return stream.retract();
-    case 1: return stream.setFeedOverride(dice.of({kNaN, kInf, -kInf, -1.0, -0.0, kTiny, 0.0, 1e-3, 1.2, 1.3, kHuge}));
-    case 2:
-    case 3: stream.setFeedOverride(dice.within(0.1, kMaxFeedOverride)); return stream.resume();
-    default: return stream.hold();
-  }
-}
-
-/// Runs a stream to its end, or for long enough.
-void meddleToTheEnd(Dice& dice, SetpointStream& stream) {
-  LimitCheck check(stream.program().machine().limits, stream.program().machine().period);
-  check.restart(stream.program().terms());
-  Setpoint p;
-  for (int i = 0; i < 6000 && !stream.finished(); ++i) {
-    const bool resting = !stream.next(p);
-    if (!resting) {
-      ASSERT_TRUE(p.position.isFinite().all() && p.velocity.isFinite().all() && std::isfinite(p.feed));
-      const auto violation = check.check(p);
-      ASSERT_FALSE(violation) << text(reasonOf(*violation));
-    }
-    meddle(dice, stream, resting);
-  }
-}
-
-TEST(JobFuzz, StreamsOfGoodJobsStayWithinLimitsWhateverIsDoneToThem) {
-  Dice dice(4);
-  int streams = 0;
-  for (int i = 0; i < 1500 && !HasFailure(); ++i) {
-    const Case c = anyCase(dice, allowedJob(dice));
-    const JobPlan plan = c.plan();
-    if (!plan.good()) continue;
-    SCOPED_TRACE(textOf(c));
-    SetpointStream stream(plan.program);
-    meddleToTheEnd(dice, stream);
-    ++streams;
-  }
-  EXPECT_GT(streams, 50);
-}
-
 }  // namespace test_job_fuzz
 }  // namespace grinder

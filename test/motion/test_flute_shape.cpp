@@ -87,14 +87,5 @@ TEST(FluteShape, ADepthThatIsTheSameAtBothEndsChangesNoBit) {
   EXPECT_EQ(i, expected.size());
 }
 
-TEST(FluteShape, ADepthBeyondTheRadiusAtTheFlutesEndIsRefused) {
-  GrindJob job = paperJob();  // the radius there is 7.625 mm
-  job.process.depth_end = 7.62e-3;
-  EXPECT_TRUE(validate(job).empty());
-  job.process.depth_end = 7.63e-3;
-  ASSERT_EQ(validate(job).size(), 1u);
-  EXPECT_EQ(validate(job)[0].field, "process.depth_end");
-}
-
 }  // namespace test_flute_shape
 }  // namespace grinder

@@ -32,7 +32,7 @@ Size sizeOf(const MarkerArray& array, const std::string& ns, const std::string& 
   return size;
 }
 
-TEST(FirstView, HasWheelAndBlankOfTheirSizes) {
+TEST(FirstView, HasWheelAndBlankOfTheirSizesAndFewPoints) {
   const MarkerArray array = firstViewMarkers({0.08, 0.006, 0.012, 0.05});
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   const Size wheel = sizeOf(array, "wheel", "wheel"), blank = sizeOf(array, "blank", "cutter");
@@ -42,15 +42,12 @@ TEST(FirstView, HasWheelAndBlankOfTheirSizes) {
   EXPECT_NEAR(blank.from, 0, 1e-12);
   EXPECT_NEAR(blank.to, 0.05, 1e-12);
   EXPECT_NEAR(blank.radius, 0.006, 1e-12);
-}
-
-TEST(FirstView, TheWheelTurnsAboutZAndHasFewPoints) {
   std::size_t points = 0;
-  for (const Marker& m : firstViewMarkers({0.08, 0.006, 0.012, 0.05}).markers) {
+  for (const Marker& m : array.markers) {
     if (m.ns != "wheel") continue;
     points += m.points.size();
     const auto& q = m.pose.orientation;
-    // Where the outline's axis X comes to.
+    // The wheel's outline turns about Z: where its axis X comes to.
     EXPECT_NEAR(2 * (q.x * q.z - q.y * q.w), 1, 1e-12);
   }
   EXPECT_GT(points, 1000u);

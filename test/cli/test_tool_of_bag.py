@@ -148,6 +148,10 @@ class TestToolOfBag(unittest.TestCase):
         for taken in self.radius_taken(data['tool']):
             self.assertAlmostEqual(taken, 0, delta=0.5e-3)
 
+    def test_teeth_that_are_not_in_the_bag_are_reported(self):
+        data = self.report(self.bag(('flute', {'rows': [row for row in self.rows['flute'] if int(row['tooth']) < 2]})))
+        self.assertIn('not all of its teeth were ground in this job', ' '.join(data['left_out']))
+
     def test_of_several_tools_the_last_begun_counts_with_what_continued_it(self):
         flutes = self.rows['flute']
         cut = next(i for i, row in enumerate(flutes) if row['tooth'] == '3')

@@ -1,7 +1,7 @@
 #include "control/rig.h"
+#include "soon.h"
 
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <stdexcept>
 #include <thread>
@@ -43,12 +43,12 @@ class Preparation : public testing::Test {
   void post(E event) { ASSERT_TRUE(rig().loop->post(event)); }
   /// Runs cycles until the request is answered.
   std::string answer() {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (std::chrono::steady_clock::now() < deadline) {
+    std::optional<RequestReply> reply;
+    EXPECT_TRUE(soon([&] {
       rig().runUnseen(1);
-      if (const auto reply = rig().loop->reply()) return reply->accepted ? "accepted" : reply->text;
-    }
-    return "no answer";
+      return (reply = rig().loop->reply()).has_value();
+    }));
+    return !reply ? "no answer" : reply->accepted ? "accepted" : reply->text;
   }
   std::string enable() {
     post(E::kEnable);

@@ -1,6 +1,7 @@
 #include "control/fixtures.h"
 #include "control/paper_stream.h"
 #include "flute_grinder/control/control_loop.h"
+#include "soon.h"
 
 #include <atomic>
 #include <chrono>
@@ -54,16 +55,6 @@ class LoopThreads : public testing::Test {
       std::mt19937 random(seed);
       while (busy_) work(random);
     });
-  }
-
-  template <typename Condition>
-  static bool soon(const Condition& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!condition()) {
-      if (std::chrono::steady_clock::now() > deadline) return false;
-      std::this_thread::yield();
-    }
-    return true;
   }
 
   /// Starts a job, waits for its end, and destroys its stream.

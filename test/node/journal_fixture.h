@@ -10,7 +10,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <string>
 
 namespace grinder::test_support {
@@ -18,11 +17,6 @@ namespace grinder::test_support {
 /// A folder of its own, with a journal that is not there yet.
 class JournalTest : public ::testing::Test {
  protected:
-  static std::string contentOf(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
   static void fill(const std::string& path, const std::string& content) {
     std::ofstream(path, std::ios::binary) << content;
   }

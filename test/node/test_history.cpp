@@ -1,25 +1,24 @@
 #include "node/history.h"
 
+#include "soon.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace grinder {
 namespace test_history {
 
 namespace fs = std::filesystem;
+using test_support::readFile;
 
 constexpr std::uint64_t kPlenty = 1 << 30;
 
@@ -31,8 +30,7 @@ class HistoryTest : public ::testing::Test {
   }
   /// Waits until there is an error, or none.
   void waitForError(bool is) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (history_->error().empty() == is && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+    EXPECT_TRUE(test_support::soon([&] { return history_->error().empty() != is; }));
   }
   /// Waits until all is on the disk.
   void close() { history_.reset(); }
@@ -43,12 +41,6 @@ class HistoryTest : public ::testing::Test {
     return name;
   }
 
-  static std::string read(const fs::path& path) {
-    std::ifstream file(path);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-  }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_ / "a" / "b")) names.push_back(entry.path().filename());
@@ -69,7 +61,7 @@ TEST_F(HistoryTest, KeepsEveryRecordWithinTheLimit) {
   for (int i = 0; i < 10; ++i) keep(nameOf(i), "record " + std::to_string(i));
   close();
   ASSERT_EQ(files().size(), 10U);
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(read(folder_ / "a" / "b" / nameOf(i)), "record " + std::to_string(i));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(readFile(folder_ / "a" / "b" / nameOf(i)), "record " + std::to_string(i));
 }
 
 TEST_F(HistoryTest, RemovesTheOldestBeyondTheLimitAndKeepsTheNewestWhateverItsSize) {
@@ -140,7 +132,7 @@ TEST_F(HistoryTest, IsNeverReadHalf) {
   int reads = 0;
   while (!fs::exists(folder / nameOf(1))) {
     if (!fs::exists(folder / nameOf(0))) continue;
-    EXPECT_EQ(read(folder / nameOf(0)).size(), whole.size());
+    EXPECT_EQ(readFile(folder / nameOf(0)).size(), whole.size());
     ++reads;
   }
   EXPECT_GT(reads, 0);

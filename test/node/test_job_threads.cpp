@@ -6,6 +6,7 @@
 #include "node/job_gate.h"
 #include "node/planner.h"
 #include "random_cases.h"
+#include "soon.h"
 
 #include <atomic>
 #include <chrono>
@@ -23,6 +24,7 @@ namespace test_job_threads {
 
 using test_support::FakeDrive;
 using test_support::machineConfig;
+using test_support::soon;
 
 using E = MachineEvent;
 using S = MachineState;
@@ -34,16 +36,6 @@ actionlib_msgs::GoalID id(int number) {
   actionlib_msgs::GoalID id;
   id.id = std::to_string(number);
   return id;
-}
-
-template <typename Condition>
-bool soon(const Condition& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::yield();
-  }
-  return true;
 }
 
 class JobThreads : public ::testing::Test {

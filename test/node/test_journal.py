@@ -8,7 +8,6 @@ import random
 import signal
 import time
 
-import flute_grinder.job
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from flute_grinder.msg import GrinderState, GrindResult
@@ -35,9 +34,9 @@ PASSES = [(tooth, pass_) for tooth in range(3) for pass_ in range(2)]
 DEPTHS = (0.3 * MM, 0.5 * MM)
 
 
-def quick_machine(journal, at=None, park=(-0.004, 0.002)):
+def quick_machine(journal, at=None):
     """A machine that loses no time with rapids and its spindle. Its axes stand at park, or at other positions."""
-    parameters = gc.machine()
+    parameters, park = gc.machine(), (-0.004, 0.002)
     parameters['journal'] = journal
     parameters['hardware']['spindle_run_up_time'] = 0
     parameters['park_position'].update(zip(gc.JOINTS, park))
@@ -67,7 +66,6 @@ class JournalTest(gc.OwnNode):
     """With a folder for the journal, and nodes that are started on it one after another."""
 
     at = None  # where the axes stand when a node is started
-    park = (-0.004, 0.002)
 
     def setUp(self):
         self.folder = gc.temp_folder(self.addCleanup)
@@ -78,7 +76,7 @@ class JournalTest(gc.OwnNode):
         self.job = gc.job_from_file(self.job_path)
 
     def start(self, **arguments):
-        super().start(quick_machine(self.journal, self.at, self.park), **arguments)
+        super().start(quick_machine(self.journal, self.at), **arguments)
         self.client.confirm_swivel(gc.PAPER['process.setup_swivel'])
 
     def start_ready(self, **arguments):
@@ -129,9 +127,9 @@ class JournalTest(gc.OwnNode):
                          [journal[key] for key in CUTTER_KEYS[:-1]])
         self.assertEqual(list(reported.cutter.tooth_angles), journal['tooth_angles_rad'])
 
-    def hold_in_stroke_of(self, tooth, pass_, override=0.02):
+    def hold_in_stroke_of(self, tooth, pass_):
         """Holds a job in the midst of a stroke. The feed is low so that it does not get away."""
-        self.assertTrue(self.client.set_feed_override(override).success)
+        self.assertTrue(self.client.set_feed_override(0.02).success)
         run = self.client.send(self.job, job_name=JOB_NAME)
         run.wait_past(lambda s: s.move == STROKE and (s.tooth, s.pass_) == (tooth, pass_) and s.position[X] > FROM,
                       'the stroke')
@@ -233,6 +231,14 @@ class TestContinue(JournalTest):
         self.client.wait_state(GrinderState.READY)
         self.lift()
         gc.poll(lambda: not self.read_journal()['wheel_in_work'], 'the wheel lifted in the journal')
+        # Another job is refused, and a dry run of it forgets nothing.
+        run = self.client.send(gc.SHORT, discard=False).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+        for word in (JOB_NAME, 'continue', 'discard'):
+            self.assertIn(word, run.text)
+        self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
+        other = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--continue')
+        self.assertIn("the grinder's last job was another one", other.stderr)
         self.assertEqual(self.client.batches, [])
         self.grind(0, 'run', self.job_path, '--continue')
         self.client.fresh_state()
@@ -246,32 +252,6 @@ class TestContinue(JournalTest):
         self.wait_finished()
         self.assertRegex(self.said('status'), r'(?m)^last job .*finished')
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^the job is finished: ')
-
-
-class TestContinueARelief(JournalTest):
-    park = (-0.02, 0.01)
-
-    def test_killed_in_a_stroke_it_goes_on_with_that_pass(self):
-        path = gc.reamer_file(os.path.join(self.folder, 'reamer.yaml'))
-        self.job = flute_grinder.job.goal(path, 'primary')
-        self.start_ready()
-        run = self.hold_in_stroke_of(1, 0, override=0.2)  # its strokes are long
-        journal = self.wait_left(run)
-        self.kill()
-        self.assertEqual((journal['finished'], journal['tooth'], journal['pass'], journal['wheel_in_work']),
-                         (False, 1, 0, True))
-
-        self.start_ready()
-        self.client.confirm_swivel(self.job.process.setup_swivel)
-        self.assertTrue(self.client.set_feed_override(1).success)
-        other = self.grind(1, 'run', path, '--operation', 'secondary', '--continue')
-        self.assertIn("the grinder's last job was another one", other.stderr)
-        self.assertEqual(self.client.batches, [])
-        self.grind(0, 'run', path, '--operation', 'primary', '--continue')
-        self.client.fresh_state()
-        begun, _ = strokes_of(s for batch in self.client.batches for s in batch.setpoints)
-        self.assertEqual(begun, [(tooth, 0) for tooth in range(1, 6)])
-        self.wait_finished()
 
 
 class TestDamagedJournal(JournalTest):
@@ -306,60 +286,6 @@ class TestOwner(JournalTest):
         self.assertIn('journal %s is in use by node /%s, process %d' % (self.journal, self.node.name,
                                                                          self.node.process.pid), second.output)
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
-        self.check_reported(self.wait_finished())
-
-
-class TestUnfinishedJob(JournalTest):
-    """A job that is not finished is forgotten only by whoever says so."""
-
-    def leave_unfinished(self):
-        run = self.hold_in_stroke_of(0, 1)
-        run.cancel()
-        run.wait()
-        self.client.wait_state(GrinderState.READY)
-        self.client.wait_rest()
-        self.assertTrue(self.client.set_feed_override(1).success)
-        self.wait_left(run)
-        gc.poll(lambda: not self.read_journal()['wheel_in_work'], 'the wheel lifted in the journal')
-        with open(self.journal, 'rb') as file:
-            self.left = file.read()
-
-    def check_refused(self, job):
-        rest = self.client.wait_rest()
-        run = self.client.send(job, discard=False).wait()
-        self.assertEqual(run.code, GrindResult.NOT_READY)
-        for word in (JOB_NAME, 'continue', 'discard'):
-            self.assertIn(word, run.text)
-        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
-        self.assertEqual(run.setpoints, [])
-        with open(self.journal, 'rb') as file:
-            self.assertEqual(file.read(), self.left)
-
-    def check_ground(self, job, discard=False, **fields):
-        self.assertEqual(self.client.run(job, discard=discard, **fields).status, 'SUCCEEDED')
-        journal = self.wait_finished()
-        self.check_reported(journal)
-        return journal
-
-    def test_it_is_remembered_until_it_is_continued_or_discarded(self):
-        self.start_ready()
-        self.leave_unfinished()
-        self.check_refused(gc.SHORT)
-        self.kill()
-        self.start_ready()
-        self.check_refused(gc.SHORT)
-        # The restart takes it from the journal.
-        self.assertTrue(self.client.set_feed_override(1).success)
-        journal = self.read_journal()
-        self.check_ground(self.job, first_tooth=journal['tooth'], first_pass=journal['pass'])
-        self.check_ground(gc.SHORT)
-
-        self.leave_unfinished()
-        self.check_refused(gc.SHORT)
-        self.assertEqual(self.client.send(gc.SHORT, dry_run=True).wait().status, 'SUCCEEDED')
-        self.check_refused(gc.SHORT)
-        journal = self.check_ground(gc.SHORT, discard=True, job_name='other.yaml')
-        self.assertEqual(journal['job_name'], 'other.yaml')
 
 
 class TestSlowDisk(JournalTest):
@@ -371,24 +297,14 @@ class TestSlowDisk(JournalTest):
         self.start_ready(environment=self.disk.environment)
         self.addCleanup(self.disk.release)
 
-    def test_spindle_starts_and_the_axes_wait_for_the_entry(self):
+    def test_spindle_starts_the_axes_wait_for_the_entry_and_a_cancel_does_not(self):
         self.disk.stop()
         rest = self.client.wait_rest()
         run = self.client.send(self.job)
         self.client.wait_for(lambda: self.client.states[-1].spindle_at_speed, 'the spindle at speed')
         self.assertEqual(self.client.fresh_state().state, GrinderState.STARTING)
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
-        self.assertEqual(run.setpoints, [])
         self.assertFalse(os.path.exists(self.journal))
-        self.disk.release()
-        run.wait_complete()
-        self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.check_reported(self.wait_finished())
-
-    def test_cancel_does_not_wait_for_the_entry(self):
-        self.disk.stop()
-        run = self.client.send(self.job)
-        self.client.wait_state(GrinderState.STARTING)
         run.cancel()
         self.client.wait_state(GrinderState.READY)
         self.disk.release()

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-// The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal_file.cpp.
+// The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal.cpp.
 namespace grinder {
 namespace test_offset_store {
 
@@ -24,7 +24,7 @@ class OffsetStoreTest : public JournalTest {
     store.set(kY, {1, "", 1});
     store.set(kY, kSome);
     store.set(kA, kOther);
-    return contentOf(path_);
+    return readFile(path_);
   }
 
   /// Why the content leaves offsets unknown; empty if it does not.
@@ -153,12 +153,7 @@ TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   EXPECT_THROW(store.set(kY, {1000.1, "", 0}), AtomicFileError);
   EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
-  EXPECT_EQ(contentOf(path_), good);
-}
-
-TEST_F(OffsetStoreTest, BelongsToOneNode) {
-  const OffsetStore first(path_, "/left/grinder");
-  EXPECT_THROW(OffsetStore(path_, "/right/grinder"), AtomicFileOwned);
+  EXPECT_EQ(readFile(path_), good);
 }
 
 }  // namespace test_offset_store

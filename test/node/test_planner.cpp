@@ -4,6 +4,7 @@
 #include "collision/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/job/grind_job.h"
+#include "soon.h"
 
 #include <gtest/gtest.h>
 
@@ -55,9 +56,7 @@ struct Asked {
   }
   /// Waits until it is being planned.
   void waitForProgress() const {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    while (request.control->done == 0 && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    EXPECT_GT(request.control->done, 0);
+    EXPECT_TRUE(test_support::soon([&] { return request.control->done > 0; }));
   }
   bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 

@@ -3,14 +3,13 @@
 
 #include "control/fixtures.h"
 #include "flute_grinder/job/grind_job.h"
+#include "soon.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <thread>
 
 namespace grinder {
 namespace test_progress_tracker {
@@ -39,9 +38,7 @@ class ProgressTrackerTest : public ::testing::Test {
  protected:
   /// What is on the disk once all is there that was entered.
   Progress onDisk() {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!tracker_.upToDate() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
-    EXPECT_TRUE(tracker_.upToDate());
+    EXPECT_TRUE(test_support::soon([this] { return tracker_.upToDate(); }));
     return writer_.status().on_disk;
   }
 

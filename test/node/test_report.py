@@ -5,7 +5,6 @@ import datetime
 import glob
 import html.parser
 import json
-import math
 import os
 import pathlib
 import re
@@ -24,7 +23,7 @@ import grinder_client as gc
 import path_checks as checks
 from flute_grinder.msg import GrinderState
 from grind_command import PAPER_JOB, CommandLine
-from grinder_client import DEG, JOINTS, MM, ODD, STROKE, UM, X
+from grinder_client import DEG, JOINTS, MM, ODD, STROKE, X
 
 PICTURES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'build', 'screenshots')
 SVG = '{http://www.w3.org/2000/svg}'
@@ -57,7 +56,6 @@ class Recording:
             self.wait_for_recorder()
             self.node.make_ready()
             self.grind_with_hold_and_override()
-            self.report_while_recording = gc.grind('report', self.bag + '.active', '-o', os.path.join(folder, 'no.html'))
             self.node.make_ready(0.2)
             self.node.send(gc.PAPER).wait_in_stroke(6 * MM)
         finally:
@@ -413,9 +411,6 @@ class TestBag(ReportCase):
         cls.found = cls.data(cls(), cls.recording.bag, '--job', '1')
         cls.start = cls.batches[0].header.stamp.to_sec()
 
-    def criterion(self, name, found=None):
-        return next(c for c in (found or self.found)['criteria'] if c['name'] == name)
-
     def test_bag_has_all_topics(self):
         with rosbag.Bag(self.recording.bag) as bag:
             topics = bag.get_type_and_topic_info().topics
@@ -463,15 +458,6 @@ class TestBag(ReportCase):
             largest = max(abs(s.path_error) for s in stroke if (s.step == ODD) == is_odd)
             self.assertEqual(self.page.rows['maximum %s error' % name], ['%.4e rad' % largest])
 
-    def test_deviation_is_that_at_the_surface(self):
-        helix = checks.Helix(gc.PAPER)
-        at = max(self.setpoints, key=lambda s: abs(s.path_error) * helix.radius(s.position[X]))
-        largest = abs(at.path_error) * helix.radius(at.position[X]) * helix.normal
-        found = self.criterion('path deviation')
-        self.assertAlmostEqual(found['measured'], largest / UM, delta=1e-6 * largest / UM)
-        self.assertEqual((found['asked'], found['tolerance'], found['result']), (0, 1, 'passed'))
-        self.assertEqual(found['place'], 'tooth 1, pass 1, X = %.3f mm' % (at.position[X] / MM))
-
     def test_following_error_is_that_to_the_command_of_the_cycle_before(self):
         for axis, unit in enumerate(UNITS):
             errors = {True: 0.0, False: 0.0}
@@ -481,23 +467,14 @@ class TestBag(ReportCase):
             self.assertAlmostEqual(found['stroke'], errors[True] / unit, delta=1e-9)
             self.assertAlmostEqual(found['rapid'], errors[False] / unit, delta=1e-9)
             self.assertAlmostEqual(found['limit'], gc.machine()['constraints'][JOINTS[axis]]['trajectory'] / unit, delta=1e-9)
-        helix = checks.Helix(gc.PAPER)
-        axes = [axis['following']['stroke'] * 1e3 for axis in self.found['axes']]
-        axes[3] *= 1e-3 * DEG * helix.radius(30 * MM) / UM
-        self.assertAlmostEqual(self.criterion('following error in strokes')['measured'], max(axes), delta=1e-6)
 
     def test_stroke_with_its_hold_and_override(self):
         stroke, = self.found['strokes']
         points = [(s, b) for b in self.batches for s in b.setpoints if s.move == STROKE]
-        inside = [s.feed for s, _ in points if 0 <= s.position[X] <= 30 * MM]
-        self.assertAlmostEqual(stroke['feed_max_mm_min'], max(inside) * 60 / MM, delta=1e-6)
-        self.assertAlmostEqual(stroke['feed_min_mm_min'], min(inside) * 60 / MM, delta=1e-6)
-        self.assertLess(stroke['feed_min_mm_min'], 1)
         # A stamp is of a batch as a whole, which takes longer than its cycles if the host stalls.
         for at, (_, batch) in ((stroke['started_s'], points[0]), (stroke['started_s'] + stroke['duration_s'], points[-1])):
             self.assertGreaterEqual(self.start + at, batch.header.stamp.to_sec() - batch.period)
             self.assertLessEqual(self.start + at, batch.end_stamp.to_sec() + batch.period)
-        self.assertAlmostEqual(stroke['depth_mm'], 1.6, delta=1e-9)
         hold, = self.found['holds']
         self.assertEqual((hold['tooth'], hold['pass'], hold['reason']), (1, 1, 'operator'))
         # Between two batches there is a gap as long as the hold, within the 50 ms between messages.
@@ -548,7 +525,6 @@ class TestBag(ReportCase):
         self.assertAlmostEqual(loop['mean_ms'], sum(periods) / len(periods) / 1e-3, delta=2e-6)
         late = sum(period > 1.5 * self.batches[0].period for period in periods)
         self.assertEqual(self.found['late_cycles']['count'], late)
-        self.assertAlmostEqual(self.criterion('late cycles')['measured'], 100 * late / len(periods), delta=1e-9)
 
     def test_states_of_the_job(self):
         states = [(s['state'], s['at_s']) for s in self.found['states']]
@@ -595,16 +571,9 @@ class TestVerdict(ReportCase):
             ('land', 'passed'), ('spiral angle', 'passed'), ('gouge', 'passed'), ('following error in strokes', 'passed'), ('feed constancy', 'passed'),
             ('late cycles', 'passed')])
 
-    def test_measured_is_what_simulate_measures(self):
+    def test_tool_is_what_simulate_measures(self):
         done = gc.grind('simulate', FILES['recording'].bag, '--run', '1', '--json', '--sections', '17')
-        sections = json.loads(done.stdout)['sections']
-        figures = {c['name']: c for c in self.judged()['criteria']}
-        for name, key in (('rake', 'rake_deg'), ('chordal rake', 'chordal_rake_deg'), ('spiral angle', 'spiral_deg')):
-            worst = max((t for s in sections for t in s['teeth']), key=lambda t: abs(t[key] - t['asked_' + key]))
-            self.assertEqual(figures[name]['measured'], worst[key])
-        worst = max((sections[0], sections[-1]), key=lambda s: abs(s['core_diameter_mm'] - s['asked_core_diameter_mm']))
-        self.assertEqual(figures['core diameter']['measured'], worst['core_diameter_mm'])
-        self.assertEqual(figures['land']['measured'], min(t['land_mm'] for s in sections for t in s['teeth']))
+        self.assertEqual(self.judged()['tool']['sections'], json.loads(done.stdout)['sections'])
 
     def test_job_whose_end_is_not_in_the_file(self):
         # Without the result, which the recorder may have got or not before it was ended itself.
@@ -630,19 +599,6 @@ class TestVerdict(ReportCase):
             done = gc.grind('report', self.path('bad.json'), '--json')
             self.assertEqual((done.returncode, done.stdout), (2, ''))
             self.assertRegex(done.stderr.rstrip('\n'), '^%s: %s$' % (re.escape(self.path('bad.json')), reason))
-
-    def test_tool_of_which_a_tooth_is_missing_is_not_measured(self):
-        # As of a job that was continued: the goal has a second tooth, ground before.
-        def change(topic, message):
-            if topic.endswith('/job'):
-                message.goal.cutter.tooth_angles = [0, math.pi]
-            return True
-
-        data = self.judged(self.rewritten('part.bag', change))
-        for name in ('rake', 'chordal rake', 'core diameter', 'land', 'spiral angle'):
-            self.assertEqual(self.result(data, name), 'not measured')
-        self.assertEqual(data['verdict'], 'incomplete')
-        self.assertIn('not all of its teeth were ground in this job', ' '.join(data['left_out']))
 
 
 class TestInterruptedJob(ReportCase):
@@ -871,11 +827,6 @@ class TestBadFiles(ReportCase):
         size = os.path.getsize(FILES['recording'].bag)
         for cut in (20, 5000, size // 2, size - 1):
             self.check(self.cut_bag(cut), 'the bag was not closed, or is cut off; .*')
-
-    def test_bag_that_is_being_written(self):
-        done = FILES['recording'].report_while_recording
-        self.assertEqual(done.returncode, 2)
-        self.assertIn('record.bag.active: the bag was not closed', done.stderr)
 
     def test_bag_without_setpoints(self):
         self.check(self.rewritten('none.bag', lambda topic, _: topic == '/diagnostics'),

@@ -83,11 +83,6 @@ class TestSwivel(gc.OwnNode):
         self.assertEqual((status['swivel_deg'], status['swivel_measured']), (None, False))
         self.check_runs(dry_run=True)
         self.assertTrue(g.plan(gc.goal_of(gc.SHORT)).valid)
-        reply = g.confirm_swivel(90.01 * DEG)
-        self.assertEqual((reply.success, reply.message),
-                         (False, 'confirm-swivel refused: 90.01 deg; allowed: -90 deg to 90 deg'))
-        self.assertTrue(math.isnan(g.fresh_state().swivel))
-
         for angle in ('-31.769', '31.769'):
             self.grind(0, 'confirm-swivel', angle)
             self.assertAlmostEqual(g.fresh_state().swivel, float(angle) * DEG, delta=1e-15)
@@ -95,8 +90,6 @@ class TestSwivel(gc.OwnNode):
         status = self.json('status')
         self.assertAlmostEqual(status['swivel_deg'], 31.769, delta=1e-12)
         self.check_runs()
-        self.assertTrue(g.confirm_swivel(31.829 * DEG).success)
-        self.check_refused('the swivel is confirmed at 31.829 deg; allowed: within 0.05 deg of that; ' + TO_SET)
 
     def test_measured_by_the_drive(self):
         g = self.start_ready(31.8)

@@ -103,12 +103,6 @@ class TestTwoJobsAtOnce(unittest.TestCase):
             digests.append(journal['job_digest'])
         self.assertNotEqual(*digests)
 
-    def test_status_and_offsets_say_which_grinder(self):
-        for name in NAMES:
-            for command in ('status', 'offsets'):
-                done = gc.grind('--node', name, command)
-                self.assertIn('/' + name, done.stdout.splitlines()[0], done.stderr)
-
     def test_nobody_publishes_transforms_or_joint_states_for_all(self):
         published, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
         topics = {topic for topic, nodes in published}

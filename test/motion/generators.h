@@ -134,35 +134,6 @@ inline rc::Gen<Work> toothedWork(double cycles) {
   });
 }
 
-/// The same with a correction of Z, which often takes a good part of what the machine's Z can.
-inline rc::Gen<Work> correctedWork(double cycles) {
-  return rc::gen::exec([=] {
-    Work w = *toothedWork(cycles);
-    w.job.process.z_law = ZLaw::kConstantRake;
-    RC_PRE(validate(w.job).empty());
-    w.z_correction = *zCorrection(w.job);
-    const ZCorrection::Bounds bend = w.z_correction.bounds();
-    const double speed = w.job.process.feed / edgePerTravel(w.job.cutter);
-    const auto keep = [&](double& limit, double taken, double min) {
-      limit = std::clamp(taken / *uniform(0.1, 1), min, limit);
-    };
-    keep(w.machine.limits.max_acceleration[kZ], bend.second * speed * speed, 0.01);
-    keep(w.machine.limits.max_jerk[kZ], bend.third * speed * speed * speed, 0.1);
-    const FeedSchedule::Stroke stroke{-w.job.process.overtravel_end,
-                                      w.job.cutter.flute_length + w.job.process.overtravel_shank,
-                                      w.job.process.feed,
-                                      w.job.interpolation.tolerance,
-                                      0,
-                                      w.z_correction,
-                                      w.job.process.setup_lead};
-    // A much bent one may be too slow for a test, or for a job.
-    const FeedSchedule schedule(ConicalCutter(w.job.cutter), stroke, w.machine);
-    RC_PRE(schedule.length() / schedule.feedSpeed() / w.machine.period < 10 * cycles);
-    RC_PRE(schedule.feedSpeed() > 2 * kMinFeed);
-    return w;
-  });
-}
-
 /// The paper's cutter at 600 mm/min in one pass.
 inline GrindJob paperJob() {
   GrindJob j;

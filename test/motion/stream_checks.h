@@ -21,11 +21,15 @@ namespace grinder::test_support {
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kCycles = 1500;  ///< of a stroke: long enough for all phases, short enough for a hundred jobs
 
-inline std::vector<Setpoint> all(SetpointStream& stream) {
+inline std::vector<Setpoint> all(SetpointStream& stream, Setpoint& p) {
   std::vector<Setpoint> setpoints;
-  Setpoint p;
   while (stream.next(p)) setpoints.push_back(p);
   return setpoints;
+}
+
+inline std::vector<Setpoint> all(SetpointStream& stream) {
+  Setpoint p;
+  return all(stream, p);
 }
 
 inline std::vector<Setpoint> all(const Work& work) {
@@ -145,18 +149,6 @@ class Deviation {
   Real end_radius_, growth_, normal_;
 };
 
-/// What every move was for, in the order in which they came.
-inline std::vector<std::string> movesOf(const std::vector<Setpoint>& setpoints) {
-  std::vector<std::string> moves;
-  for (std::size_t i = 1; i < setpoints.size(); ++i) {
-    const Setpoint& p = setpoints[i];
-    const std::string move = std::to_string(p.move_index) + " " + toString(p.move) + " of tooth " +
-                             std::to_string(p.tooth) + ", pass " + std::to_string(p.pass);
-    if (moves.empty() || moves.back() != move) moves.push_back(move);
-  }
-  return moves;
-}
-
 /// The maximum deviation of the strokes' points. [m]
 inline double maxDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
   const Deviation deviation(job);
@@ -167,56 +159,24 @@ inline double maxDeviation(const std::vector<Setpoint>& setpoints, const GrindJo
   return max;
 }
 
-/// What the rounding of A makes of a deviation. [m]
-inline double noiseOfDeviation(const std::vector<Setpoint>& setpoints, const GrindJob& job) {
-  const double shank = job.cutter.flute_length + job.process.overtravel_shank;
-  const double x = std::max(shank, job.process.overtravel_end) + std::abs(job.process.setup_lead);
-  const double radius = job.cutter.end_diameter / 2 + x * std::abs(std::tan(job.cutter.cone_angle));
-  return (8 * roundingOf(setpoints)[kA] + 1e-15) * radius;
-}
-
-/// What a deviation may be: the tolerance, or what the plan of the undisturbed job reports and refuses. [m]
-inline double allowedDeviation(const std::vector<Setpoint>& undisturbed, const GrindJob& job) {
-  return std::max(job.interpolation.tolerance, maxDeviation(undisturbed, job)) * (1 + 1e-9) +
-         noiseOfDeviation(undisturbed, job);
-}
-
-/// Whether every setpoint of a stroke is where the cutter's equations say, goes on from the one before by no more than
-/// the feed override allows, and the strokes begin and end where they are to.
-inline void checkStrokes(const std::vector<Setpoint>& setpoints, const Work& work) {
-  const GrindProgram program = work.program();
-  const CutterGeometry& g = work.job.cutter;
-  const double from = program.strokeFrom();
-  const double to = program.strokeTo();
-  const double direction = to < from ? -1 : 1;
-  const Axes rounding = 2 * roundingOf(setpoints);
-  const double growth = std::tan(g.cone_angle);
-  const auto z_per_y = static_cast<double>(zPerY(g));
-  const double feed = kMaxFeedOverride * work.job.process.feed / edgePerTravel(g);
-  const double step = feed * work.machine.period;
-  const ReferenceCurve curve(g, work.job.process.setup_lead);
-  const auto thin = static_cast<double>(std::min(curve.u(from), curve.u(to)));
-  const double uneven = 4 * std::abs(static_cast<double>(curve.b)) * step / thin;
-  for (std::size_t i = 1; i < setpoints.size(); ++i) {
-    const Setpoint& p = setpoints[i];
-    if (p.step == StepKind::kNone) continue;
-    const Setpoint& before = setpoints[i - 1];
-    const double x = p.position[kX];
-    RC_ASSERT(p.cycle == before.cycle + 1);
-    const double way = direction * (x - before.position[kX]);
-    RC_ASSERT(way >= -rounding[kX]);
-    RC_ASSERT(way <= step * (1 + uneven) + rounding[kX]);
-    if (p.step == StepKind::kEven) {
-      RC_ASSERT(direction * (x - setpoints[i - 2].position[kX]) <= 2 * step * (1 + 1e-9) + rounding[kX]);
-    }
-    RC_ASSERT(direction * (to - x) >= -rounding[kX]);
-    RC_ASSERT(std::abs(p.position[kY] - (x * growth - work.job.process.depth)) <= 2 * rounding[kY]);
-    const Real correction = referenceCorrection(work.z_correction, x);
-    RC_ASSERT(std::abs(p.position[kZ] - (x * growth * z_per_y + correction)) <= 2 * rounding[kZ] + 1e-18);
-    const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
-    if (ends) RC_ASSERT(direction * (to - x) <= rounding[kX]);
-    if (ends) RC_ASSERT(p.move_fraction == 1);
+/// The paper's job, gone through up to a place in its stroke.
+class PaperStroke {
+ public:
+  explicit PaperStroke(double x) : stream_(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park)) {
+    while (p_.move != MoveKind::kStroke || p_.position[kX] < x || p_.cycle % 2 == 1) next();
   }
-}
+
+  SetpointStream& stream() { return stream_; }
+  const Setpoint& last() const { return p_; }
+  bool next() { return stream_.next(p_); }
+  void runToRest() {
+    while (next()) {
+    }
+  }
+
+ private:
+  SetpointStream stream_;
+  Setpoint p_;
+};
 
 }  // namespace grinder::test_support

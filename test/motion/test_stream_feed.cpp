@@ -3,7 +3,6 @@
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include "stream_checks.h"
-#include "stream_rides.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -1,17 +1,17 @@
-// A stream that is held, slowed down and given other feeds at any moment.
+// A stream that is held and retracted, and comes back. test/rides does so at random moments of random jobs.
 
+#include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/motion/axis_move.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
-#include "flute_grinder/motion/limit_check.h"
-
 #include "stream_checks.h"
-#include "stream_rides.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstring>
 #include <vector>
 
 namespace grinder {
@@ -41,68 +41,253 @@ TEST(SetpointStream, HeldItRestsAsSoonAsTheLimitsAllow) {
   EXPECT_EQ(ride.last().cycle - cycle, 2 * std::ceil(2 * std::sqrt(speed / limits.jerk) / 2e-3));
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, HoldsAndOverridesLeaveTheStrokesWholeAndKeepAllLimitsAndThePapersConstruction,
-              ()) {
-  const Work work = *toothedWork(kCycles / 3);
-  const auto undisturbed = all(work);
-  const auto moments = momentsInStrokes(undisturbed, 3);
-  const Ride ride = rideWithHoldsAndOverrides(work, moments);
-  RC_ASSERT(ride.requests_in_strokes >= 6);  // three for each of two teeth at least: some hundreds in all
-  const auto setpoints = ride.setpoints();
-  for (std::size_t i = 0; i < setpoints.size(); ++i) RC_ASSERT(setpoints[i].cycle == i);
-  RC_ASSERT(movesOf(setpoints) == movesOf(undisturbed));
-  checkStrokes(setpoints, work);
-  RC_ASSERT(maxDeviation(setpoints, work.job) <= allowedDeviation(undisturbed, work.job));
-  RC_ASSERT((setpoints.back().position == work.machine.park).all());
-  RC_ASSERT(beyondLimits(ride.seen_by_machine, work.machine) == "");  // so that each hold comes to rest
-  RC_ASSERT(beyondLimits(setpoints, work.machine) == "");             // and none needs a rest to be gone on from
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
-}
-
-RC_GTEST_PROP(SetpointStreamProperty, HoldsOverridesAndRetractsKeepToATightTolerance, ()) {
-  Work work = *test_support::work(kCycles / 3);
-  work.job.interpolation.even_step = *rc::gen::element(EvenStepRule::kThirdOrder, EvenStepRule::kExact);
-  const double without = maxDeviation(all(work), work.job);
-  RC_PRE(without > 1e-12);
-  work.job.interpolation.tolerance = without * *uniform(0.3, 3);  // at a third it cuts the feed to some half
-  const auto undisturbed = all(work);
-  const double allowed = work.job.interpolation.tolerance * (1 + 1e-9) + noiseOfDeviation(undisturbed, work.job);
-  RC_ASSERT(maxDeviation(undisturbed, work.job) <= allowed);
-  const Ride ride = rideWithHoldsAndOverrides(work, momentsInStrokes(undisturbed, 3));
-  RC_ASSERT(maxDeviation(ride.setpoints(), work.job) <= allowed);
-  RC_ASSERT(maxDeviation(rideWithRetracts(work, undisturbed, 3).setpoints(), work.job) <= allowed);
-}
-
-/// Slowed down at random moments, held and brought up again now and then.
-RC_GTEST_PROP(SetpointStreamProperty, SlowedDownAtAnyMomentItKeepsTheLimitsOfAxesThatStood, ()) {
+RC_GTEST_PROP(SetpointStreamProperty, BackInTheStrokeItIsAtFeedFromThePlaceOnWhereItWasLeft, ()) {
   const Work work = *test_support::work(kCycles);
   SetpointStream stream(work.program());
-  LimitCheck check(work.machine.limits, work.machine.period);
-  check.restart(stream.program().terms());
-  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
-  std::uniform_real_distribution<double> chance(0, 1), periods(2, 10);
-  const double share = *logUniform(1e-3, 0.3);
-  std::vector<Setpoint> setpoints;
-  Setpoint p;
-  for (int cycle = 0; cycle < 100000 && !stream.finished(); ++cycle) {
-    const bool calm = cycle > 2000;
-    if (!setpoints.empty() && !calm && chance(random) < share) {
-      const double factor = 1 / periods(random);
-      stream.slowDown(factor);
-      check.slowDown(factor);
-    }
-    if (!calm && chance(random) < share / 10) stream.hold();
-    if (!stream.next(p)) {
-      stream.resume();
-      continue;
-    }
-    setpoints.push_back(p);
-    const auto violation = check.check(p);
-    RC_ASSERT(!violation || violation->quantity == LimitedQuantity::kPosition);
+  std::vector<Setpoint> at_feed;
+  for (const Setpoint& p : all(work)) {
+    if (p.at_feed && p.pass == 0) at_feed.push_back(p);
   }
-  RC_ASSERT(stream.finished());
-  RC_ASSERT((setpoints.back().position == work.machine.park).all());
-  RC_ASSERT(offTheConstruction(setpoints, work.job, 1 + setpoints.size() / 200) == "");
+  RC_PRE(at_feed.size() > 8u);
+  const auto hold_at = static_cast<std::size_t>(static_cast<double>(at_feed.size() - 1) * *uniform(0, 1));
+  Setpoint p;
+  do {
+    RC_ASSERT(stream.next(p));
+  } while (p.cycle < at_feed[hold_at].cycle);
+  stream.hold();
+  all(stream, p);
+  const Setpoint left = p;
+  stream.retract();
+  all(stream, p);
+  stream.resume();
+
+  const double direction = stream.program().strokeTo() < stream.program().strokeFrom() ? -1 : 1;
+  while (stream.next(p) && !stream.onPath()) {
+    RC_ASSERT(p.step == StepKind::kNone && p.path_error == 0 && !p.at_feed);
+    RC_ASSERT(p.move_index == left.move_index && p.move_fraction == left.move_fraction);
+    RC_ASSERT(p.tooth == left.tooth && p.pass == left.pass);
+  }
+  const double run_up = direction * (left.position[kX] - p.position[kX]);
+  RC_ASSERT(run_up <= stream.program().schedule().runUp() + 2 * roundingOf(at_feed)[kX]);
+  const double pair = 2 * stream.program().schedule().feedSpeed() * work.machine.period;
+  const double first = direction * std::max(direction * left.position[kX], direction * at_feed.front().position[kX]);
+  const double last = at_feed.back().position[kX];
+  do {
+    const double x = p.position[kX];
+    const bool between = direction * (x - first) >= 2 * pair && direction * (last - x) >= pair;
+    if (p.pass == 0 && p.step == StepKind::kEven && between) RC_ASSERT(p.at_feed);
+  } while (stream.next(p));
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, ARetractWhileItMovesIsNotTaken, ()) {
+  const Work work = *test_support::work(kCycles);
+  const auto undisturbed = all(work);
+  SetpointStream stream(work.program());
+  Setpoint p;
+  std::size_t i = 0;
+  for (; stream.next(p); ++i) {
+    RC_ASSERT(i < undisturbed.size());
+    RC_ASSERT(std::memcmp(p.position.data(), undisturbed[i].position.data(), sizeof(double) * kAxisCount) == 0);
+    if (p.cycle % 2 == 1 || p.feed > 0) stream.retract();
+    RC_ASSERT(stream.onPath());
+  }
+  RC_ASSERT(i == undisturbed.size());
+}
+
+/// Y at which the wheel is clear of all of the paper's work.
+const double kPaperClearance = 31e-3 * std::tan(5 * units::kDegree) + 5e-3;
+
+TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
+  PaperStroke ride(10e-3);
+  ride.stream().setFeedOverride(0);
+  ride.runToRest();
+  const double left = ride.last().position[kX];
+  ride.stream().retract();  // though it was not held
+  ride.stream().resume();
+  ride.runToRest();
+  EXPECT_FALSE(ride.stream().onPath());
+  EXPECT_EQ(ride.last().move, MoveKind::kPosition);
+  EXPECT_LT(ride.last().position[kX], left);
+  EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15);
+  ride.stream().setFeedOverride(1);
+  ride.runToRest();
+  EXPECT_TRUE(ride.stream().finished());
+}
+
+/// Moves an axis by a distance, as by hand.
+void jog(SetpointStream& stream, const Machine& machine, Setpoint& last, int axis, double distance,
+         std::vector<Setpoint>* seen = nullptr) {
+  AxisMove move(machine);
+  move.begin(MoveKind::kPosition, last.position, axis, last.position[axis] + distance,
+             machine.limits.max_velocity[axis]);
+  Setpoint p;
+  move.next(p);  // at rest
+  while (move.next(p)) {
+    stream.adopt(p);
+    last = p;
+    if (seen) seen->push_back(p);
+  }
+}
+
+/// A retracted job that is jogged some times, and the same without.
+struct Jogged {
+  std::vector<Setpoint> seen;         ///< from the lift's last setpoint on
+  std::size_t resumed = 0;            ///< index of the last setpoint before resume
+  std::vector<Setpoint> undisturbed;  ///< from resume on, without the jogs
+  Axes lifted = Axes::Zero();
+};
+
+/// Holds a job at a random moment, retracts, and jogs the axes off the work.
+Jogged jogRetracted(const Work& work) {
+  const auto planned = all(work);
+  const auto moment = static_cast<std::size_t>(static_cast<double>(planned.size() - 1) * *uniform(0, 1));
+  Jogged result;
+  SetpointStream stream(work.program());
+  Setpoint p;
+  for (std::size_t i = 0; i <= moment; ++i) RC_ASSERT(stream.next(p));
+  stream.hold();
+  while (stream.next(p)) {
+  }
+  RC_PRE(!stream.finished());
+  RC_ASSERT(!stream.lifted());
+  stream.retract();
+  while (stream.next(p)) {
+  }
+  RC_ASSERT(stream.lifted());
+  result.lifted = p.position;
+  result.seen.push_back(p);
+  SetpointStream plain = stream;
+  for (int jogs = *whole(1, 4); jogs > 0; --jogs) {
+    // Above the work or, as if by the rounding of an offset, a little below.
+    const int axis = *whole(kX, kA);
+    const double lowest = axis == kY ? -1e-9 : -0.01;
+    jog(stream, work.machine, p, axis, (axis == kA ? 30 : 1) * *uniform(lowest, 0.01), &result.seen);
+    RC_ASSERT(!stream.next(p));
+    RC_ASSERT(stream.lifted());
+  }
+  result.resumed = result.seen.size() - 1;
+  for (SetpointStream* s : {&stream, &plain}) {
+    s->resume();
+    auto& into = s == &plain ? result.undisturbed : result.seen;
+    while (s->next(p)) into.push_back(p);
+    RC_ASSERT(s->finished());
+  }
+  return result;
+}
+
+RC_GTEST_PROP(SetpointStreamProperty, JoggedWhileRetractedItComesBackOverTheWorkAndGoesOnWithTheSameBits, ()) {
+  const Work work = *test_support::work(kCycles / 3);
+  const Jogged jogged = jogRetracted(work);
+  const auto& seen = jogged.seen;
+  // Behind the way back, every setpoint is that of the job that was not jogged, but for its number.
+  RC_ASSERT(seen.size() - jogged.resumed > jogged.undisturbed.size());
+  const std::size_t back = seen.size() - jogged.undisturbed.size();
+  for (std::size_t i = 0; i < jogged.undisturbed.size(); ++i) {
+    const Setpoint& a = seen[back + i];
+    const Setpoint& b = jogged.undisturbed[i];
+    RC_ASSERT((a.position == b.position).all());
+    RC_ASSERT(a.move == b.move && a.move_index == b.move_index && a.move_fraction == b.move_fraction);
+    RC_ASSERT(a.path_error == b.path_error && a.feed == b.feed && a.step == b.step && a.at_feed == b.at_feed);
+  }
+  // The way back: up, across, down, each to its end, and never lower than it has to be.
+  RC_ASSERT((seen[back - 1].position == jogged.lifted).all());
+  const double low = std::min(seen[jogged.resumed].position[kY], jogged.lifted[kY]);
+  const double high = std::max(seen[jogged.resumed].position[kY], jogged.lifted[kY]);
+  for (std::size_t i = jogged.resumed + 1; i < back; ++i) {
+    const Setpoint& p = seen[i];
+    RC_ASSERT(p.step == StepKind::kNone && !p.at_feed && p.path_error == 0);
+    const Axes step = p.position - seen[i - 1].position;
+    const bool across = step[kX] != 0 || step[kZ] != 0 || step[kA] != 0;
+    if (across) RC_ASSERT(p.position[kY] == high && step[kY] == 0);
+    if (step[kY] < 0) {
+      RC_ASSERT((p.position == Axes(jogged.lifted[kX], p.position[kY], jogged.lifted[kZ], jogged.lifted[kA])).all());
+    }
+    RC_ASSERT(p.position[kY] >= low);
+  }
+}
+
+TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
+  PaperStroke ride(10e-3);
+  const auto expectIgnored = [&](const char* when) {
+    SetpointStream a = ride.stream(), b = ride.stream();
+    EXPECT_FALSE(a.lifted()) << when;
+    Setpoint other;
+    other.cycle = 77;
+    other.position << 0.1, 0.1, 0.1, 0.1;
+    a.adopt(other);
+    EXPECT_EQ(other.cycle, 77u) << when;
+    a.resume();
+    b.resume();
+    Setpoint p, q;
+    while (a.next(p)) {
+      ASSERT_TRUE(b.next(q));
+      ASSERT_TRUE((p.position == q.position).all() && p.cycle == q.cycle) << when;
+    }
+  };
+  expectIgnored("running");
+  ride.stream().hold();
+  ride.runToRest();
+  expectIgnored("held");
+  ride.stream().retract();
+  ride.next();
+  ride.next();
+  expectIgnored("lifting");
+  ride.stream().hold();
+  ride.runToRest();
+  expectIgnored("held in the lift");
+  ride.stream().retract();
+  ride.runToRest();
+  EXPECT_TRUE(ride.stream().lifted());
+  ride.stream().resume();
+  expectIgnored("resumed");
+}
+
+TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
+  PaperStroke ride(10e-3);
+  SetpointStream& stream = ride.stream();
+  stream.hold();
+  ride.runToRest();
+  stream.retract();
+  ride.runToRest();
+  const Axes lifted = ride.last().position;
+  for (int cycles = 50; cycles < 400; cycles += 50) {
+    Setpoint last = ride.last();
+    jog(stream, plainMachine(), last, kX, 0.05);
+    jog(stream, plainMachine(), last, kY, 0.02);
+    jog(stream, plainMachine(), last, kA, -1);
+    stream.resume();
+    for (int i = 0; i < cycles; ++i) ASSERT_TRUE(ride.next());
+    ASSERT_FALSE(stream.onPath());
+    stream.hold();
+    ride.runToRest();
+    ASSERT_GE(ride.last().position[kY], lifted[kY]);
+    stream.retract();
+    ride.runToRest();
+    ASSERT_TRUE(stream.lifted());
+    ASSERT_GE(ride.last().position[kY], lifted[kY]);
+  }
+  stream.resume();
+  ride.runToRest();
+  EXPECT_TRUE(stream.finished());
+  EXPECT_TRUE((ride.last().position == plainMachine().park).all());
+}
+
+TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
+  Axes start = plainMachine().park;
+  start[kY] = 0;
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
+  stream.retract();
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_TRUE((p.position == start).all());
+  while (stream.next(p)) {
+  }
+  EXPECT_NEAR(p.position[kY], kPaperClearance, 1e-15);
+  stream.resume();
+  while (stream.next(p)) {
+  }
+  EXPECT_TRUE(stream.finished());
+  EXPECT_TRUE((p.position == plainMachine().park).all());
 }
 
 }  // namespace test_stream_hold

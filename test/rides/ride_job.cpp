@@ -122,11 +122,21 @@ ValidJob withCorrections(Random& random, const ValidJob& job) {
   c.from = std::min(law.from, law.to);
   c.pieces = 1 + static_cast<int>(fraction(random) * 6);
   c.piece = std::abs(law.to - law.from) / c.pieces;
-  for (int i = 0; i < c.coefficientCount(); ++i) {
-    c.coefficients[static_cast<std::size_t>(i)] = std::abs(law.to - law.from) * between(random, -1e-3, 1e-3);
-  }
+  const double size = std::abs(law.to - law.from) * acrossDecades(random, 1e-3, 3e-2);
+  for (int i = 0; i < c.coefficientCount(); ++i)
+    c.coefficients[static_cast<std::size_t>(i)] = size * between(random, -1, 1);
   // Teeth with the same spiral angle have the same.
   return job.withZCorrections(std::vector<ZCorrection>(static_cast<std::size_t>(job.teeth()), c));
+}
+
+/// Of Z, limits that the bends of its correction come near, or beyond which they take some of the feed.
+void limitBends(Random& random, const ValidJob& job, AxisLimits& limits) {
+  const ZCorrection::Bounds bend = job.zCorrectionOf(0).bounds();
+  const double speed = job->process.feed;
+  const double acceleration = bend.second * speed * speed * acrossDecades(random, 0.1, 10);
+  const double jerk = bend.third * speed * speed * speed * acrossDecades(random, 0.1, 10);
+  limits.max_acceleration[kZ] = std::clamp(acceleration, 0.01, 10.0);
+  limits.max_jerk[kZ] = std::clamp(jerk, 0.1, 1000.0);
 }
 
 second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const Axes& offset) {
@@ -188,6 +198,7 @@ std::optional<RideJob> draw(Random& random) {
   ValidJob job = flip(random, 0.3) ? withRelief(random, flutes) : ValidJob(flutes);
   if (job->process.z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
   Machine machine = randomMachine(random);
+  if (job->process.z_law == ZLaw::kConstantRake) limitBends(random, job, machine.limits);
   const double growth = std::tan(job->cutter.cone_angle);
   const StrokeLaw& law = job.strokeLaw(0);
   const double clear = std::max(law.from * growth, law.to * growth) + job->process.clearance;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -308,6 +309,8 @@ class Ride {
   int jog_left_ = 0;
 };
 
+volatile std::sig_atomic_t g_is_stopped = 0;
+
 }  // namespace
 
 }  // namespace grinder::test_support
@@ -325,11 +328,13 @@ int main(int argc, char** argv) {
       ->transform(CLI::AsNumberWithUnit(std::map<std::string, double>{{"s", 1}, {"min", 60}, {"h", 3600}},
                                         CLI::AsNumberWithUnit::CASE_INSENSITIVE));
   CLI11_PARSE(app, argc, argv);
+  // What has been ridden until then is still reported.
+  for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { grinder::test_support::g_is_stopped = 1; });
   const Clock::time_point start = Clock::now();
   const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
   grinder::test_support::RideResult total;
   std::uint64_t number = first, wrong = 0;
-  for (; number < first + count && elapsed() < seconds; ++number) {
+  for (; number < first + count && elapsed() < seconds && !grinder::test_support::g_is_stopped; ++number) {
     try {
       const auto one = grinder::test_support::Ride(number).run();
       total.setpoints += one.setpoints;

@@ -158,7 +158,7 @@ void Watch::checkWayOut(const Row& row) {
     in_work_ = row.work[0] >= low && row.work[0] <= high;
   } else if (in_work_ && row.moves) {
     const auto stays = [&](std::size_t axis) { return row.at[axis] == last_.at[axis]; };
-    if (!(stays(0) && stays(2) && stays(3) && row.at[1] >= last_.at[1])) {
+    if (!(stays(0) && stays(2) && stays(3) && row.at[1] >= last_.at[1] - noiseOf(1))) {
       throw Violation("the wheel leaves the work another way than up");
     }
   }
@@ -217,7 +217,7 @@ void Watch::checkStroke(const Row& row) {
   if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(1))) throw Violation(text("stroke: place", 1, row.work[1], y));
   if (!next) return;
   const Real forward = asked_.to < asked_.from ? -1 : 1;
-  const Real step = asked_.velocity[0] * asked_.period * (1 + 1e-9L);
+  const Real step = 2 * asked_.period * asked_.feed * (1 + 1e-9L);
   if (!(forward * (x - reached_) <= step + noiseOf(0))) throw Violation(text("a gap: place", 0, x, reached_));
   reached_ = forward * (x - reached_) > 0 ? x : reached_;
   if (std::abs(x - asked_.to) > noiseOf(0)) return;

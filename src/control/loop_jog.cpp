@@ -67,7 +67,14 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!within) return Refusal::kTooFar;
 
   axis_move_.begin(MoveKind::kPosition, command_, jog.axis, answer.value, std::abs(jog.velocity));
-  if (!stream_) limit_check_.restart();
+  if (stream_) {
+    // Its setpoints are computed from the machine's positions.
+    Axes terms = Axes::Zero();
+    terms[jog.axis] = std::max(std::abs(from), std::abs(answer.value));
+    limit_check_.addTerms(terms);
+  } else {
+    limit_check_.restart();
+  }
   jogging_ = true;
   continuous_ = jog.continuous;
   for_client_ = jog.for_client;

@@ -240,6 +240,29 @@ TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
   ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
 }
 
+/// Its setpoints are rounded as the machine's positions are, which may be far larger than the work's.
+TEST(WorkOffsets, AJogInAJobKeepsItsLimitsFarFromTheMachinesOrigin) {
+  LoopConfig config = machineConfig();
+  config.machine.limits.max_position[kZ] = 0.6;
+  config.machine.limits.max_jerk[kZ] = 0.5;
+  config.machine.park[kZ] = 0.5;
+  Rig<FakeDrive> rig(config);
+  rig.drive.place(config.machine.park);
+  rig.enable();
+  rig.stream.emplace(streamAt(Axes(0, 0, 0.5, 0), rig.last().command, config));
+  rig.start(*rig.stream);
+  rig.runTo(MoveKind::kStroke);
+  ASSERT_NO_FATAL_FAILURE(rig.hold());
+  ASSERT_NO_FATAL_FAILURE(rig.retract());
+  for (const double distance : {1e-3, -1e-3}) {
+    ASSERT_TRUE(rig.jog({kZ, false, distance, 0.01}).accepted);
+    rig.runUntil(S::kRetracted);
+  }
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  rig.runToEnd();
+  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
+}
+
 TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
   ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
   rig_.runToEnd();

@@ -204,8 +204,10 @@ std::optional<RideJob> draw(Random& random) {
   const double clear = std::max(law.from * growth, law.to * growth) + job->process.clearance;
   Axes offset = Axes::Zero();
   if (flip(random, 0.5))
-    offset << between(random, -0.05, 0.05), between(random, -0.01, 0.01), 1e-3, between(random, -3, 3);
-  machine.park << between(random, -0.02, 0.02), clear + offset[kY] + between(random, 0, 5e-3), 0, 0;
+    offset << between(random, -0.5, 0.5), between(random, -0.3, 0.3), between(random, -0.5, 0.5),
+        between(random, -3, 3);
+  machine.park << between(random, -0.02, 0.02), clear + between(random, 0, 5e-3), between(random, -1e-3, 1e-3), 0;
+  machine.park += offset;
   RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine, offset)};
   if (!isRideable(ride, ride.cycles)) return std::nullopt;
   return ride;

@@ -51,6 +51,9 @@ class LimitCheck {
     max_ = terms;
   }
 
+  /// From now on, positions are also computed from numbers of these sizes.
+  void addTerms(const Axes& terms) noexcept { max_ = max_.max(terms); }
+
   /// For axes that stood still for a while and continue at a fraction of their speed, see SCurveProfile::slowDown().
   /// The stored history is scaled to the same speed, from the next pair on.
   /// @param factor above 0 and below 1; other values are ignored.

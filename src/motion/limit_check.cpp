@@ -65,10 +65,9 @@ void LimitCheck::slowPastDown() noexcept {
 
 void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept {
   const Axes position = setpoint.position + offset;
-  // A machine position at its limit is rounded on the way to work coordinates, and on the way back. Both sums are
-  // exact for an offset of 0.
-  const Axes rounding =
-      (offset == 0).select(0, kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs())));
+  // A machine position at its limit is rounded on the way to work coordinates, and on the way back; a stroke that is
+  // begun again comes to its end by other sums.
+  const Axes rounding = kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs()));
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const bool low = position[axis] < limits_.min_position[axis] - rounding[axis];
     const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];

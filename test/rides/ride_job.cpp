@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace grinder::test_support {
@@ -180,15 +181,29 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
 }
 
 /// Whether a plan accepts it: no point off the curve by more than its tolerance; and it takes `most` cycles at most.
-bool isRideable(const RideJob& ride, double most) {
+/// The machine gets limits that hold it.
+bool isRideable(Random& random, RideJob& ride, double most) {
   SetpointStream stream(GrindProgram(ride.job, ride.machine, RunStart(ride.machine.park, {}, ride.offset)));
   const second_opinion::Watch watch(ride.asked);
+  AxisLimits& limits = ride.machine.limits;
+  limits.min_position = limits.max_position = ride.machine.park;
   Setpoint p;
   for (double cycles = 0; stream.next(p); ++cycles) {
     if (cycles > most) return false;
+    limits.min_position = limits.min_position.min(p.position + ride.offset);
+    limits.max_position = limits.max_position.max(p.position + ride.offset);
     if (p.step == StepKind::kNone) continue;
     const auto off = watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], p.position[kA]);
     if (!(std::abs(off) <= ride.asked.deviation)) return false;
+  }
+  // A lift without the reference may be as long as all of Y. In a stroke that is begun again A and Z may differ a
+  // little.
+  limits.max_position[kY] += 2 * (limits.max_position[kY] - limits.min_position[kY]);
+  const Axes least(0, 0, 1e-6, 1e-3);
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    for (const auto& [limit, way] : {std::pair(&limits.min_position, -1), {&limits.max_position, 1}}) {
+      (*limit)[axis] += way * (least[axis] + (flip(random, 0.2) ? 0 : acrossDecades(random, 1e-6, 0.1)));
+    }
   }
   return stream.finished();
 }
@@ -209,7 +224,11 @@ std::optional<RideJob> draw(Random& random) {
   machine.park << between(random, -0.02, 0.02), clear + between(random, 0, 5e-3), between(random, -1e-3, 1e-3), 0;
   machine.park += offset;
   RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine, offset)};
-  if (!isRideable(ride, ride.cycles)) return std::nullopt;
+  if (!isRideable(random, ride, ride.cycles)) return std::nullopt;
+  std::copy(ride.machine.limits.min_position.data(), ride.machine.limits.min_position.data() + kAxisCount,
+            ride.asked.low.begin());
+  std::copy(ride.machine.limits.max_position.data(), ride.machine.limits.max_position.data() + kAxisCount,
+            ride.asked.high.begin());
   return ride;
 }
 

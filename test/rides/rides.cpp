@@ -9,9 +9,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <exception>
 #include <iterator>
 #include <limits>
@@ -21,6 +23,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace grinder::test_support {
 
@@ -31,8 +34,9 @@ using S = MachineState;
 
 constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
+constexpr int kMostBuffered = 50;
 
-/// Axes that reach every command at once, and what can go wrong with them.
+/// Axes that reach every command at once, or after some that wait before it, and what can go wrong with them.
 class RideDrive : public Drive {
  public:
   enum class Failure {
@@ -55,13 +59,13 @@ class RideDrive : public Drive {
     can.homing = can.spindle = can.coolant = true;
     return can;
   }
-  void read(const DriveCycle&, DriveFeedback& feedback) override {
+  void read(const DriveCycle& cycle, DriveFeedback& feedback) override {
     DriveStatus& status = feedback.status;
     if (left_ > 0) --left_;
     if (fails(Failure::kThrow)) throw std::runtime_error("of the ride");
     status.emergency_stop = fails(Failure::kEmergencyStop);
     status.fault = fails(Failure::kFault);
-    if (status.enabled && sent_.enable) at_ = sent_.position;
+    play(cycle, status);
     status.enabled = sent_.enable && !status.emergency_stop;
     status.homing = status.enabled && sent_.home && ++homed_for_ < 4;
     if (!sent_.home) homed_for_ = 0;
@@ -71,7 +75,7 @@ class RideDrive : public Drive {
     status.spindle_at_speed = sent_.spindle && !fails(Failure::kSpindle);
     status.coolant_on = sent_.coolant && !fails(Failure::kCoolant);
     status.probe_free = !fails(Failure::kProbe);
-    if (fails(Failure::kJump)) at_[static_cast<std::size_t>(axis_)] += 5e-3;
+    if (fails(Failure::kJump)) jump();
     feedback.position = at_;
     if (fails(Failure::kNan))
       feedback.position[static_cast<std::size_t>(axis_)] = std::numeric_limits<double>::quiet_NaN();
@@ -80,7 +84,11 @@ class RideDrive : public Drive {
   void write(const DriveCycle&, const DriveCommand& command) override { sent_ = command; }
 
   bool isCommandedOn() const { return sent_.enable; }
-  void place(const Axes& at) { std::copy(at.data(), at.data() + kAxisCount, at_.begin()); }
+  void place(const Machine& machine, std::size_t buffer) {
+    limits_ = machine.limits;
+    buffer_ = buffer;
+    std::copy(machine.park.data(), machine.park.data() + kAxisCount, at_.begin());
+  }
   void fail(Failure failure, int axis, int cycles) {
     failure_ = failure;
     axis_ = axis;
@@ -90,6 +98,29 @@ class RideDrive : public Drive {
  private:
   bool fails(Failure failure) const { return left_ > 0 && failure_ == failure; }
 
+  /// One command per period, once the buffer has been full; when the computer is late, those that wait.
+  void play(const DriveCycle& cycle, DriveStatus& status) {
+    if (!status.enabled || !sent_.enable) waiting_.clear();
+    full_ = full_ && !waiting_.empty();
+    status.commands_waiting = 0;
+    if (!status.enabled || !sent_.enable) return;
+    waiting_.push_back(sent_.position);
+    full_ = full_ || waiting_.size() > buffer_;
+    const long periods = full_ ? std::lround(cycle.period.toSec() / cycle.nominal.toSec()) : 0;
+    for (long i = 0; i < periods && waiting_.size() > 1; ++i) waiting_.pop_front();
+    at_ = waiting_.front();
+    status.commands_waiting = static_cast<std::uint32_t>(waiting_.size() - 1);
+  }
+  /// Within the limits, beyond which nobody turns an axis.
+  void jump() {
+    double& at = at_[static_cast<std::size_t>(axis_)];
+    at = std::clamp(at + 5e-3, limits_.min_position[axis_], limits_.max_position[axis_]);
+  }
+
+  AxisLimits limits_;
+  std::size_t buffer_ = 0;
+  std::deque<AxisValues> waiting_;  ///< the first of them has been reached
+  bool full_ = false;
   AxisValues at_{};
   DriveCommand sent_;
   Failure failure_ = Failure::kNone;
@@ -129,7 +160,7 @@ class Ride {
         recover_every_(acrossDecades(random_, 10, 100)),
         failures_(acrossDecades(random_, 0.02, 0.5)),
         watch_(job_.asked) {
-    drive_.place(job_.machine.park);
+    drive_.place(job_.machine, flip(random_, 0.5) ? 0 : static_cast<std::size_t>(between(random_, 1, kMostBuffered)));
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
     loop_->postSwivel(job_.job->process.setup_swivel);
   }
@@ -164,7 +195,7 @@ class Ride {
     if (result_.events < kMostEvents && flip(random_, 1 / event_every_)) happen();
     if (result_.events >= kMostEvents || flip(random_, 1 / recover_every_)) recover();
     keepJogging();
-    late_ = periods_ > 1;
+    const bool late = periods_ > 1;
     const ros::Duration period(job_.machine.period * std::exchange(periods_, 1.0));
     time_ += period;
     loop_->cycle(time_, period);
@@ -174,13 +205,32 @@ class Ride {
     loop_->swivelReply();
     ++result_.cycles;
     if (!loop_->pop(sample_)) throw second_opinion::Violation("a cycle without a sample");
-    see();
+    if (sample_.job_ended) endRun();
+    see(late && sample_.drive.commands_waiting == 0);
+    past_.push_back(watch_.progress());
+    if (past_.size() > kMostBuffered + 1) past_.pop_front();
   }
 
-  void see() {
+  /// What the axes have not reached is not ground; the loop knows that.
+  void endRun() {
+    watch_.goOnFrom(past_[past_.size() - 1 - sample_.drive.commands_waiting]);
+    const std::vector<Move>& moves = streams_.back().program().moves();
+    const auto ended = std::count_if(moves.begin(), moves.begin() + loop_->status().strokes_ended_at,
+                                     [](const Move& move) { return move.kind == MoveKind::kStroke; });
+    next_ += static_cast<std::size_t>(ended);
+    // A stroke that was stopped within rounding of its end is ground once more.
+    const double left = 1 - sample_.setpoint.move_fraction;
+    again_ = (left > 0 && left < 1e-12) || watch_.progress().again || (again_ && ended == 0);
+    if (next_ != watch_.ground() && !(again_ && next_ + 1 == watch_.ground())) {
+      throw second_opinion::Violation("the loop has ground " + std::to_string(next_) + " passes, not " +
+                                      std::to_string(watch_.ground()));
+    }
+  }
+
+  void see(bool late) {
     second_opinion::Row row;
     std::copy(sample_.command.data(), sample_.command.data() + kAxisCount, row.at.begin());
-    row.late = late_;
+    row.late = late;
     row.moves = sample_.has_setpoint;
     row.of_job = sample_.has_setpoint && sample_.job != 0;
     row.free = sample_.state == S::kDisabled || sample_.state == S::kHoming;
@@ -268,8 +318,7 @@ class Ride {
 
   void startRun(const LoopStatus& status) {
     if (status.jobs_ended != status.jobs_started || watch_.ground() == job_.asked.passes.size()) return;
-    const second_opinion::Pass& first = job_.asked.passes[watch_.ground()];
-    watch_.start(watch_.ground());
+    const second_opinion::Pass& first = job_.asked.passes[next_];
     streams_.clear();
     streams_.emplace_back(GrindProgram(job_.job, job_.machine,
                                        RunStart(Axes(status.command.data()), {first.tooth, first.pass}, job_.offset)));
@@ -299,11 +348,13 @@ class Ride {
   RideDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
   std::list<SetpointStream> streams_;
+  std::size_t next_ = 0;                              ///< pass, by the loop's account
+  bool again_ = false;                                ///< the last stroke may be one that had come to its end before
+  std::deque<second_opinion::Watch::Progress> past_;  ///< the newest last
   CycleSample sample_;
   RideResult result_;
   ros::Time time_{1000};
   double periods_ = 1;  ///< that the next cycle takes
-  bool late_ = false;   ///< the last one took several
   std::string last_reply_;
   JogRequest jog_;
   int jog_left_ = 0;

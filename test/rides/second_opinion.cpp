@@ -35,7 +35,7 @@ Real spline(Real t) {
 
 }  // namespace
 
-Watch::Watch(Asked asked) : asked_(std::move(asked)), reached_(asked_.from) {
+Watch::Watch(Asked asked) : asked_(std::move(asked)), progress_{0, asked_.from, false, false} {
   for (const Tooth& t : asked_.teeth) {
     // A is a difference of turns, and X in it is rounded.
     for (const Real x : {Real(0), asked_.from, asked_.to}) {
@@ -72,10 +72,6 @@ Real Watch::z(const Tooth& t, Real x) const {
   return z;
 }
 
-void Watch::start(std::size_t first_pass) {
-  if (first_pass != ground_) throw Violation("the run begins with pass " + std::to_string(first_pass));
-}
-
 void Watch::see(const Row& row) {
   // A move is computed from its ends, which may lie far from where it is.
   for (std::size_t i = 0; i < row.at.size(); ++i) {
@@ -91,7 +87,10 @@ void Watch::see(const Row& row) {
     if (row.in_stroke) checkStroke(row);
   }
   checkWayOut(row);
+  // Without a setpoint, its place means nothing.
+  const Point work = row.moves ? row.work : last_.work;
   last_ = row;
+  last_.work = work;
   has_last_ = true;
 }
 
@@ -111,6 +110,9 @@ void Watch::checkMotion(const Row& row) {
   for (int i = 0; i < 4; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     const Real noise = noiseOf(i);
+    if (!(row.at[axis] >= asked_.low[axis] && row.at[axis] <= asked_.high[axis])) {
+      throw Violation(text("place", i, row.at[axis], row.at[axis] < 0 ? asked_.low[axis] : asked_.high[axis]));
+    }
     const Real velocity = (Real(row.at[axis]) - last_.at[axis]) / t;
     if (!(std::abs(velocity) <= asked_.velocity[axis] * (1 + 1e-9L) + noise / t)) {
       throw Violation(text("velocity", i, velocity, asked_.velocity[axis]));
@@ -136,7 +138,7 @@ void Watch::checkMotion(const Row& row) {
 /// The lowest Y that any pass so far has, or that the one in progress is to have.
 Real Watch::lowest(Real x) const {
   Real y = std::numeric_limits<Real>::infinity();
-  for (std::size_t i = 0; i <= std::min(ground_, asked_.passes.size() - 1); ++i) {
+  for (std::size_t i = 0; i <= std::min(progress_.ground, asked_.passes.size() - 1); ++i) {
     const Pass& pass = asked_.passes[i];
     y = std::min(y, x * asked_.teeth[static_cast<std::size_t>(pass.tooth)].growth - pass.at_end + x * pass.taper);
   }
@@ -151,12 +153,13 @@ Real Watch::clearHeight() const {
 
 /// Whatever a job leaves in the work goes up, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
+  if (!row.moves && !row.free) return;
   if (row.at[1] - asked_.offset_y >= clearHeight() - noiseOf(1)) {
-    in_work_ = false;
+    progress_.in_work = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);
-    in_work_ = row.work[0] >= low && row.work[0] <= high;
-  } else if (in_work_ && row.moves) {
+    progress_.in_work = row.work[0] >= low && row.work[0] <= high;
+  } else if (progress_.in_work && row.moves) {
     const auto stays = [&](std::size_t axis) { return row.at[axis] == last_.at[axis]; };
     if (!(stays(0) && stays(2) && stays(3) && row.at[1] >= last_.at[1] - noiseOf(1))) {
       throw Violation("the wheel leaves the work another way than up");
@@ -204,25 +207,27 @@ void Watch::checkStroke(const Row& row) {
     return i < asked_.passes.size() && asked_.passes[i].tooth == row.tooth && asked_.passes[i].pass == row.pass;
   };
   // A wheel that was lifted at the very end of a stroke enters that stroke again.
-  const bool next = is(ground_);
-  const bool again = ground_ > 0 && is(ground_ - 1);
+  const bool next = is(progress_.ground);
+  const bool again = progress_.ground > 0 && is(progress_.ground - 1);
   if (!next && !again) {
     throw Violation("a stroke of tooth " + std::to_string(row.tooth) + ", pass " + std::to_string(row.pass) +
-                    " after " + std::to_string(ground_) + " passes");
+                    " after " + std::to_string(progress_.ground) + " passes");
   }
+  progress_.again = !next;
   checkFeed(row, asked_.teeth[static_cast<std::size_t>(row.tooth)]);
-  const Pass& own = asked_.passes[next ? ground_ : ground_ - 1];
+  const Pass& own = asked_.passes[next ? progress_.ground : progress_.ground - 1];
   const Real x = row.work[0];
   const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
   if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(1))) throw Violation(text("stroke: place", 1, row.work[1], y));
   if (!next) return;
   const Real forward = asked_.to < asked_.from ? -1 : 1;
   const Real step = 2 * asked_.period * asked_.feed * (1 + 1e-9L);
-  if (!(forward * (x - reached_) <= step + noiseOf(0))) throw Violation(text("a gap: place", 0, x, reached_));
-  reached_ = forward * (x - reached_) > 0 ? x : reached_;
+  if (!(forward * (x - progress_.reached) <= step + noiseOf(0)))
+    throw Violation(text("a gap: place", 0, x, progress_.reached));
+  progress_.reached = forward * (x - progress_.reached) > 0 ? x : progress_.reached;
   if (std::abs(x - asked_.to) > noiseOf(0)) return;
-  ++ground_;
-  reached_ = asked_.from;
+  ++progress_.ground;
+  progress_.reached = asked_.from;
 }
 
 /// A stroke goes forward, and a pair no faster than the feed.

@@ -39,6 +39,7 @@ struct Asked {
   Real radius = 0;        ///< of the surface at X = lead
   Real feed = 0;          ///< the fastest along the edge [m/s]
   Real period = 0;        ///< [s]
+  Point low{}, high{};    ///< of the machine's axes
   std::array<double, 4> velocity{}, acceleration{}, jerk{};
 };
 
@@ -67,10 +68,18 @@ class Watch {
 
   /// @throw Violation
   void see(const Row& row);
-  /// A job has started, with a pass as its first. @throw Violation if that leaves one out.
-  void start(std::size_t first_pass);
   /// How many passes have been ground to their end.
-  std::size_t ground() const { return ground_; }
+  std::size_t ground() const { return progress_.ground; }
+
+  struct Progress {
+    std::size_t ground = 0;
+    Real reached = 0;      ///< X up to which the next pass has been ground without a gap
+    bool in_work = false;  ///< a job has left the wheel there
+    bool again = false;    ///< the last stroke was of a pass that is ground
+  };
+  const Progress& progress() const { return progress_; }
+  /// What was commanded since then has not come to pass.
+  void goOnFrom(const Progress& progress) { progress_ = progress; }
 
   Real curve(const Tooth& tooth, Real x) const;
   /// Length of the edge by that along the surface.
@@ -90,13 +99,11 @@ class Watch {
   Real noiseOf(int axis) const;
 
   Asked asked_;
-  std::size_t ground_ = 0;
-  Real reached_;                      ///< X up to which the next pass has been ground without a gap
+  Progress progress_;
   Real turn_ = 0;                     ///< the largest of A's terms [rad]
   std::array<double, 4> farthest_{};  ///< of each axis from 0
   Row last_;
   bool has_last_ = false;
-  bool in_work_ = false;         ///< a job has left the wheel there
   std::array<Point, 3> ends_{};  ///< of the last pairs, newest first
   std::uint64_t cycle_ = 0;      ///< of the last setpoint
   Real pair_from_ = 0;           ///< X at the last even setpoint of a stroke

@@ -88,6 +88,7 @@ QString changedJob(const QString& job, const QString& path,
     EXPECT_EQ(text.count(from), 1) << from.toStdString();
     text.replace(from, to);
   }
+  text.replace("../wheels", kPackage.toUtf8() + "/wheels");
   QFile file(path);
   EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
   return path;
@@ -137,12 +138,18 @@ void Panel::clickAt(QPoint place, QEvent::Type press) {
   }
 }
 
-Names Panel::enabledRequests() {
+Names Panel::enabledOf(const Names& buttons) {
   Names names;
-  for (const std::string& name : kRequests) {
+  for (const std::string& name : buttons) {
     if (enabled(name.c_str())) names.insert(name);
   }
   return names;
+}
+
+void Panel::chooseOperation(const QString& operation) {
+  auto& box = the<QComboBox>("operation");
+  for (int i = 0; i < box.count() && box.currentText() != operation; ++i) QTest::keyClick(&box, Qt::Key_Down);
+  EXPECT_EQ(box.currentText(), operation);
 }
 
 void Panel::openTab(const QString& title) {

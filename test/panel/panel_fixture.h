@@ -40,7 +40,7 @@ using Names = std::set<std::string>;
 inline const Names kRequests{"enable", "disable", "home", "start",  "hold",
                              "resume", "retract", "lift", "cancel", "reset"};
 
-/// Writes a copy of a job file with other values. @return its path.
+/// Writes a copy of a job file with other values, and the same wheel files. @return its path.
 QString changedJob(const QString& job, const QString& path,
                    const std::vector<std::pair<QByteArray, QByteArray>>& changes);
 
@@ -77,8 +77,11 @@ class Panel {
   std::string state() { return label("state"); }
   /// Shows one of the tabs by a click.
   void openTab(const QString& title);
-  /// Those of the requests whose buttons are enabled.
-  Names enabledRequests();
+  /// Those of some buttons that are enabled.
+  Names enabledOf(const Names& buttons);
+  Names enabledRequests() { return enabledOf(kRequests); }
+  /// Chooses one of the job's operations, as the keys do.
+  void chooseOperation(const QString& operation);
 
   /// Looks for what is wrong with the picture of the panel, and keeps it as panel_NAME.png in the folder SCREENSHOTS of
   /// the environment.

@@ -24,6 +24,7 @@
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
 #include <std_srvs/Trigger.h>
+#include <QFileInfo>
 
 #include <cmath>
 #include <mutex>
@@ -57,18 +58,17 @@ class Stage {
         &Stage::plan_hangs);
     serve<std_srvs::Trigger>(
         "resume", [this](const auto&, auto&) { ++resumes; }, &Stage::resume_hangs);
-    serve<std_srvs::Trigger>("lift", [this](const auto&, auto& response) {
-      ++lifts;
-      answer(response, "");
-    });
     for (const bool on : {true, false}) {
       serve<std_srvs::Trigger>(on ? "spindle_on" : "spindle_off", [this, on](const auto&, auto& response) {
         state.spindle_commanded = on;
         answer(response, "");
       });
     }
-    for (const char* name : {"enable", "home", "reset_fault", "retract", "coolant_on", "coolant_off"}) {
-      serve<std_srvs::Trigger>(name, [this](const auto&, auto& response) { answer(response, trigger_refusal); });
+    for (const char* name : {"enable", "home", "reset_fault", "retract", "lift", "coolant_on", "coolant_off"}) {
+      serve<std_srvs::Trigger>(name, [this, name](const auto&, auto& response) {
+        triggers.insert(name);
+        answer(response, trigger_refusal);
+      });
     }
     serve<flute_grinder::JogStep>("jog_step", [this](const auto& request, auto& response) {
       steps.push_back(request);
@@ -150,10 +150,21 @@ class Stage {
   }
   void publishMachine(const flute_grinder::MachineInfo& machine) { machine_.publish(machine); }
   void publishOffsets(const flute_grinder::WorkOffsets& offsets) { offsets_.publish(offsets); }
-  /// Reports which goal starts, and that the progress is its.
-  void publishJob(const flute_grinder::GrindActionGoal& goal) {
-    change([&] { goal_id = goal.goal_id.id; });
-    job_.publish(goal);
+  /// Reports which goal of somebody else starts, and that the progress is its.
+  void publishJob(const flute_grinder::GrindGoal& goal) {
+    flute_grinder::GrindActionGoal job;
+    job.goal_id.id = "from a terminal";
+    job.goal = goal;
+    change([&] { goal_id = job.goal_id.id; });
+    job_.publish(job);
+  }
+  /// Has a job in its journal that was left at tooth 2, pass 3. @param operation as of readJobFile().
+  void leave(const QString& job, const std::string& operation = "") {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    state.progress.job_digest = digestOf(job, operation);
+    state.progress.job_name = QFileInfo(job).fileName().toStdString();
+    state.progress.cutter = goalFromFile(job.toStdString(), operation).cutter;
+    state.progress.tooth = 1, state.progress.pass = 2;
   }
   void publishLegend(const flute_grinder::Legend& legend) { legend_.publish(legend); }
   void refuseJog(const std::string& why) {
@@ -172,8 +183,8 @@ class Stage {
   bool resume_hangs = false;
   bool plan_hangs = false;
   int resumes = 0;
-  int lifts = 0;
-  std::string trigger_refusal;  ///< of enable, home, reset and retract; empty to accept them
+  Names triggers;               ///< that were asked for
+  std::string trigger_refusal;  ///< of what only says so; empty to accept it
   std::string swivel_refusal;   ///< of a confirmation; empty to accept it
   std::vector<double> swivels;
   std::vector<double> overrides;

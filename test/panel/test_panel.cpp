@@ -1,11 +1,9 @@
 // The panel against a grinder of the test's own, which can be put into every state, and stay silent.
 
-#include "flute_grinder/WrittenSetpoint.h"
 #include "stage.h"
 
 #include <QAbstractSlider>
 #include <QApplication>
-#include <QFile>
 #include <QScrollBar>
 
 #include <cmath>
@@ -28,14 +26,14 @@ const std::vector<Row> kStates{
     {"starting", {"disable", "hold", "resume", "cancel"}, "spindle and coolant"},
     {"running", {"disable", "hold", "cancel"}, "moves the axes"},
     {"holding", {"disable", "hold", "resume", "cancel"}, "stopping on the path"},
-    {"held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held"},
+    {"held", {"disable", "hold", "resume", "retract", "cancel"}, "job is held, at rest"},
     {"retracting", {"disable", "hold", "cancel"}, "being lifted"},
     {"retracted", {"disable", "resume", "cancel"}, "off the work"},
     {"resuming", {"disable", "hold", "cancel"}, "returning to where"},
     {"canceling", {"disable", "hold"}, "the job ends"},
     {"fault", {"reset"}, "following error 1.2 mm"},
     {"lifting", {"disable", "hold", "cancel"}, "without a job"},
-    {"jogging", {"disable", "hold", "cancel"}, "being jogged"},
+    {"jogging", {"disable", "hold", "cancel"}, "An axis is being jogged"},
     {"jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
 };
 
@@ -69,9 +67,6 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     EXPECT_EQ(hold, place_of_hold.value_or(hold)) << "it moves away under the mouse";
     place_of_hold = hold;
   }
-}
-
-TEST_F(OnStage, AStateThatIsUnknownAllowsNothing) {
   stage.be(99, "melting");
   WAIT_FOR(panel.state() == "Melting");
   EXPECT_EQ(panel.enabledRequests(), Names());
@@ -264,21 +259,19 @@ TEST_F(OnStage, AReplyBeginsWithItsFirstLine) {
 
 TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   panel.plan();
-  flute_grinder::GrindActionGoal other;
-  other.goal_id.id = "from a terminal";
-  other.goal = goalFromFile(kPaper.toStdString());
-  other.goal.job_name = "four_teeth_of_the_night_shift.yaml";
-  other.goal.cutter.end_diameter = 0.012;
+  flute_grinder::GrindGoal other =
+      goalFromFile((kPackage + "/jobs/taper_reamer_d6_t6.yaml").toStdString(), "secondary");
+  other.job_name = "six_teeth_of_the_night_shift.yaml";
   stage.publishJob(other);
   stage.change([&] { stage.progress.tooth = 3, stage.progress.pass = 19, stage.progress.feed = 0.01; });
   stage.be("running");
   WAIT_FOR(panel.isVisible("other_job"));
   EXPECT_EQ(panel.text("other_job"),
-            "Running: four_teeth_of_the_night_shift.yaml (D 12 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth). "
-            "It was not started in this panel.");
+            "Running: six_teeth_of_the_night_shift.yaml, secondary relief (D 6 mm, cone 2 deg, spiral 12 deg, rake 6 "
+            "deg, 6 teeth). It was not started in this panel.");
   EXPECT_FALSE(panel.isVisible("verdict")) << "the time is another job's";
-  EXPECT_TRUE(panel.shows("place", ".yaml, tooth 4, pass 20"));
-  EXPECT_EQ(panel.the<QLabel>("place").toolTip().toStdString(), other.goal.job_name);
+  EXPECT_TRUE(panel.shows("place", ", secondary, tooth 4, pass 20"));
+  EXPECT_EQ(panel.the<QLabel>("place").toolTip(), "six_teeth_of_the_night_shift.yaml, 3 secondary relief");
   panel.picture("job_of_somebody_else");
   stage.be("ready");
   WAIT_FOR(panel.isVisible("verdict"));
@@ -299,10 +292,8 @@ TEST_F(OnStage, NothingMovesAtAStart) {
     before[&button] = button.geometry();
   }
   const int width = panel.widget().minimumSizeHint().width();
-  flute_grinder::GrindActionGoal job;
-  job.goal_id.id = "of the night shift";
-  job.goal = goalFromFile(kPaper.toStdString());
-  job.goal.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
+  flute_grinder::GrindGoal job = goalFromFile(kPaper.toStdString());
+  job.job_name = "four_teeth_of_the_night_shift_with_a_long_name.yaml";
   stage.publishJob(job);
   flute_grinder::Legend legend = legendOf(kPaper);
   legend.tolerance = 0.1e-6;
@@ -328,8 +319,7 @@ TEST_F(OnStage, NothingMovesAtAStart) {
 
 TEST_F(Staged, ALongNameIsShortenedToItsRoom) {
   const QTemporaryDir folder;
-  const QString path = folder.filePath("four_teeth_of_the_night_shift_with_a_long_name.yaml");
-  ASSERT_TRUE(QFile::copy(kPaper, path));
+  const QString path = changedJob(kPaper, folder.filePath("four_teeth_of_the_night_shift_with_a_long_name.yaml"), {});
   Panel panel("cell/stage", path);
   auto& name = panel.the<QLabel>("job_file");
   WAIT_FOR(name.text().startsWith("fo") && name.text().endsWith("ml") &&
@@ -353,7 +343,7 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   EXPECT_EQ(panel.label("meaning"), "The wheel is in the work: lift it.");
   panel.picture("wheel_in_work");
   panel.click("lift");
-  WAIT_FOR(stage.get(&Stage::lifts) == 1);
+  WAIT_FOR(stage.get(&Stage::triggers) == Names{"lift"});
   struct Meaning {
     const char *state, *fault, *meaning;
   };
@@ -368,11 +358,6 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
     stage.change([&] { stage.state.fault = row.fault; });
     stage.be(row.state);
     WAIT_FOR(panel.label("meaning") == row.meaning);
-  }
-  stage.change([&] { stage.state.wheel_in_work = 0; });
-  for (const Row& row : kStates) {
-    stage.be(row.name, panel);
-    EXPECT_FALSE(panel.shows("meaning", "in the work"));
   }
 }
 
@@ -534,22 +519,15 @@ TEST_F(BeforeTheSwivelIsSet, ADriveThatMeasuresItIsNotAsked) {
 class AfterAJobWasLeft : public OnStage {
  protected:
   void SetUp() override {
-    publish([&] {
-      flute_grinder::JobProgress& left = stage.state.progress;
-      left.job_digest = std::string(64, 'a');
-      left.job_name = "published.yaml";
-      left.cutter = goalFromFile(kPaper.toStdString()).cutter;
-      left.tooth = 1;
-      left.pass = 2;
-    });
+    leave(changedJob(kPaper, folder.filePath("published.yaml"), {{"spark_out: 0", "spark_out: 1"}}));
   }
   flute_grinder::GrindGoal goal() { return goals().at(0).goal; }
-  void leavePaper(const QString& file = kPaper) {
-    publish([&] {
-      stage.state.progress.job_digest = digestOf(file);
-      stage.state.progress.job_name = "paper.yaml";
-    });
+  void leave(const QString& job) {
+    stage.leave(job);
+    publish([] {});
   }
+
+  const QTemporaryDir folder;
 };
 
 TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
@@ -571,7 +549,7 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
 }
 
 TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
-  leavePaper();
+  leave(kPaper);
   startAndBeAsked("keep");
   EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Continue it");
   panel.press("keep");
@@ -585,7 +563,7 @@ TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
 }
 
 TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
-  leavePaper(QString(kPaper).replace("test/jobs", "jobs"));  // the panel looks among the jobs of the package
+  leave(kPackage + "/jobs/paper.yaml");  // the panel looks among the jobs of the package
   stage.change([&] { stage.state.progress.end = "the drive reports a fault"; });
   Panel panel("cell/stage");  // without a job
   auto& go_on = panel.the<QCheckBox>("continue");
@@ -620,7 +598,7 @@ TEST_F(AfterAJobWasLeft, ADamagedJournalIsDiscardedIfTheOperatorSaysSo) {
 }
 
 TEST_F(AfterAJobWasLeft, NothingIsAskedOnceItIsFinished) {
-  leavePaper();
+  leave(kPaper);
   publish([&] { stage.state.progress.finished = 1; });
   panel.plan();
   panel.click("start");
@@ -661,19 +639,12 @@ TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
 
 TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   const QTemporaryDir folder;
-  const QString path = folder.filePath("job.yaml");
-  ASSERT_TRUE(QFile::copy(kPaper, path));
+  const QString path = changedJob(kPaper, folder.filePath("job.yaml"), {});
   Panel panel("cell/stage", path);
   stage.change([&] { stage.plan.valid = 1; });
   stage.be("ready");
   panel.plan();
-  QFile file(path);
-  ASSERT_TRUE(file.setPermissions(QFile::ReadOwner | QFile::WriteOwner) && file.open(QFile::ReadWrite));
-  QByteArray text = file.readAll();
-  ASSERT_TRUE(text.contains("depth_mm: 1.6"));
-  text.replace("depth_mm: 1.6", "depth_mm: 1.5");
-  ASSERT_TRUE(file.seek(0) && file.write(text) == text.size());
-  file.close();
+  changedJob(path, path, {{"depth_mm: 1.6", "depth_mm: 1.5"}});
   panel.click("start");
   EXPECT_TRUE(panel.says("verdict", "Plan it again"));
   WAIT_FOR(!panel.enabled("start"));
@@ -699,6 +670,7 @@ TEST_F(Staged, TheNodeCanBeChosen) {
   stage.be("disabled");
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_TRUE(panel.shows("meaning", "/nobody"));
+  EXPECT_EQ(panel.enabledRequests(), Names());
   for (const char* wrong : {"no name", ""}) {
     panel.enterNode(wrong);
     EXPECT_TRUE(panel.says("messages", "Grinder's node: ")) << wrong;
@@ -715,9 +687,9 @@ TEST_F(OnStage, WhatHeldTheJobAndWhatIsNotHomedIsReported) {
   stage.be("retracted");
   WAIT_FOR(panel.label("meaning").find("Held because the spindle is not at speed") == 0);
   panel.picture("held_by_itself");
-  stage.change([&] { stage.state.homed = 0; });
+  stage.change([&] { stage.state.homed = 0, stage.state.emergency_stop = 1; });
   stage.be("ready");
-  WAIT_FOR(panel.shows("meaning", "not homed"));
+  WAIT_FOR(panel.shows("meaning", "The emergency stop is pressed. The axes are not homed."));
 }
 
 TEST_F(OnStage, PositionsAreThoseOfTheWorkWhateverTheOrderOfTheJoints) {

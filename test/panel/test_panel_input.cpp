@@ -212,6 +212,8 @@ TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
   ASSERT_TRUE(dialog);
   Panel::enter(*dialog, "/nowhere/job.yaml");
   WAIT_FOR(panel.says("verdict", "job.yaml"));
+  EXPECT_FALSE(panel.says("verdict", "/nowhere"));
+  panel.picture("wrong_job_file");
   expectHoldWorks();
 }
 
@@ -417,6 +419,9 @@ TEST_F(Focus, GoesToHoldAndStaysAndNoKeyCancelsOrResumes) {
   stage.be("starting");
   WAIT_FOR(focused() == "hold");  // with the job of somebody else
   stage.be("running", panel);
+  const Names passed = tabbedThrough();
+  EXPECT_TRUE(passed.count("hold"));
+  EXPECT_FALSE(passed.count("cancel") || passed.count("disable"));
   clickInWindow(panel, "hold");
   WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
   for (const char* state : {"holding", "held"}) {
@@ -436,15 +441,6 @@ TEST_F(Focus, GoesToHoldAndStaysAndNoKeyCancelsOrResumes) {
   EXPECT_EQ(stage.get(&Stage::resumes), 1);
 }
 
-TEST_F(Focus, NoKeyReachesCancelOrDisable) {
-  stage.be("running", panel);
-  panel.the<QPushButton>("hold").setFocus();
-  const Names passed = tabbedThrough();
-  EXPECT_TRUE(passed.count("hold"));
-  EXPECT_FALSE(passed.count("cancel"));
-  EXPECT_FALSE(passed.count("disable"));
-}
-
 TEST_F(Focus, DoesNotMoveToAButtonByItself) {
   WAIT_FOR(panel.enabled("plan"));
   // Disabled while it plans, which takes the focus from it.
@@ -460,7 +456,11 @@ TEST_F(Focus, DoesNotMoveToAButtonByItself) {
   WAIT_FOR(goals().size() == 1);
   stage.be("running", panel);
   EXPECT_EQ(focused(), "hold") << "Space stops what Start has begun";
-  stage.end(goals().at(0).goal_id.id, flute_grinder::GrindResult());
+  flute_grinder::GrindResult canceled;
+  canceled.error_code = flute_grinder::GrindResult::CANCELED;
+  canceled.error_string = "canceled";
+  stage.end(goals().at(0).goal_id.id, canceled);
+  WAIT_FOR(panel.says("messages", "The job has ended: canceled"));
   stage.be("ready", panel);
   EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
 }

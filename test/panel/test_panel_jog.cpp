@@ -22,19 +22,8 @@ class Jogging : public Staged {
     stage.be("ready");
     panel.openTab("Jog");
   }
-  Names enabledButtons() {
-    Names names;
-    for (const std::string& name : kButtons) {
-      if (panel.enabled(name.c_str())) names.insert(name);
-    }
-    return names;
-  }
-  void choose(const QString& step) {
-    auto& steps = panel.the<QComboBox>("jog_step");
-    const int index = steps.findText(step);
-    ASSERT_GE(index, 0) << step.toStdString();
-    steps.setCurrentIndex(index);
-  }
+  Names enabledButtons() { return panel.enabledOf(kButtons); }
+  void choose(const QString& step) { panel.the<QComboBox>("jog_step").setCurrentText(step); }
   std::vector<flute_grinder::Jog> jogs() { return stage.get(&Stage::jogs); }
   std::vector<flute_grinder::JogStep::Request> steps() { return stage.get(&Stage::steps); }
   /// Presses a button until some messages have come.
@@ -55,21 +44,11 @@ class Jogging : public Staged {
 };
 
 TEST_F(Jogging, AxesMayBeJoggedAndTouchedOffWhereTheStateAllows) {
-  struct Row {
-    const char* state;
-    bool jogged, touched_off;
-  };
-  for (const Row& row : {Row{"ready", true, true},
-                         {"held", false, false},
-                         {"retracted", true, false},
-                         {"running", false, false},
-                         {"jogging", true, false},
-                         {"disabled", false, true},
-                         {"jogging_retracted", true, false}}) {
-    SCOPED_TRACE(row.state);
-    stage.be(row.state, panel);
-    EXPECT_EQ(enabledButtons(), row.jogged ? kButtons : Names());
-    EXPECT_EQ(panel.enabled("touch_off"), row.touched_off);
+  for (const StateRow& row : kMachineStates) {
+    SCOPED_TRACE(row.name);
+    stage.be(row.name, panel);
+    EXPECT_EQ(enabledButtons(), after(row.value, MachineEvent::kJog) ? kButtons : Names());
+    EXPECT_EQ(panel.enabled("touch_off"), row.value == MachineState::kReady || row.value == MachineState::kDisabled);
   }
   stage.be("ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
@@ -167,14 +146,7 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
 }
 
 TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThem) {
-  const Names switches{"spindle_on", "spindle_off", "coolant_on", "coolant_off"};
-  const auto enabled = [&] {
-    Names names;
-    for (const std::string& name : switches) {
-      if (panel.enabled(name.c_str())) names.insert(name);
-    }
-    return names;
-  };
+  const auto enabled = [&] { return panel.enabledOf({"spindle_on", "spindle_off", "coolant_on", "coolant_off"}); };
   WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
   panel.click("spindle_on");
   WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_on"}));

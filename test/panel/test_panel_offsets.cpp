@@ -22,6 +22,9 @@ class ZeroPoints : public OnStage {
     goal.cutter.end_diameter = diameter;
     goal.process.setup_height = height;
     goal.job_name = "other.yaml";
+    setFor(goal);
+  }
+  void setFor(const flute_grinder::GrindGoal& goal) {
     flute_grinder::WorkOffsets offsets;
     offsets.values = {0.001, 0.002, 0.003, 0};
     for (const int axis : {kX, kY, kZ}) {
@@ -45,15 +48,9 @@ TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
       goalFromFile((QString(kPaper).replace("test/jobs/paper", "jobs/roughing_d10_t4")).toStdString());
   other.cutter.end_diameter = 0.006123;
   other.job_name = "a_roughing_cutter_of_last_week.yaml";
-  flute_grinder::WorkOffsets offsets;
-  for (const int axis : {kX, kY, kZ}) {
-    const auto i = static_cast<std::size_t>(axis);
-    offsets.set_at[i] = ros::Time(1.7e9);
-    offsets.basis[i] = toMessage(basisOf(other, OffsetMethod::kTouchOff));
-    offsets.basis[i].wheel_diameter = 0.0751234;
-    offsets.basis[i].wheel_width = 0.0041234;
-  }
-  stage.publishOffsets(offsets);
+  other.process.wheel_diameter = 0.0751234;
+  other.process.wheel_width = 0.0041234;
+  setFor(other);
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   const auto& text = panel.the<QPlainTextEdit>("offsets_question");
   std::string shown;

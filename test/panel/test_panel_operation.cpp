@@ -2,8 +2,6 @@
 
 #include "stage.h"
 
-#include <QFile>
-
 namespace grinder::test_panel_operation {
 
 const QString kReamer = kPackage + "/jobs/taper_reamer_d6_t6.yaml";
@@ -13,13 +11,6 @@ class Operation : public Staged {
   void SetUp() override {
     stage.change([&] { stage.plan.valid = 1, stage.state.swivel = 13.104 * M_PI / 180; });
     stage.be("ready");
-  }
-  void choose(const QString& operation) {
-    while (box.currentText() != operation) {
-      const int before = box.currentIndex();
-      QTest::keyClick(&box, Qt::Key_Down);
-      ASSERT_NE(box.currentIndex(), before) << operation.toStdString();
-    }
   }
   bool says(const std::string& begin) { return panel.text("verdict").find(begin) == 0; }
 
@@ -45,14 +36,14 @@ TEST_F(Operation, NoneIsChosenAtFirst) {
 }
 
 TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
-  choose("2 primary relief");
+  panel.chooseOperation("2 primary relief");
   EXPECT_TRUE(says("Not planned yet."));
   panel.plan();
   panel.picture("operation_chosen");
   const flute_grinder::GrindGoal primary = goalFromFile(kReamer.toStdString(), "primary");
   ASSERT_EQ(primary.operation, 1);
   EXPECT_EQ(stage.get(&Stage::plans).back(), primary);
-  choose("3 secondary relief");
+  panel.chooseOperation("3 secondary relief");
   WAIT_FOR(!panel.enabled("start"));
   EXPECT_TRUE(says("Not planned yet."));
   panel.plan();
@@ -63,70 +54,39 @@ TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
 
 TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   const QTemporaryDir folder;
-  const QByteArray wheel = "file: " + kPackage.toUtf8() + "/wheels/straight_d100_w6.yaml";
-  const auto write = [&](bool secondary, const QByteArray& infeed) {
-    QFile original(kReamer);
-    ASSERT_TRUE(original.open(QFile::ReadOnly));
-    QByteArray text = original.readAll();
-    text.replace("file: ../wheels/straight_d100_w6.yaml", wheel);
-    text.replace("    infeed_mm: 0.05", "    infeed_mm: " + infeed);
-    if (!secondary) {
-      const int from = text.lastIndexOf("  - kind: relief");
-      text.remove(from, text.indexOf("interpolation:") - from);
-      text.replace("  second_clearance_deg: 22\n", "");
-    }
-    QFile file(folder.filePath("job.yaml"));
-    ASSERT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
-  };
-  write(true, "0.05");
+  const QString path = changedJob(kReamer, folder.filePath("job.yaml"), {});
   rviz::Config config;
   config.mapSetValue("Node", "cell/stage");
-  config.mapSetValue("Job", folder.filePath("job.yaml"));
+  config.mapSetValue("Job", path);
   panel.widget().load(config);
-  choose("2 primary relief");
+  panel.chooseOperation("2 primary relief");
   panel.plan();
-  write(true, "0.04");
+  changedJob(kReamer, path, {{"height_mm: -3.658", "height_mm: -3.657"}});
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
-  EXPECT_EQ(stage.get(&Stage::plans).at(1).process.infeed, 0.04e-3);
+  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).process.setup_height, -3.657e-3);
   EXPECT_EQ(box.currentText(), "2 primary relief");
   WAIT_FOR(says("Takes "));
-  write(false, "0.04");
+  changedJob(
+      kReamer, path,
+      {{"  - kind: relief\n    relief: secondary\n    feed_mm_min: 300\n    infeed_mm: 0.05\n    finish_infeed_mm: "
+        "0.01\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    setup: {swivel_deg: 13.104, height_mm: "
+        "-3.548}\n",
+        ""},
+       {"  second_clearance_deg: 22\n", ""}});
   panel.click("start");
   EXPECT_EQ(panel.text("verdict"), "Choose the operation first.");
   EXPECT_EQ(box.currentText(), "choose");
   EXPECT_EQ(box.count(), 3);
   WAIT_FOR(!panel.enabled("start") && !panel.enabled("plan"));
-  choose("2 primary relief");
+  panel.chooseOperation("2 primary relief");
   panel.widget().load(config);  // the same file, as it was opened once more
   EXPECT_EQ(box.currentText(), "choose");
   EXPECT_EQ(goals().size(), 0U);
 }
 
-TEST_F(Operation, ThatRunsIsNamed) {
-  flute_grinder::GrindActionGoal job;
-  job.goal_id.id = "from a terminal";
-  job.goal = goalFromFile(kReamer.toStdString(), "secondary");
-  stage.publishJob(job);
-  stage.change([&] { stage.progress.tooth = 4, stage.progress.pass = 11; });
-  stage.be("running");
-  WAIT_FOR(panel.isVisible("other_job"));
-  EXPECT_EQ(panel.text("other_job").find("Running: taper_reamer_d6_t6.yaml, secondary relief (D 6 mm, "), 0U)
-      << panel.text("other_job");
-  EXPECT_TRUE(panel.shows("place", ", secondary, tooth 5, pass 12"));
-  EXPECT_EQ(panel.the<QLabel>("place").toolTip(), "taper_reamer_d6_t6.yaml, 3 secondary relief");
-  panel.picture("operation_running");
-}
-
 TEST_F(Operation, ThatWasLeftIsTakenByAClick) {
-  stage.change([&] {
-    flute_grinder::JobProgress& left = stage.state.progress;
-    left.job_digest = digestOf(kReamer, "primary");
-    left.job_name = "taper_reamer_d6_t6.yaml";
-    left.cutter = goalFromFile(kReamer.toStdString(), "primary").cutter;
-    left.tooth = 1;
-    left.pass = 2;
-  });
+  stage.leave(kReamer, "primary");
   auto& go_on = panel.the<QCheckBox>("continue");
   WAIT_FOR(go_on.isEnabled());
   EXPECT_EQ(go_on.text(), "Continue primary at tooth 2, pass 3");
@@ -147,7 +107,7 @@ TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {
   panel.press("touch_off");
   WAIT_FOR(panel.says("messages", "Touch-off: choose the operation of the job first"));
   panel.openTab("Job");
-  choose("3 secondary relief");
+  panel.chooseOperation("3 secondary relief");
   panel.openTab("Jog");
   panel.click("touch_off");
   WAIT_FOR(touches().size() == 1);

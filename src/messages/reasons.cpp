@@ -22,8 +22,8 @@ static_assert(is(flute_grinder::Reason::FEED_METRE_PER_SECOND, Unit::kFeedMetreP
 static_assert(is(flute_grinder::Reason::DEVIATION_METRE, Unit::kDeviationMetre));
 static_assert(is(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN, Unit::kRotaryMetrePerRadian));
 static_assert(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
-static_assert(flute_grinder::Reason::X == kX && flute_grinder::Reason::Y == kY && flute_grinder::Reason::Z == kZ &&
-              flute_grinder::Reason::A == kA);
+static_assert(+flute_grinder::Reason::X == kX && +flute_grinder::Reason::Y == kY && +flute_grinder::Reason::Z == kZ &&
+              +flute_grinder::Reason::A == kA);
 
 }  // namespace
 

@@ -212,7 +212,9 @@ TEST(ReliefSection, IsWhatTheWheelsLeave) {
       const auto left = [&](const Stroke& stroke, double behind) { return stroke.left(x, edge + tool.hand * behind); };
 
       const double begin = beginOf(relief, x, section.radius, edge, tool.hand, tool.start.behind);
-      if (tool.start.behind > 0) EXPECT_NEAR(begin, tool.start.behind, 10e-6);  // the margin is left as wide as asked
+      if (tool.start.behind > 0) {
+        EXPECT_NEAR(begin, tool.start.behind, 10e-6);  // the margin is left as wide as asked
+      }
       EXPECT_NEAR(measured.edge_radius, std::min(section.radius, left(relief, 0)), 5e-9);
       EXPECT_NEAR(*measured.clearance, clearanceAt(relief, x, section.radius, edge, tool.hand, begin), 0.01 * kDegree);
 

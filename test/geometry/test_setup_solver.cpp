@@ -362,7 +362,9 @@ TEST(SetupSolver, ARakeThatIsJustTheMaxIsFound) {
       const SolvedSetup s = solved(request);
       EXPECT_NEAR(s.setup.swivel / kDegree, spiral, spiral == 0 ? 1e-9 : 0.1);
       EXPECT_NEAR(s.min_rake / kDegree, rake, 0.05);
-      if (spiral == 0) EXPECT_EQ(s.overtravel[0] + s.overtravel[1], 0);  // the wheel stands square to the flute
+      if (spiral == 0) {
+        EXPECT_EQ(s.overtravel[0] + s.overtravel[1], 0);  // the wheel stands square to the flute
+      }
     }
   }
 }

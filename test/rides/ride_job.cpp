@@ -196,9 +196,9 @@ bool isRideable(Random& random, RideJob& ride, double most) {
     const auto off = watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], p.position[kA]);
     if (!(std::abs(off) <= ride.asked.deviation)) return false;
   }
-  // A lift without the reference may be as long as all of Y. In a stroke that is begun again A and Z may differ a
-  // little.
-  limits.max_position[kY] += 2 * (limits.max_position[kY] - limits.min_position[kY]);
+  // Every lift without the reference is as long as the first, and higher. In a stroke that is begun again A and Z may
+  // differ a little.
+  limits.max_position[kY] += 0.5;
   const Axes least(0, 0, 1e-6, 1e-3);
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const auto& [limit, way] : {std::pair(&limits.min_position, -1), {&limits.max_position, 1}}) {

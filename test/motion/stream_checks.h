@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-// What setpoints of a stream must keep to: the axes' limits, the paper's construction, the tolerance and the program.
+// Streams gone through, and what their setpoints must keep to: the axes' limits, the paper's construction, the
+// tolerance.
 namespace grinder::test_support {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();

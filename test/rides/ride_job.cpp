@@ -180,16 +180,16 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   return asked;
 }
 
-/// Whether a plan accepts it: no point off the curve by more than its tolerance; and it takes `most` cycles at most.
-/// The machine gets limits that hold it.
-bool isRideable(Random& random, RideJob& ride, double most) {
+/// Gives the machine limits of positions that hold the job.
+/// @return whether a plan accepts it: no point off the curve by more than its tolerance, in ride.cycles at most.
+bool limitToPath(Random& random, RideJob& ride) {
   SetpointStream stream(GrindProgram(ride.job, ride.machine, RunStart(ride.machine.park, {}, ride.offset)));
   const second_opinion::Watch watch(ride.asked);
   AxisLimits& limits = ride.machine.limits;
   limits.min_position = limits.max_position = ride.machine.park;
   Setpoint p;
   for (double cycles = 0; stream.next(p); ++cycles) {
-    if (cycles > most) return false;
+    if (cycles > ride.cycles) return false;
     limits.min_position = limits.min_position.min(p.position + ride.offset);
     limits.max_position = limits.max_position.max(p.position + ride.offset);
     if (p.step == StepKind::kNone) continue;
@@ -205,6 +205,8 @@ bool isRideable(Random& random, RideJob& ride, double most) {
       (*limit)[axis] += way * (least[axis] + (flip(random, 0.2) ? 0 : acrossDecades(random, 1e-6, 0.1)));
     }
   }
+  Axes::Map(ride.asked.low.data()) = limits.min_position;
+  Axes::Map(ride.asked.high.data()) = limits.max_position;
   return stream.finished();
 }
 
@@ -224,11 +226,7 @@ std::optional<RideJob> draw(Random& random) {
   machine.park << between(random, -0.02, 0.02), clear + between(random, 0, 5e-3), between(random, -1e-3, 1e-3), 0;
   machine.park += offset;
   RideJob ride{job, machine, offset, acrossDecades(random, 800, 8000), askedOf(job, machine, offset)};
-  if (!isRideable(random, ride, ride.cycles)) return std::nullopt;
-  std::copy(ride.machine.limits.min_position.data(), ride.machine.limits.min_position.data() + kAxisCount,
-            ride.asked.low.begin());
-  std::copy(ride.machine.limits.max_position.data(), ride.machine.limits.max_position.data() + kAxisCount,
-            ride.asked.high.begin());
+  if (!limitToPath(random, ride)) return std::nullopt;
   return ride;
 }
 

@@ -84,7 +84,7 @@ class RideDrive : public Drive {
   void write(const DriveCycle&, const DriveCommand& command) override { sent_ = command; }
 
   bool isCommandedOn() const { return sent_.enable; }
-  void place(const Machine& machine, std::size_t buffer) {
+  void setUp(const Machine& machine, std::size_t buffer) {
     limits_ = machine.limits;
     buffer_ = buffer;
     std::copy(machine.park.data(), machine.park.data() + kAxisCount, at_.begin());
@@ -160,7 +160,7 @@ class Ride {
         recover_every_(acrossDecades(random_, 10, 100)),
         failures_(acrossDecades(random_, 0.02, 0.5)),
         watch_(job_.asked) {
-    drive_.place(job_.machine, flip(random_, 0.5) ? 0 : static_cast<std::size_t>(between(random_, 1, kMostBuffered)));
+    drive_.setUp(job_.machine, flip(random_, 0.5) ? 0 : static_cast<std::size_t>(between(random_, 1, kMostBuffered)));
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
     loop_->postSwivel(job_.job->process.setup_swivel);
   }
@@ -182,13 +182,17 @@ class Ride {
       throw second_opinion::Violation("the job does not end: " + last_reply_ + "; " + sample_.fault.text());
     const LoopStatus status = loop_->status();
     const bool ended = status.jobs_ended == status.jobs_started;
-    if (ended && status.end == JobEnd::kDone && watch_.ground() != job_.asked.passes.size()) {
+    if (ended && status.end == JobEnd::kDone) checkDone();
+    return ended && watch_.ground() == job_.asked.passes.size();
+  }
+
+  void checkDone() const {
+    if (watch_.ground() != job_.asked.passes.size()) {
       throw second_opinion::Violation("done with " + std::to_string(watch_.ground()) + " of " +
                                       std::to_string(job_.asked.passes.size()) + " passes");
     }
-    if (ended && status.end == JobEnd::kDone && !((sample_.command - job_.machine.park).abs() <= 1e-12).all())
+    if (!((sample_.command - job_.machine.park).abs() <= 1e-12).all())
       throw second_opinion::Violation("done, but not parked");
-    return ended && watch_.ground() == job_.asked.passes.size();
   }
 
   void cycle() {

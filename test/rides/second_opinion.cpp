@@ -111,7 +111,8 @@ void Watch::checkMotion(const Row& row) {
     const auto axis = static_cast<std::size_t>(i);
     const Real noise = noiseOf(i);
     if (!(row.at[axis] >= asked_.low[axis] && row.at[axis] <= asked_.high[axis])) {
-      throw Violation(text("place", i, row.at[axis], row.at[axis] < 0 ? asked_.low[axis] : asked_.high[axis]));
+      throw Violation(
+          text("place", i, row.at[axis], row.at[axis] < asked_.low[axis] ? asked_.low[axis] : asked_.high[axis]));
     }
     const Real velocity = (Real(row.at[axis]) - last_.at[axis]) / t;
     if (!(std::abs(velocity) <= asked_.velocity[axis] * (1 + 1e-9L) + noise / t)) {

@@ -98,6 +98,7 @@ void ControlLoop::readSwivel() {
 }
 
 void ControlLoop::trackMotion() {
+  if (sample_.drive.homed || !isPowered(state_)) wheel_.forgetLift();
   if (stream_) {
     const JobTrack& reached = history_.inEffect(sample_.drive.commands_waiting).track;
     // The drive's buffer may still hold commands of the previous job.

@@ -225,6 +225,7 @@ Refusal ControlLoop::lift() {
   if (!wheel_.wheel().in_work) return Refusal::kNotInWork;
   if (!(liftTarget() <= config_.machine.limits.max_position[kY])) return Refusal::kTooFar;
   const double to = std::max(command_[kY], liftTarget());
+  wheel_.beginLift(to);
   axis_move_.begin(MoveKind::kLift, command_, kY, to, config_.machine.limits.max_velocity[kY]);
   limit_check_.restart();
   apply(MachineEvent::kLift);

@@ -89,21 +89,63 @@ TEST(Lift, IsStoppedOnItsWayByEveryStopWithTheWheelStillInTheWork) {
   }
 }
 
+/// Of a drive that has lost its reference, with the wheel in the work of a job that needs a lift.
+class WithoutTheReference {
+ public:
+  explicit WithoutTheReference(double lift)
+      : rig(machineConfig(), [](SimulatedDrive& d) {
+          SimulatedDrive::Model model = driveModel();
+          model[kY].start_position = -0.0005;
+          d.init(model, {false, 0});
+        }) {
+    rig.loop = std::make_unique<ControlLoop>(rig.drive, machineConfig(), Wheel{true, kClearanceHeight, lift});
+    rig.run(2);
+    rig.enable();
+  }
+
+  /// Lifts the wheel some way only.
+  void stopLift() {
+    ASSERT_TRUE(rig.ask(E::kLift).accepted);
+    for (const double y = rig.last().command[kY]; rig.last().command[kY] < y + 1e-3;) rig.cycle();
+    ASSERT_TRUE(rig.ask(E::kHold).accepted);
+    rig.runUntil(S::kReady);
+  }
+
+  Rig<SimulatedDrive> rig;
+};
+
 TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
-  Rig<SimulatedDrive> rig(machineConfig(), [](SimulatedDrive& d) {
-    SimulatedDrive::Model model = driveModel();
-    model[kY].start_position = -0.0005;
-    d.init(model, {false, 0});
-  });
-  rig.loop = std::make_unique<ControlLoop>(rig.drive, machineConfig(), Wheel{true, kClearanceHeight, kLift});
-  rig.run(2);
-  rig.enable();
+  WithoutTheReference machine(kLift);
+  auto& rig = machine.rig;
   EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
   const double from = rig.last().command[kY];
   ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
   EXPECT_FALSE(rig.last().wheel_in_work);
   EXPECT_TRUE(rig.ask(E::kHome).accepted);
+}
+
+TEST(AfterARestart, WithoutTheReferenceALiftThatWasStoppedContinuesAsLongAsThePowerIsOn) {
+  const double top = machineConfig().machine.limits.max_position[kY];
+  WithoutTheReference machine(top);
+  ASSERT_EQ(machine.rig.last().command[kY], 0) << "where a drive counts from that does not know better";
+  auto& rig = machine.rig;
+  for (int i = 0; i < 2; ++i) ASSERT_NO_FATAL_FAILURE(machine.stopLift());
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_EQ(rig.last().command[kY], top);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
+TEST(AfterARestart, WithoutTheReferenceTheWholeLiftIsDueOnceThePowerWasOff) {
+  WithoutTheReference machine(kLift);
+  auto& rig = machine.rig;
+  ASSERT_NO_FATAL_FAILURE(machine.stopLift());
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+  rig.enable();
+  const double from = rig.last().command[kY];
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
 }
 
 TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {

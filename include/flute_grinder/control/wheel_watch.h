@@ -3,6 +3,7 @@
 #include "flute_grinder/control/loop_status.h"
 
 #include <cmath>
+#include <optional>
 
 namespace grinder {
 
@@ -23,16 +24,26 @@ class WheelWatch {
   void observePosition(double y) noexcept {
     if (std::isfinite(y) && y >= wheel_.clear_y) wheel_.in_work = false;
   }
+  /// To be called when a lift without a job begins.
+  /// @param target of it, see liftTarget() [m].
+  void beginLift(double target) noexcept { last_target_ = target; }
   /// To be called when a lift without a job is complete.
   void finishLift() noexcept { wheel_.in_work = false; }
+  /// To be called when Y may no longer count from where it did when the last lift began: without power, or when the
+  /// reference is found.
+  void forgetLift() noexcept { last_target_.reset(); }
 
   /// Target Y for lifting the wheel [m].
-  /// @param homed whether Y refers to the machine's reference; otherwise only the distance of the lift is known.
+  /// @param homed whether Y refers to the machine's reference; otherwise only the distance of the lift is known, and a
+  ///        lift that was stopped continues.
   /// @param y current Y of the wheel [m].
-  double liftTarget(bool homed, double y) const noexcept { return homed ? wheel_.clear_y : y + wheel_.lift; }
+  double liftTarget(bool homed, double y) const noexcept {
+    return homed ? wheel_.clear_y : last_target_.value_or(y + wheel_.lift);
+  }
 
  private:
   Wheel wheel_;
+  std::optional<double> last_target_;
 };
 
 }  // namespace grinder

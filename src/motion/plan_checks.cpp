@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace grinder {
 
@@ -120,9 +121,25 @@ void PlanChecks::addDeviation(const Setpoint& p, double deviation) {
   deviation_.cycle = p.cycle;
 }
 
+/// A stroke that is interrupted comes to its end by other points, each within the tolerance of the same curve.
+void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
+  const AxisLimits& limits = program_.machine().limits;
+  const double at = stroke.to[kA] + program_.run().offset[kA];
+  const double room = deviation_.limit / program_.helix(stroke.tooth).edge.deviation(stroke.to[kX], 1);
+  for (const auto& [limit, way] : {std::pair(limits.min_position[kA], -1), {limits.max_position[kA], 1}}) {
+    const double past = way * (at - limit);
+    // What is beyond the limit itself is found at its setpoints.
+    if (past > 0 || past + room <= 0) continue;
+    addViolation({kA, LimitedQuantity::kPosition, at + way * room, limit, cycle, stroke.to[kX], stroke.kind,
+                  stroke.tooth, stroke.pass});
+  }
+}
+
 void PlanChecks::finish() {
   // A move of zero length has no setpoints of its own.
   for (std::size_t i = 1; i < plan_.move_ends.size(); ++i) {
+    const Move& move = program_.moves()[i];
+    if (move.kind == MoveKind::kStroke && plan_.move_ends[i] > 0) checkStrokeEnd(move, plan_.move_ends[i]);
     plan_.move_ends[i] = std::max(plan_.move_ends[i], plan_.move_ends[i - 1]);
   }
   for (std::size_t i = 0; i < cycles_.size(); ++i) {

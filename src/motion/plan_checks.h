@@ -38,6 +38,7 @@ class PlanChecks {
   void count(const Setpoint& setpoint);
   void measure(const Setpoint& setpoint);
   void measureStroke(const Setpoint& setpoint);
+  void checkStrokeEnd(const Move& stroke, std::uint64_t cycle);
   void addViolation(const LimitViolation& violation);
   void addDeviation(const Setpoint& setpoint, double deviation);
 

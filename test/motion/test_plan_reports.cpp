@@ -70,6 +70,28 @@ TEST(JobPlan, RefusesEveryAxisBeyondItsLimitsWithTheWorstOfEveryMove) {
   EXPECT_TRUE((visited.back().position == machine.park).all());
 }
 
+/// An interrupted stroke comes to its end by other points than the plan's.
+TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
+  for (const double way : {1, -1}) {
+    GrindJob job = paperJob();
+    job.cutter.spiral_angle *= way;
+    Setpoint end;
+    end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process.setup_lead).a(0.031) + 1;
+    const double room = job.interpolation.tolerance / Deviation(job).of(end);
+    Machine machine = plainMachine();
+    double& limit = (way > 0 ? machine.limits.max_position : machine.limits.min_position)[kA];
+    limit = end.position[kA] - 1 + way * 1.01 * room;
+    EXPECT_TRUE(planOf(job, machine).good()) << textOf(planOf(job, machine));
+    limit -= way * 0.02 * room;
+    const JobPlan plan = planOf(job, machine);
+    EXPECT_EQ(plan.fault, PlanFault::kLimit);
+    ASSERT_EQ(plan.reasons.size(), 1u) << textOf(plan);
+    EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kPosition);
+    EXPECT_EQ(plan.reasons[0].move, MoveKind::kStroke);
+    EXPECT_NEAR(plan.reasons[0].value, limit + way * 0.01 * room, 1e-4 * room);
+  }
+}
+
 TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   GrindJob job = steepJob();
   job.process.feed = 0.1;

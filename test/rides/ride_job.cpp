@@ -180,10 +180,30 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   return asked;
 }
 
+/// Cycles that no run of a program goes below: each move from rest to rest by one limit of an axis, or at the feed.
+double minCycles(const GrindProgram& program) {
+  const AxisLimits& limits = program.machine().limits;
+  double time = 0;
+  Axes at = program.start();
+  for (const Move& move : program.moves()) {
+    const Axes way = (move.to - at).abs();
+    double at_feed = 0;
+    if (move.kind == MoveKind::kStroke) at_feed = way[kX] * program.cutter(move.tooth).edgePerTravel();
+    if (move.kind == MoveKind::kInfeed) at_feed = way[kY];
+    const Axes least = (way / limits.max_velocity)
+                           .max(2 * (way / limits.max_acceleration).sqrt())
+                           .max((32 * way / limits.max_jerk).pow(1.0 / 3));
+    time += std::max(at_feed / program.job()->process.feed, least.maxCoeff());
+    at = move.to;
+  }
+  return time / program.machine().period;
+}
+
 /// Gives the machine limits of positions that hold the job.
 /// @return whether a plan accepts it: no point off the curve by more than its tolerance, in ride.cycles at most.
 bool limitToPath(Random& random, RideJob& ride) {
   SetpointStream stream(GrindProgram(ride.job, ride.machine, RunStart(ride.machine.park, {}, ride.offset)));
+  if (minCycles(stream.program()) > ride.cycles) return false;
   const second_opinion::Watch watch(ride.asked);
   AxisLimits& limits = ride.machine.limits;
   limits.min_position = limits.max_position = ride.machine.park;
@@ -193,13 +213,22 @@ bool limitToPath(Random& random, RideJob& ride) {
     limits.min_position = limits.min_position.min(p.position + ride.offset);
     limits.max_position = limits.max_position.max(p.position + ride.offset);
     if (p.step == StepKind::kNone) continue;
-    const auto off = watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], p.position[kA]);
+    const auto deviation = [&](double a) { return watch.deviation(ride.asked.teeth[p.tooth], p.position[kX], a); };
+    const auto off = deviation(p.position[kA]);
     if (!(std::abs(off) <= ride.asked.deviation)) return false;
+    if (std::abs(p.position[kX] - ride.asked.to) > 1e-9) continue;
+    // A plan leaves the tolerance to the end of a stroke, which may be begun again.
+    const auto per_radian = deviation(p.position[kA] + 1) - off;
+    for (const auto way : {-ride.asked.deviation, ride.asked.deviation}) {
+      const double a = p.position[kA] + static_cast<double>((way - off) / per_radian) + ride.offset[kA];
+      limits.min_position[kA] = std::min(limits.min_position[kA], a);
+      limits.max_position[kA] = std::max(limits.max_position[kA], a);
+    }
   }
-  // Every lift without the reference is as long as the first, and higher. In a stroke that is begun again A and Z may
-  // differ a little.
+  // Without the reference, a lift is as long again once the power was off, and higher. Between the setpoints of the
+  // plan, Z's bends may be farther out.
   limits.max_position[kY] += 0.5;
-  const Axes least(0, 0, 1e-6, 1e-3);
+  const Axes least(0, 0, 1e-6, 0);
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const auto& [limit, way] : {std::pair(&limits.min_position, -1), {&limits.max_position, 1}}) {
       (*limit)[axis] += way * (least[axis] + (flip(random, 0.2) ? 0 : acrossDecades(random, 1e-6, 0.1)));

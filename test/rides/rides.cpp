@@ -180,6 +180,7 @@ class Ride {
   bool isOver() {
     if (result_.cycles > kMostRideCycles)
       throw second_opinion::Violation("the job does not end: " + last_reply_ + "; " + sample_.fault.text());
+    if (!sample_.job_ended && watch_.ground() < job_.asked.passes.size()) return false;
     const LoopStatus status = loop_->status();
     const bool ended = status.jobs_ended == status.jobs_started;
     if (ended && status.end == JobEnd::kDone) checkDone();

@@ -91,6 +91,7 @@ void PlanChecks::measureStroke(const Setpoint& p) {
   const double deviation = edge.deviation(p.position[kX], error);
   statistics_.max_deviation = std::max(statistics_.max_deviation, deviation);
   if (!(deviation * deviation_factor_ <= deviation_.limit)) addDeviation(p, deviation * deviation_factor_);
+  checkBend(p);
   if (p.step == StepKind::kEven && p.at_feed) {
     const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * edge.cutter.edgePerTravel();
     statistics_.max_feed = std::max(statistics_.max_feed, feed);
@@ -121,18 +122,37 @@ void PlanChecks::addDeviation(const Setpoint& p, double deviation) {
   deviation_.cycle = p.cycle;
 }
 
-/// A stroke that is interrupted comes to its end by other points, each within the tolerance of the same curve.
-void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
+/// An interrupted stroke comes to other points of the same path than the plan's.
+/// @param place of a point of the plan, with its axis and the machine's position there.
+/// @param room how much farther out others may be.
+void PlanChecks::checkRoom(LimitViolation place, double room) {
   const AxisLimits& limits = program_.machine().limits;
+  const double at = place.value;
+  for (const auto& [limit, way] :
+       {std::pair(limits.min_position[place.axis], -1), {limits.max_position[place.axis], 1}}) {
+    const double past = way * (at - limit);
+    // What is beyond the limit itself is found without this.
+    if (past > 0 || past + room <= 0) continue;
+    place.value = at + way * room;
+    place.limit = limit;
+    addViolation(place);
+  }
+}
+
+/// Each point of A is within the tolerance of the curve.
+void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
   const double at = stroke.to[kA] + program_.run().offset[kA];
   const double room = deviation_.limit / program_.helix(stroke.tooth).edge.deviation(stroke.to[kX], 1);
-  for (const auto& [limit, way] : {std::pair(limits.min_position[kA], -1), {limits.max_position[kA], 1}}) {
-    const double past = way * (at - limit);
-    // What is beyond the limit itself is found at its setpoints.
-    if (past > 0 || past + room <= 0) continue;
-    addViolation({kA, LimitedQuantity::kPosition, at + way * room, limit, cycle, stroke.to[kX], stroke.kind,
-                  stroke.tooth, stroke.pass});
-  }
+  checkRoom({kA, LimitedQuantity::kPosition, at, 0, cycle, stroke.to[kX], stroke.kind, stroke.tooth, stroke.pass},
+            room);
+}
+
+/// Between two setpoints, no bend of Z leads farther out than the acceleration does.
+void PlanChecks::checkBend(const Setpoint& p) {
+  if (program_.helix(p.tooth).z_correction.pieces == 0) return;
+  const double at = p.position[kZ] + program_.run().offset[kZ];
+  const double room = program_.machine().limits.max_acceleration[kZ] * period_ * period_ / 8;
+  checkRoom({kZ, LimitedQuantity::kPosition, at, 0, p.cycle, p.position[kX], p.move, p.tooth, p.pass}, room);
 }
 
 void PlanChecks::finish() {

@@ -38,6 +38,8 @@ class PlanChecks {
   void count(const Setpoint& setpoint);
   void measure(const Setpoint& setpoint);
   void measureStroke(const Setpoint& setpoint);
+  void checkRoom(LimitViolation place, double room);
+  void checkBend(const Setpoint& setpoint);
   void checkStrokeEnd(const Move& stroke, std::uint64_t cycle);
   void addViolation(const LimitViolation& violation);
   void addDeviation(const Setpoint& setpoint, double deviation);

@@ -109,5 +109,26 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
   }
 }
 
+/// An interrupted stroke has its setpoints elsewhere on the bow.
+TEST(ZLaw, ABowKeepsOffTheLimitByWhatItCanRiseBetweenTwoSetpoints) {
+  const ValidJob job = bentJob(500e-6);
+  for (const int way : {1, -1}) {
+    Machine machine = plainMachine();
+    double farthest = 0;
+    planJob(job, machine, machine.park, [&](const Setpoint& p) {
+      if (p.move == MoveKind::kStroke) farthest = std::max(farthest, way * p.position[kZ]);
+    });
+    const double room = machine.limits.max_acceleration[kZ] * machine.period * machine.period / 8;
+    double& limit = (way > 0 ? machine.limits.max_position : machine.limits.min_position)[kZ];
+    limit = way * (farthest + 1.01 * room);
+    EXPECT_TRUE(planJob(job, machine, machine.park).good());
+    limit = way * (farthest + 0.99 * room);
+    const JobPlan plan = planJob(job, machine, machine.park);
+    ASSERT_EQ(plan.reasons.size(), 1u) << text(plan.reasons);
+    EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kPosition);
+    EXPECT_NEAR(plan.reasons[0].value, limit + way * 0.01 * room, 1e-4 * room);
+  }
+}
+
 }  // namespace test_z_law
 }  // namespace grinder

@@ -217,7 +217,7 @@ bool limitToPath(Random& random, RideJob& ride) {
     const auto off = deviation(p.position[kA]);
     if (!(std::abs(off) <= ride.asked.deviation)) return false;
     if (std::abs(p.position[kX] - ride.asked.to) > 1e-9) continue;
-    // A plan leaves the tolerance to the end of a stroke, which may be begun again.
+    // A plan leaves the tolerance between the end of a stroke, which may be begun again, and the limit.
     const auto per_radian = deviation(p.position[kA] + 1) - off;
     for (const auto way : {-ride.asked.deviation, ride.asked.deviation}) {
       const double a = p.position[kA] + static_cast<double>((way - off) / per_radian) + ride.offset[kA];
@@ -225,10 +225,11 @@ bool limitToPath(Random& random, RideJob& ride) {
       limits.max_position[kA] = std::max(limits.max_position[kA], a);
     }
   }
-  // Without the reference, a lift is as long again once the power was off, and higher. Between the setpoints of the
-  // plan, Z's bends may be farther out.
+  // Without the reference, a lift is as long again once the power was off, and higher.
   limits.max_position[kY] += 0.5;
-  const Axes least(0, 0, 1e-6, 0);
+  // As a plan does, for what Z's bends rise between two setpoints.
+  const double rise = limits.max_acceleration[kZ] * ride.machine.period * ride.machine.period / 8;
+  const Axes least(0, 0, ride.asked.teeth[0].coefficients.empty() ? 0 : rise, 0);
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const auto& [limit, way] : {std::pair(&limits.min_position, -1), {&limits.max_position, 1}}) {
       (*limit)[axis] += way * (least[axis] + (flip(random, 0.2) ? 0 : acrossDecades(random, 1e-6, 0.1)));

@@ -34,7 +34,7 @@ void addOffsets(Commands& commands) {
 
 void addTouchOff(Commands& commands) {
   const auto options = std::make_shared<TouchOffOptions>();
-  auto& command = commands.add("touch-off", "set the work offset of an axis from where it stands now",
+  auto& command = commands.add("touch-off", "set the work offset of an axis from where it is now",
                                "y --at 12.02 --job jobs/paper.yaml",
                                commands.online([&commands, options] { return runTouchOff(commands.node, *options); }));
   addAxis(command, options->axis);

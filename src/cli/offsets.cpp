@@ -234,8 +234,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     return status;
   }
   const auto shown = [&](double si) { return text(Quantity{si, unitOf(axis, 0)}, 9); };
-  std::printf("%s: work offset %s; it stands at %s of the work\n", axisName(axis).c_str(),
-              shown(response->value).c_str(), shown(request.position).c_str());
+  std::printf("%s: work offset %s; it is at %s of the work\n", axisName(axis).c_str(), shown(response->value).c_str(),
+              shown(request.position).c_str());
   return 0;
 }
 

@@ -45,11 +45,11 @@ RequestReply Answer::reply() const {
     case Refusal::kPreparing: text << "the drive has not become ready in time; wait, then try again"; break;
     case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.view(); break;
     case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
-    case Refusal::kMoved: text << "the axes do not stand where the job was planned to start; plan it again"; break;
+    case Refusal::kMoved: text << "the axes are not where the job was planned to start; plan it again"; break;
     case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;
     case Refusal::kWithdrawn: text << "disable came before the power"; break;
-    case Refusal::kInWork: text << "the wheel stands in the work; lift it first"; break;
-    case Refusal::kNotInWork: text << "the wheel does not stand in the work"; break;
+    case Refusal::kInWork: text << "the wheel is in the work; lift it first"; break;
+    case Refusal::kNotInWork: text << "the wheel is not in the work"; break;
     // In shop units, because only people read them: the answer to a request has no fields for data.
     case Refusal::kTooFar:
       text << "it would lead " << axisName(axis) << " to " << position(value)
@@ -57,8 +57,7 @@ RequestReply Answer::reply() const {
       break;
     case Refusal::kSwivel: text << grinder::text(reasonOf(swivel, job_swivel)); break;
     case Refusal::kSwivelMeasured:
-      text << "the drive measures the swivel, which stands at " << degrees(swivel.angle)
-           << "; nothing is to be confirmed";
+      text << "the drive measures the swivel, which is at " << degrees(swivel.angle) << "; nothing is to be confirmed";
       break;
     case Refusal::kSwivelInUse:
       text << "a job is in progress that needs " << degrees(job_swivel, kSwivelDigits)
@@ -68,9 +67,9 @@ RequestReply Answer::reply() const {
     case Refusal::kJogSpeed:
       text << "speed of " << axisName(axis) << " = " << speed(value) << "; allowed: above 0, up to " << speed(limit);
       break;
-    case Refusal::kAtLimit: text << axisName(axis) << " stands at " << position(limit) << ", the end of its way"; break;
+    case Refusal::kAtLimit: text << axisName(axis) << " is at " << position(limit) << ", the end of its travel"; break;
     case Refusal::kOutside:
-      text << axisName(axis) << " stands at " << position(value) << ", outside its limit " << position(limit);
+      text << axisName(axis) << " is at " << position(value) << ", outside its limit " << position(limit);
       break;
     case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
     case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;

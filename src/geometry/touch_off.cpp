@@ -49,7 +49,7 @@ std::string heightRefusal(const GrindJob& job, double z) {
       std::abs(w - on_wheel) <= kTouchTolerance && wheel.radius(on_wheel) >= wheel.maxRadius() - kTouchTolerance;
   if (meets) return "";
   const auto shown = [](double si) { return text(Quantity{si, Unit::kMetre}); };
-  return "the wheel's centre stands " + shown(height) +
+  return "the wheel's centre is " + shown(height) +
          " above the cutter's axis: there the wheel does not touch a blank with its maximum diameter; move Z to " +
          shown(touchReadings(job).z_for_y) + ", and touch again";
 }

@@ -165,7 +165,7 @@ class Writer {
   /// Where the swivel stands, and what to do about it.
   std::string swivel() const {
     const std::string allowed = "; allowed: within " + low() + " of that; set it to " + digits(r_.limit);
-    if (r_.detail == "measured") return "the swivel stands at " + digits(r_.value) + allowed;
+    if (r_.detail == "measured") return "the swivel is at " + digits(r_.value) + allowed;
     const std::string confirm = " and confirm it: grind confirm-swivel " +
                                 grinder::text(Quantity{r_.limit / shopScale(r_.unit), Unit::kNone}, kFieldDigits);
     if (r_.detail.empty()) return "the swivel is not confirmed; set it to " + digits(r_.limit) + confirm;

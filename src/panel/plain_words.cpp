@@ -19,7 +19,7 @@ const char* wheelInWork(MachineState state) {
     case MachineState::kDisabled: return "The wheel is in the work: enable, then lift it.";
     case MachineState::kHeld: return "The job is held with the wheel in the work. Resume continues; Retract lifts it.";
     case MachineState::kLifting: return "The wheel is in the work: it is being lifted; no job runs.";
-    case MachineState::kJogging: return "The wheel is in the work: it is being jogged up.";
+    case MachineState::kJogging: return "The wheel is in the work: it is being jogged off, in Y.";
     default: return "The wheel is in the work: lift it.";
   }
 }

@@ -38,7 +38,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
   touch_->setObjectName("touch_off");
-  touch_->setToolTip("Set the axis' work offset from where it stands now; nothing moves");
+  touch_->setToolTip("Set the axis' work offset from where it is now; nothing moves");
   offset_->setObjectName("work_offset");
   offset_->setWordWrap(true);
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
@@ -80,7 +80,7 @@ void TouchOffBox::chooseAxis() {
   at_->setPrefix(diameter ? "D " : "at ");
   at_->setSuffix(QString(" ") + unitName(axis()));
   at_->setToolTip(diameter ? "Diameter of the blank that the wheel touches; the job file has the rest"
-                           : "Where the axis stands, in work coordinates");
+                           : "Where the axis is, in work coordinates");
 }
 
 void TouchOffBox::refresh(const GrinderView& view, bool has_services) {

@@ -309,7 +309,7 @@ TEST(Jog, ToALimitItEndsThereWithoutAFault) {
       ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
       EXPECT_EQ(rig.last().command[axis], limit);
       rig.run(kTimeoutCycles + 1);
-      EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its way");
+      EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its travel");
       rig.run(kTimeoutCycles + 1);
     }
   }
@@ -320,7 +320,7 @@ TEST(Jog, FromOutsideTheLimitsIsRefused) {
   Rig<FakeDrive> rig;
   rig.drive.position[kZ] = -0.051;
   rig.enable();
-  EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z stands at -51 mm, outside its limit -50 mm");
+  EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z is at -51 mm, outside its limit -50 mm");
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
@@ -341,7 +341,7 @@ TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
   RigInTheWork rig;
   for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),
                                 on(kX, 0.01), on(kY, -0.01)}) {
-    EXPECT_EQ(rig.jog(jog).text, "jog refused: the wheel stands in the work; lift it first");
+    EXPECT_EQ(rig.jog(jog).text, "jog refused: the wheel is in the work; lift it first");
     rig.run(kTimeoutCycles + 1);
   }
   ASSERT_TRUE(rig.jog(step(kY, 0.001)).accepted);
@@ -357,7 +357,7 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
   RigIn rig(S::kRetracted);
   const double clear = rig.loop->status().wheel.clear_y;
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
-  EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y stands at 8.23708 mm, the end of its way");
+  EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y is at 8.23708 mm, the end of its travel");
   EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to 8.23608 mm");
   rig.run(kTimeoutCycles + 1);
   ASSERT_TRUE(rig.jog(step(kY, 0.01)).accepted);

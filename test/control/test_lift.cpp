@@ -13,8 +13,8 @@ class InTheWork : public testing::Test {
 };
 
 TEST_F(InTheWork, StartAndHomeAreRefusedUntilItIsLifted) {
-  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel stands in the work; lift it first");
-  EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
+  EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
   EXPECT_EQ(rig_.last().state, S::kReady);
   ASSERT_NO_FATAL_FAILURE(rig_.lift());
   EXPECT_TRUE(rig_.ask(E::kHome).accepted);
@@ -46,7 +46,7 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   EXPECT_EQ(rig_.loop->status().setpoints_written, written);
   EXPECT_EQ(rig_.loop->status().jobs_started, 1u);
   EXPECT_TRUE(smooth({rig_.log.begin() + static_cast<std::ptrdiff_t>(before), rig_.log.end()}));
-  EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel does not stand in the work");
+  EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel is not in the work");
 }
 
 TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
@@ -117,7 +117,7 @@ class WithoutTheReference {
 TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
   WithoutTheReference machine(kLift);
   auto& rig = machine.rig;
-  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
   const double from = rig.last().command[kY];
   ASSERT_NO_FATAL_FAILURE(rig.lift());
   EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);

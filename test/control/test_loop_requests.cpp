@@ -224,7 +224,7 @@ TEST(Start, IsRefusedAfterTheLeastMotionOfAnyAxis) {
     SetpointStream stream = paperStream(machineConfig().machine, planned);
     const RequestReply answer = rig.askToStart(stream);
     EXPECT_FALSE(answer.accepted) << axis;
-    EXPECT_CONTAINS(answer.text, "do not stand where the job was planned to start");
+    EXPECT_CONTAINS(answer.text, "are not where the job was planned to start");
     EXPECT_EQ(rig.last().state, S::kReady);
     EXPECT_TRUE(rig.setpoints().empty());
   }

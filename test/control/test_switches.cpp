@@ -147,7 +147,7 @@ TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
 
 TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {
   RigInTheWork rig;
-  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel stands in the work; lift it first");
+  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel is in the work; lift it first");
   EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
 

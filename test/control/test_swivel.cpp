@@ -72,7 +72,7 @@ TEST(Swivel, AtAnotherAngleIsAskedForAndToBeConfirmedUnlessItIsMeasured) {
   EXPECT_EQ(rig.askToStartPaper().text,
             refused + "is confirmed at -20.5 deg" + remedy + " and confirm it: grind confirm-swivel 31.769");
   measure(rig, 32 * kDegree);
-  EXPECT_EQ(rig.askToStartPaper().text, refused + "stands at 32 deg" + remedy);
+  EXPECT_EQ(rig.askToStartPaper().text, refused + "is at 32 deg" + remedy);
 }
 
 TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
@@ -116,7 +116,7 @@ TEST(MeasuredSwivel, IsNotConfirmed) {
   const RequestReply answer = rig.confirm(0.25);
   EXPECT_FALSE(answer.accepted);
   EXPECT_EQ(answer.text,
-            "confirm-swivel refused: the drive measures the swivel, which stands at 14.3239 deg; nothing is to be "
+            "confirm-swivel refused: the drive measures the swivel, which is at 14.3239 deg; nothing is to be "
             "confirmed");
 }
 

@@ -53,7 +53,7 @@ TEST(TouchOff, AStraightWheelTouchesOverItsWidth) {
   for (const double off : {-kEdge - 3 * kMicron, kEdge + 3 * kMicron}) {
     EXPECT_NE(heightRefusal(paper(), middle + off).find("move Z to -2.788 mm, and touch again"), std::string::npos);
   }
-  EXPECT_EQ(heightRefusal(paper(), 0).find("the wheel's centre stands 2.788 mm above the cutter's axis: "), 0U);
+  EXPECT_EQ(heightRefusal(paper(), 0).find("the wheel's centre is 2.788 mm above the cutter's axis: "), 0U);
   EXPECT_NE(heightRefusal(paper(), std::numeric_limits<double>::quiet_NaN()), "");
 }
 

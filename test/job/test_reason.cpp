@@ -120,7 +120,7 @@ const Row kRows[]{
      "process.setup.swivel_deg = -22.5 deg: the swivel is confirmed at 30 deg; allowed: within 0.1 deg of that; set it "
      "to -22.5 deg and confirm it: grind confirm-swivel -22.5"},
     {Kind::kSwivel, Unit::kRadian, kPi / 6, kPi / 8, swivel("measured"),
-     "process.setup.swivel_deg = 22.5 deg: the swivel stands at 30 deg; allowed: within 0.1 deg of that; set it to "
+     "process.setup.swivel_deg = 22.5 deg: the swivel is at 30 deg; allowed: within 0.1 deg of that; set it to "
      "22.5 deg"},
     {Kind::kOther, Unit::kNone, 0, 0, field("", "first_tooth = 1"), "first_tooth = 1"},
     {Kind::kPosition, Unit::kMetre, 0.401, 0.3, setpointsOf(kX),

@@ -85,7 +85,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertTrue(g.wait_state(GrinderState.READY).wheel_in_work)
         refused = g.send(gc.SHORT).wait()
         self.assertEqual((refused.status, refused.code, refused.text), (
-            'REJECTED', GrindResult.NOT_READY, 'the wheel stands in the work of the last job; lift it first'))
+            'REJECTED', GrindResult.NOT_READY, 'the wheel is in the work of the last job; lift it first'))
         self.assertEqual(g.wait_rest(), at_reset)
 
         self.assertTrue(g.lift().success)

@@ -145,7 +145,7 @@ class TestContinuous(JogTest):
         refusals = gc.received(self.addCleanup, '/grinder/jog_refusal', String)
         button = self.press(Z, -0.05)
         gc.poll(lambda: refusals, 'a refusal')
-        self.assertEqual(refusals, [String('jog refused: axis Z stands at -50 mm, the end of its way')])
+        self.assertEqual(refusals, [String('jog refused: axis Z is at -50 mm, the end of its travel')])
         g.positions_over(0.5)  # the button stays pressed
         self.assertEqual(len(refusals), 1)
         button.let_go()

@@ -284,7 +284,7 @@ class TestCommandLine(OffsetsTest):
 
     def test_touch_off(self):
         self.assertEqual(self.said('touch-off', 'x', '--at', '1.5'),
-                         'axis X: work offset -51.5 mm; it stands at 1.5 mm of the work\n')
+                         'axis X: work offset -51.5 mm; it is at 1.5 mm of the work\n')
         self.grind(0, 'touch-off', 'a', '--at', '30')
         self.grind(0, 'touch-off', 'z', '--job', gc.package_file('test/jobs/paper.yaml'))
         self.assertRegex(self.grind(1, 'touch-off', 'x', '--at', '30').stderr,
@@ -316,7 +316,7 @@ class TestCommandLine(OffsetsTest):
         """The wheel's centre is then at (blank + worn wheel) / 2 from the axis, and Y = 0 is at (D1 + new wheel) / 2."""
         job = gc.job_file(os.path.join(self.folder, 'job.yaml'), end_diameter_mm=10, wear_mm=0.025)
         touch_off = 'touch-off', 'y', '--at', '12.02', '--job', job
-        self.assertIn("the wheel's centre stands 2.788 mm above the cutter's axis", self.grind(1, *touch_off).stderr)
+        self.assertIn("the wheel's centre is 2.788 mm above the cutter's axis", self.grind(1, *touch_off).stderr)
         self.grind(0, 'touch-off', 'z', '--at', '-2.788', '--job', job)
         self.said(*touch_off)
         centre = (12.02 * MM + 2 * (50 - 0.025) * MM) / 2

@@ -98,5 +98,5 @@ class TestSwivel(gc.OwnNode):
         self.assertTrue(state.swivel_measured)
         self.assertRegex(self.said('status'), r'(?m)^swivel +31\.8 deg, measured$')
         done = self.grind(1, 'confirm-swivel', '31.769')
-        self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which stands at 31.8 deg; '
+        self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which is at 31.8 deg; '
                                       'nothing is to be confirmed\n')

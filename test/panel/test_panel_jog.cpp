@@ -185,8 +185,8 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
     EXPECT_LT(std::abs((ros::Time::now() - jog.header.stamp).toSec()), 60);
   }
   EXPECT_EQ(panel.text("messages"), "");
-  stage.refuseJog("jog refused: axis Y stands at -20 mm, the end of its way");
-  WAIT_FOR(panel.says("messages", "Jog refused: axis Y stands at -20 mm"));
+  stage.refuseJog("jog refused: axis Y is at -20 mm, the end of its travel");
+  WAIT_FOR(panel.says("messages", "Jog refused: axis Y is at -20 mm"));
   QTest::mouseRelease(&panel.the<QPushButton>("jog_y_minus"), Qt::LeftButton);
   expectStopped();
   EXPECT_TRUE(steps().empty());

@@ -77,11 +77,13 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   std::copy(feedback_.position.begin(), feedback_.position.end(), sample_.position.data());
   std::copy(feedback_.velocity.begin(), feedback_.velocity.end(), sample_.velocity.data());
   // Before its first reading the feedback is 0, as it has been made.
-  has_positions_ = has_positions_ || (sample_.drive.feedback_count > 0 && sample_.position.isFinite().all());
+  const bool finite = sample_.position.isFinite().all();
+  has_positions_ = has_positions_ || (sample_.drive.feedback_count > 0 && finite);
+  next_status_.position_valid = has_positions_ && finite && sample_.feedback_age <= config_.feedback_timeout;
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
   // again; after a fault the commands do not change.
   const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
-  if (follows && sample_.position.isFinite().all()) {
+  if (follows && finite) {
     command_ = sample_.position;
     history_.clear();
   }
@@ -107,8 +109,9 @@ void ControlLoop::trackMotion() {
     next_status_.strokes_ended_at = reached.strokes_ended_at;
     wheel_.followJob(sample_.command_in_effect[kY]);
   } else if (state_ != MachineState::kLifting) {
-    const bool fresh = sample_.feedback_age <= config_.feedback_timeout;
-    if (sample_.drive.homed && fresh) wheel_.observePosition(sample_.position[kY]);
+    std::optional<double> y;
+    if (sample_.drive.homed && next_status_.position_valid) y = sample_.position[kY];
+    wheel_.observePosition(y, config_.machine.period);
   }
 }
 
@@ -144,7 +147,6 @@ void ControlLoop::publish() {
   next_status_.homed = sample_.drive.homed;
   Eigen::Map<Axes>(next_status_.command.data()) = command_;
   Eigen::Map<Axes>(next_status_.position.data()) = sample_.position;
-  next_status_.position_valid = sample_.position.isFinite().all() && sample_.feedback_age <= config_.feedback_timeout;
   next_status_.feed_override = sample_.feed_override;
   next_status_.swivel = sample_.swivel;
   next_status_.probe_contact = sample_.drive.probe_contact;
@@ -310,8 +312,7 @@ void ControlLoop::command(const Axes& offset) {
     return fail(fault);
   }
   // The check lets pass what rounding adds to a limit; it is not commanded.
-  command_ =
-      (setpoint.position + offset).max(config_.machine.limits.min_position).min(config_.machine.limits.max_position);
+  command_ = limit_check_.clamped(setpoint.position + offset);
   rested_ = 0;
   sample_.has_setpoint = true;
 }

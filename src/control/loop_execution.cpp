@@ -228,6 +228,8 @@ Refusal ControlLoop::lift() {
   wheel_.beginLift(to);
   axis_move_.begin(MoveKind::kLift, command_, kY, to, config_.machine.limits.max_velocity[kY]);
   limit_check_.restart();
+  // Up is the way out wherever the other axes have come to rest, and without the reference their limits mean nothing.
+  limit_check_.widen(command_);
   apply(MachineEvent::kLift);
   return Refusal::kNone;
 }

@@ -35,8 +35,8 @@ Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {
   if (!jogging_) return beginJog(jog, answer);
   if (!continuous_ || jog.axis != axis_move_.axis()) return Refusal::kJogging;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
-  // For the other direction the axis stops first; the messages that follow then begin a new jog.
-  const bool onward = jog.velocity * axis_move_.direction() > 0;
+  // What has been stopped, and for the other direction, first rests; the messages that follow then begin a new jog.
+  const bool onward = !axis_move_.stopping() && jog.velocity * axis_move_.direction() > 0;
   axis_move_.setSpeed(onward ? std::abs(jog.velocity) : 0);
   return Refusal::kNone;
 }
@@ -46,7 +46,8 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
   if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
-  if (jog.for_client && (sample_.spindle_commanded || sample_.drive.spindle_at_speed)) return Refusal::kWheelTurns;
+  const bool wheel_turns = spindle_by_hand_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
+  if (jog.for_client && wheel_turns) return Refusal::kWheelTurns;
   if (jog.to_touch && sample_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
   if (!sample_.drive.homed) return Refusal::kInterlock;

@@ -28,6 +28,8 @@ bool within(const Axes& value, const Axes& limit) noexcept {
 
 LimitCheck::LimitCheck(const AxisLimits& limits, double period, double roundings) noexcept
     : limits_(limits),
+      low_(limits.min_position),
+      high_(limits.max_position),
       inverse_period_(1 / period),
       roundings_(roundings),
       ends_{Axes::Zero(), Axes::Zero(), Axes::Zero()} {}
@@ -44,7 +46,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const 
   last_ = p;
 
   violation_count_ = 0;
-  if (!between(p + offset, limits_.min_position, limits_.max_position)) checkPosition(setpoint, offset);
+  if (!between(p + offset, low_, high_)) checkPosition(setpoint, offset);
   if (!within(velocity_, limits_.max_velocity)) {
     checkSize(setpoint, LimitedQuantity::kVelocity, velocity_, limits_.max_velocity, inverse_period_);
   }
@@ -67,10 +69,10 @@ void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noe
   const Axes position = setpoint.position + offset;
   // A machine position at its limit is rounded on the way to work coordinates, and on the way back; a stroke that is
   // begun again comes to its end by other sums.
-  const Axes rounding = kEpsilon * (offset.abs() + limits_.min_position.abs().max(limits_.max_position.abs()));
+  const Axes rounding = kEpsilon * (offset.abs() + low_.abs().max(high_.abs()));
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const bool low = position[axis] < limits_.min_position[axis] - rounding[axis];
-    const double limit = low ? limits_.min_position[axis] : limits_.max_position[axis];
+    const bool low = position[axis] < low_[axis] - rounding[axis];
+    const double limit = low ? low_[axis] : high_[axis];
     if (!std::isfinite(position[axis])) {
       report(setpoint, axis, LimitedQuantity::kNotFinite, position[axis], limit);
     } else if (low || position[axis] > limit + rounding[axis]) {

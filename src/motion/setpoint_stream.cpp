@@ -91,7 +91,11 @@ void SetpointStream::retract() noexcept {
   if (mid_pair_ || lost_ || !law_.resting() || finished()) return;
   holding_ = false;
   stay_lifted_ = true;
-  if (leg_ == Leg::kLift) return;
+  if (leg_ == Leg::kLift) {
+    // On the way back from a jog the wheel is off the work already.
+    if (current_.move != MoveKind::kLift) law_ = SCurveProfile();
+    return;
+  }
   if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
     reentry_ = std::max(0.0, strokeParameter() - helix_->schedule.runUp());
   }

@@ -235,6 +235,30 @@ TEST_P(JogFrom, EveryStopStopsItAndAllButAHoldEndAJob) {
   }
 }
 
+TEST_P(JogFrom, AButtonThatIsPressedAgainDoesNotUndoAStop) {
+  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
+    SCOPED_TRACE(toString(stop));
+    RigIn rig(GetParam());
+    for (int i = 0; i < 400; ++i) {
+      if (i % 20 == 0) rig.loop->postJog(on(kX, 0.1));
+      rig.cycle();
+      static_cast<void>(rig.loop->jogReply());
+    }
+    ASSERT_EQ(rig.last().state, jogging());
+    ASSERT_TRUE(rig.ask(stop).accepted);
+    const double from = rig.last().command[kX];
+    EXPECT_TRUE(rig.jog(on(kX, 0)).accepted);
+    for (int i = 0; rig.last().has_setpoint && i < 2000; ++i) {
+      ASSERT_LE(rig.last().command[kX] - from, brakingDistance(kX, 0.1) + 0.1 * 0.003);
+      rig.loop->postJog(on(kX, 0.1));
+      rig.cycle();
+      static_cast<void>(rig.loop->jogReply());
+    }
+    EXPECT_TRUE(stop == E::kHold || rig.last().state != jogging());
+    EXPECT_TRUE(smooth(rig.log));
+  }
+}
+
 TEST_P(JogFrom, AStopInTheSameCycleComesAfterIt) {
   ASSERT_TRUE(rig_.loop->postJog(step(kX, 0.01)));
   rig_.loop->postStop(E::kHold);

@@ -261,10 +261,11 @@ TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
     stream.hold();
     ride.runToRest();
     ASSERT_GE(ride.last().position[kY], lifted[kY]);
+    const Axes held = ride.last().position;
     stream.retract();
     ride.runToRest();
     ASSERT_TRUE(stream.lifted());
-    ASSERT_GE(ride.last().position[kY], lifted[kY]);
+    ASSERT_TRUE((ride.last().position == held).all()) << "it is off the work";
   }
   stream.resume();
   ride.runToRest();

@@ -44,6 +44,7 @@ class RideDrive : public Drive {
     kEmergencyStop,
     kFault,
     kJump,
+    kGlitch,
     kNan,
     kStale,
     kThrow,
@@ -75,15 +76,18 @@ class RideDrive : public Drive {
     status.spindle_at_speed = sent_.spindle && !fails(Failure::kSpindle);
     status.coolant_on = sent_.coolant && !fails(Failure::kCoolant);
     status.probe_free = !fails(Failure::kProbe);
-    if (fails(Failure::kJump)) jump();
+    double& at = at_[static_cast<std::size_t>(axis_)];
+    if (fails(Failure::kJump)) at = away(at);
     feedback.position = at_;
-    if (fails(Failure::kNan))
-      feedback.position[static_cast<std::size_t>(axis_)] = std::numeric_limits<double>::quiet_NaN();
+    double& read = feedback.position[static_cast<std::size_t>(axis_)];
+    if (fails(Failure::kGlitch)) read = away(at);
+    if (fails(Failure::kNan)) read = std::numeric_limits<double>::quiet_NaN();
     if (!fails(Failure::kStale)) ++status.feedback_count;
   }
   void write(const DriveCycle&, const DriveCommand& command) override { sent_ = command; }
 
   bool isCommandedOn() const { return sent_.enable; }
+  double y() const { return at_[kY]; }
   void setUp(const Machine& machine, std::size_t buffer) {
     limits_ = machine.limits;
     buffer_ = buffer;
@@ -112,9 +116,8 @@ class RideDrive : public Drive {
     status.commands_waiting = static_cast<std::uint32_t>(waiting_.size() - 1);
   }
   /// Within the limits, beyond which nobody turns an axis.
-  void jump() {
-    double& at = at_[static_cast<std::size_t>(axis_)];
-    at = std::clamp(at + 5e-3, limits_.min_position[axis_], limits_.max_position[axis_]);
+  double away(double at) const {
+    return std::clamp(at + 5e-3, limits_.min_position[axis_], limits_.max_position[axis_]);
   }
 
   AxisLimits limits_;
@@ -142,6 +145,13 @@ LoopConfig configOf(const Machine& machine) {
   return config;
 }
 
+/// Cycles in which every axis comes to rest, whatever it does, and the drive has played that.
+std::uint64_t mostBraking(const Machine& machine) {
+  const AxisLimits& l = machine.limits;
+  const double longest = (l.max_velocity / l.max_acceleration + 3 * l.max_acceleration / l.max_jerk).maxCoeff();
+  return static_cast<std::uint64_t>(longest / machine.period) + kMostBuffered + 10;
+}
+
 /// What a ride has come to.
 struct RideResult {
   std::string fault;  ///< what is wrong with it; empty if nothing
@@ -159,6 +169,7 @@ class Ride {
         event_every_(job_.cycles * acrossDecades(random_, 0.004, 0.04)),
         recover_every_(acrossDecades(random_, 10, 100)),
         failures_(acrossDecades(random_, 0.02, 0.5)),
+        most_braking_(mostBraking(job_.machine)),
         watch_(job_.asked) {
     drive_.setUp(job_.machine, flip(random_, 0.5) ? 0 : static_cast<std::size_t>(between(random_, 1, kMostBuffered)));
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
@@ -212,6 +223,7 @@ class Ride {
     if (!loop_->pop(sample_)) throw second_opinion::Violation("a cycle without a sample");
     if (sample_.job_ended) endRun();
     see(late && sample_.drive.commands_waiting == 0);
+    checkStop();
     past_.push_back(watch_.progress());
     if (past_.size() > kMostBuffered + 1) past_.pop_front();
   }
@@ -242,6 +254,8 @@ class Ride {
     row.cycle = sample_.setpoint.cycle;
     row.tooth = sample_.setpoint.tooth;
     row.pass = sample_.setpoint.pass;
+    row.y = drive_.y();
+    row.rises = sample_.state == S::kRetracting || sample_.state == S::kLifting;
     row.lifts = sample_.setpoint.move == MoveKind::kLift;
     row.in_stroke = sample_.setpoint.step != StepKind::kNone;
     std::copy(sample_.setpoint.position.data(), sample_.setpoint.position.data() + kAxisCount, row.work.begin());
@@ -267,15 +281,15 @@ class Ride {
       case 0:
       case 1:
       case 2:
-      case 3: return loop_->postStop(E::kHold);
+      case 3: return stop(E::kHold);
       case 4: return post(E::kResume);
       case 5: return post(E::kRetract);
       case 6:
       case 7: return setOverride(between(random_, 0.05, 1.2));
       case 8: return setOverride(kMaxFeedOverride);
       case 9: return setOverride(0);
-      case 10: return loop_->postStop(E::kCancel);
-      case 11: return loop_->postStop(E::kDisable);
+      case 10: return stop(E::kCancel);
+      case 11: return stop(E::kDisable);
       case 12: return jogStep(axis);
       case 13: return beginJog(axis, some);
       case 14: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
@@ -285,12 +299,13 @@ class Ride {
 
   void fail(int axis, int some) {
     using F = RideDrive::Failure;
-    switch (static_cast<int>(fraction(random_) * 9)) {
+    switch (static_cast<int>(fraction(random_) * 10)) {
       case 0: periods_ = 3; return;
       case 1: periods_ = 20; return;
       case 2: return drive_.fail(F::kEmergencyStop, axis, some);
       case 3: return drive_.fail(F::kFault, axis, some);
       case 4: return drive_.fail(flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
+      case 9: return drive_.fail(F::kGlitch, axis, 1 + some / 10);
       case 5: return drive_.fail(F::kStale, axis, some);
       case 6: return drive_.fail(F::kThrow, axis, 2);
       case 7: return drive_.fail(flip(random_, 0.5) ? F::kSpindle : F::kCoolant, axis, some);
@@ -308,7 +323,7 @@ class Ride {
       case S::kHeld:
       case S::kRetracted:
         if (flip(random_, 0.5)) return lookAtTheWork(status.state);
-        return status.homed ? post(E::kResume) : loop_->postStop(E::kCancel);
+        return status.homed ? post(E::kResume) : stop(E::kCancel);
       case S::kReady:
         if (status.wheel.in_work) return post(E::kLift);
         return status.homed ? startRun(status) : post(E::kHome);
@@ -331,17 +346,31 @@ class Ride {
   }
 
   void post(E event) { loop_->post(event); }
+  void stop(E event) {
+    loop_->postStop(event);
+    if (loop_->status().jogs_begun != loop_->status().jogs_ended) rest_by_ = result_.cycles + most_braking_;
+  }
+  /// A jog that was stopped rests, whatever is pressed meanwhile.
+  void checkStop() {
+    if (rest_by_ == 0) return;
+    const LoopStatus status = loop_->status();
+    if (status.jogs_begun == status.jogs_ended) rest_by_ = 0;
+    if (result_.cycles > rest_by_ && rest_by_ > 0) throw second_opinion::Violation("a jog does not stop");
+  }
   void setOverride(double fraction) { loop_->setFeedOverride(fraction); }
   void jogStep(int axis) {
     const double distance = axis == kA ? between(random_, -1, 1) : between(random_, -5e-3, 5e-3);
     loop_->postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
   }
   void beginJog(int axis, int cycles) {
-    jog_ = {axis, true, 0, between(random_, -1, 1) * (axis == kA ? 1.0 : 0.02)};
+    jog_ = {axis, true, 0, between(random_, -1, 1) * (axis == kA ? 10 : 0.1)};
     jog_left_ = cycles;
   }
   void keepJogging() {
-    if (jog_left_ > 0 && jog_left_-- % 20 == 0) loop_->postJog(jog_);
+    if (jog_left_ == 0 || jog_left_-- % 5 != 0) return;
+    JogRequest request = jog_;
+    if (flip(random_, 0.1)) request.velocity = 0;
+    loop_->postJog(request);
   }
 
   Random random_;
@@ -349,6 +378,7 @@ class Ride {
   double event_every_;    ///< cycles
   double recover_every_;  ///< cycles; at once when no event is to come
   double failures_;       ///< of the events
+  std::uint64_t most_braking_;
   second_opinion::Watch watch_;
   RideDrive drive_;
   std::unique_ptr<ControlLoop> loop_;
@@ -363,6 +393,7 @@ class Ride {
   std::string last_reply_;
   JogRequest jog_;
   int jog_left_ = 0;
+  std::uint64_t rest_by_ = 0;  ///< cycle, of a jog that was stopped
 };
 
 volatile std::sig_atomic_t g_is_stopped = 0;

@@ -82,6 +82,7 @@ void Watch::see(const Row& row) {
   } else {
     ends_.fill(row.at);
   }
+  if (row.moves && row.rises && !risesFrom(last_.at, row.at)) throw Violation("a lift moves another axis, or down");
   if (row.of_job) {
     checkPlace(row);
     if (row.in_stroke) checkStroke(row);
@@ -155,25 +156,24 @@ Real Watch::clearHeight() const {
 /// Whatever a job leaves in the work goes up, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
   if (!row.moves && !row.free) return;
-  if (row.at[1] - asked_.offset_y >= clearHeight() - noiseOf(1)) {
+  if ((row.free ? row.y : row.at[1]) - asked_.offset_y >= clearHeight() - noiseOf(1)) {
     progress_.in_work = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);
     progress_.in_work = row.work[0] >= low && row.work[0] <= high;
-  } else if (progress_.in_work && row.moves) {
-    const auto stays = [&](std::size_t axis) { return row.at[axis] == last_.at[axis]; };
-    if (!(stays(0) && stays(2) && stays(3) && row.at[1] >= last_.at[1] - noiseOf(1))) {
-      throw Violation("the wheel leaves the work another way than up");
-    }
+  } else if (progress_.in_work && row.moves && !risesFrom(last_.at, row.at)) {
+    throw Violation("the wheel leaves the work another way than up");
   }
+}
+
+bool Watch::risesFrom(const Point& from, const Point& to) const {
+  return to[0] == from[0] && to[2] == from[2] && to[3] == from[3] && to[1] >= from[1] - noiseOf(1);
 }
 
 void Watch::checkPlace(const Row& row) {
   if (row.lifts) {
     // A run begins wherever the axes are.
-    const auto stays = [&](std::size_t axis) { return row.work[axis] == last_.work[axis]; };
-    const bool begins = row.cycle == 0 || !last_.of_job;
-    if (begins || (stays(0) && stays(2) && stays(3) && row.work[1] >= last_.work[1] - noiseOf(1))) return;
+    if (row.cycle == 0 || !last_.of_job || risesFrom(last_.work, row.work)) return;
     throw Violation("a lift moves another axis, or down");
   }
   const Real x = row.work[0], y = row.work[1];

@@ -51,6 +51,8 @@ struct Row {
   bool of_job = false;  ///< the setpoint
   bool late = false;    ///< the axes stood still before it, since the computer did
   bool free = false;    ///< without power, or homing: the command follows the positions
+  double y = 0;         ///< where the axis really is [m]
+  bool rises = false;   ///< the wheel is to be lifted: nothing else moves
   std::uint64_t cycle = 0;
   bool in_stroke = false;
   bool lifts = false;  ///< a move of Y alone, up
@@ -92,6 +94,7 @@ class Watch {
   void checkMotion(const Row& row);
   void checkPlace(const Row& row);
   void checkWayOut(const Row& row);
+  bool risesFrom(const Point& from, const Point& to) const;
   void checkStroke(const Row& row);
   void checkFeed(const Row& row, const Tooth& tooth);
   Real lowest(Real x) const;

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/control/loop_status.h"
 
-#include <cmath>
 #include <optional>
 
 namespace grinder {
@@ -18,11 +17,17 @@ class WheelWatch {
   /// To be called when a job starts.
   void startJob(const Wheel& wheel) noexcept { wheel_ = wheel; }
   /// To be called when a job has commanded the axes to this Y [m].
-  void followJob(double y) noexcept { wheel_.in_work = y < wheel_.clear_y; }
-  /// To be called when no job moves the axes; the drive or an operator may have moved the wheel clear of the workpiece.
-  /// @param y position relative to the machine's reference [m].
-  void observePosition(double y) noexcept {
-    if (std::isfinite(y) && y >= wheel_.clear_y) wheel_.in_work = false;
+  void followJob(double y) noexcept {
+    wheel_.in_work = y < wheel_.clear_y;
+    seen_clear_ = 0;
+  }
+  /// To be called in every cycle in which no job moves the axes; the drive or an operator may have moved the wheel
+  /// clear of the workpiece. A reading or two may be wrong.
+  /// @param y position relative to the machine's reference, if that is known [m].
+  /// @param period of the control loop [s].
+  void observePosition(const std::optional<double>& y, double period) noexcept {
+    seen_clear_ = y && *y >= wheel_.clear_y ? seen_clear_ + period : 0;
+    if (seen_clear_ >= kSeenClear) wheel_.in_work = false;
   }
   /// To be called when a lift without a job begins.
   /// @param target of it, see liftTarget() [m].
@@ -42,7 +47,10 @@ class WheelWatch {
   }
 
  private:
+  static constexpr double kSeenClear = 0.1;  ///< [s]
+
   Wheel wheel_;
+  double seen_clear_ = 0;  ///< for so long [s]
   std::optional<double> last_target_;
 };
 

@@ -34,6 +34,9 @@ class AxisMove {
     if (speed >= 0 && speed <= law_.limits().velocity) speed_ = speed;
   }
 
+  /// Whether it stops, or was stopped.
+  bool stopping() const noexcept { return speed_ == 0; }
+
   /// See SetpointStream::slowDown().
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;

@@ -46,10 +46,21 @@ class LimitCheck {
   /// Discards the history: the axes are assumed to be at rest before the next setpoint.
   /// @param terms sizes of numbers from which the positions to come are computed, see GrindProgram::terms().
   void restart(const Axes& terms = Axes::Zero()) noexcept {
+    low_ = limits_.min_position;
+    high_ = limits_.max_position;
     seen_ = 0;
     slow_down_ = 1;
     max_ = terms;
   }
+
+  /// Until the next restart, positions as far out as this one are let pass, for axes that are already there.
+  void widen(const Axes& position) noexcept {
+    low_ = low_.min(position);
+    high_ = high_.max(position);
+  }
+
+  /// The nearest position within the limits.
+  Axes clamped(const Axes& position) const noexcept { return position.max(low_).min(high_); }
 
   /// From now on, positions are also computed from numbers of these sizes.
   void addTerms(const Axes& terms) noexcept { max_ = max_.max(terms); }
@@ -84,6 +95,7 @@ class LimitCheck {
   void report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value, double limit) noexcept;
 
   AxisLimits limits_;
+  Axes low_, high_;  ///< of positions
   double inverse_period_;
   double roundings_;
   std::uint64_t seen_ = 0;

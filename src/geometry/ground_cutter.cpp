@@ -19,6 +19,7 @@ constexpr double kDifference = 1e-4;
 constexpr int kRings = 64;             ///< for the area of a section
 constexpr double kChordalDepth = 0.1;  ///< of the flute's depth
 constexpr int kRingsOfDepth = 6;       ///< on which a flute must be complete
+constexpr int kRingsOfLand = 8;        ///< on which something of a tooth must be left
 constexpr double kRangeAccuracy = 10e-6;
 constexpr double kSameArcEnd = 1e-6;  ///< of arcs of several strokes [m]
 constexpr double kSamePitch = 1e-9;   ///< [rad]
@@ -157,15 +158,21 @@ GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {
   return {next, pitch > 0 ? pitch : pitch + units::kTurn};
 }
 
-std::optional<double> GroundCutter::land(std::size_t tooth, const std::vector<ToothSection>& measured) const {
+void GroundCutter::measureLand(std::size_t tooth, const std::vector<ToothSection>& measured,
+                               const std::vector<Arcs>& arcs, ToothSection& section) const {
   const NextTooth behind = next(tooth);
-  const ToothSection& own = measured[teeth_[tooth].flute];
-  const ToothSection& other = measured[teeth_[behind.tooth].flute];
-  if (!own.edge || !other.edge) return std::nullopt;
-  const double turn = *other.edge - *own.edge;
-  const double left = behind.pitch + (direction() == CutDirection::kRightHand ? turn : -turn) - *other.flute;
-  if (!(left > 0)) return std::nullopt;
-  return left;
+  const std::size_t own = teeth_[tooth].flute, other = teeth_[behind.tooth].flute;
+  if (!measured[own].edge || !measured[other].edge) return;
+  const bool right = direction() == CutDirection::kRightHand;
+  const double turn = *measured[other].edge - *measured[own].edge;
+  const double land = section.least_land = behind.pitch + (right ? turn : -turn) - *measured[other].flute;
+  // Deep flutes of many teeth may meet below the land.
+  for (std::size_t i = 0; i < arcs[own].size(); ++i) {
+    const auto &a = arcs[own][i], &b = arcs[other][i];
+    if (!a || !b) continue;
+    section.least_land = std::min(section.least_land, behind.pitch + (right ? b->low - a->high : a->low - b->high));
+  }
+  if (section.least_land > 0) section.land = land;
 }
 
 bool GroundCutter::landsAreAlike(std::size_t a, std::size_t b) const {
@@ -236,11 +243,17 @@ GroundSection GroundCutter::section(double x) const {
     measured.push_back(measure(flute, x));
     section.core_radius = std::min(section.core_radius, section.radius - measured.back().depth);
   }
+  std::vector<Arcs> arcs(flutes_.size());
+  const double depth = section.radius - section.core_radius;
+  for (std::size_t flute = 0; flute < flutes_.size(); ++flute) {
+    for (int i = 1; i < kRingsOfLand; ++i)
+      arcs[flute].push_back(arc(flutes_[flute], x, section.core_radius + depth * i / kRingsOfLand));
+  }
   for (std::size_t i = 0; i < teeth_.size(); ++i) {
     section.teeth.push_back(measured[teeth_[i].flute]);
     ToothSection& tooth = section.teeth.back();
     if (tooth.edge) *tooth.edge += teeth_[i].angle;
-    tooth.land = land(i, measured);
+    measureLand(i, measured, arcs, tooth);
   }
   const auto has_edge = [](const ToothSection& tooth) { return tooth.edge.has_value(); };
   if (!std::all_of(section.teeth.begin(), section.teeth.end(), has_edge)) return section;

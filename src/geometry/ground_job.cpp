@@ -107,17 +107,19 @@ class Checker {
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
       const ToothSection& tooth = section.teeth[i];
       const int number = static_cast<int>(i);
-      if (tooth.flute && !tooth.land) add(ReasonKind::kLand, section.x, number, Unit::kRadian, *tooth.flute, pitch(i));
+      if (tooth.flute && !tooth.land) {
+        add(ReasonKind::kLand, section.x, number, Unit::kRadian, pitch(i) - tooth.least_land, pitch(i));
+      }
       if (tooth.complete) checkRake(section.x, number, tooth);
     }
     for (std::size_t i = 0; i < section.teeth.size(); ++i) {
       if (section.teeth[i].complete) checkSpiral(section.x, i, section.teeth[i].spiral);
     }
     const auto complete = [](const ToothSection& tooth) { return tooth.complete; };
-    if (std::all_of(section.teeth.begin(), section.teeth.end(), complete)) checkCore(section);
+    checkCore(section, std::all_of(section.teeth.begin(), section.teeth.end(), complete));
   }
 
-  /// A primary relief may end on the land where a secondary one follows.
+  /// A primary relief may end on the land where a secondary one follows, behind where that begins.
   void checkRelief(const GroundSection& section, std::size_t i) {
     const CutterGeometry& c = job_->cutter;
     const int number = static_cast<int>(i);
@@ -134,7 +136,8 @@ class Checker {
       add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
     }
     const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
-    if ((last && !relief.heel) || (job_->operation > 1 && !relief.land)) {
+    const bool carries = last || job_->operation > 1 || job_.relief(number)->surfaceAt(0, c.land).radius > 0;
+    if ((last && !relief.heel) || (job_->operation > 1 && !relief.land) || !carries) {
       add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
     }
   }
@@ -152,14 +155,15 @@ class Checker {
   void checkRange(const std::optional<Range>& complete) {
     if (job_.relief(0) != nullptr) return;
     const double length = job_->cutter.flute_length;
-    if (job_->process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
+    const bool whole = complete && complete->from <= 0 && complete->to >= length;
+    if (whole || (complete && job_->process.incomplete_ok)) return;
     const Range range = complete.value_or(Range{});
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
   }
 
   /// The stroke may not go so near to the cone's apex that it spoils the flute.
   void checkOvertravel(const GroundCutter& cutter) {
-    if (job_.relief(0) != nullptr || job_->process.incomplete_ok) return;
+    if (job_.relief(0) != nullptr) return;
     const bool opens = cutter.cutter().tanCone() >= 0;
     const double nearest = opens ? 0 : job_->cutter.flute_length;
     for (const Flute& flute : cutter.flutes()) {
@@ -201,10 +205,11 @@ class Checker {
     add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
   }
 
-  void checkCore(const GroundSection& section) {
+  /// Where a flute is not complete, the core may be too thick only.
+  void checkCore(const GroundSection& section, bool complete) {
     const double core = 2 * section.core_radius, asked = askedCore(job_->cutter, section.x);
     const double tolerance = job_->cutter.core_tolerance;
-    if (std::abs(core - asked) <= tolerance) return;
+    if (core >= asked - tolerance && (!complete || core <= asked + tolerance)) return;
     add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, tolerance);
   }
 

@@ -24,6 +24,7 @@ using test_support::paper;
 using test_support::roomyMachine;
 using units::kDegree;
 using units::kMillimetre;
+using units::kPi;
 
 CutterCheck checked(const GrindJob& job) {
   const JobPlan plan = planJob(ValidJob(job), roomyMachine(), roomyMachine().park);
@@ -187,6 +188,16 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   check = checked(job);
   EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   EXPECT_LT(check.complete->to, job.cutter.flute_length);
+  // It does not allow one that is complete nowhere, of which nothing could be measured, or that is too deep.
+  job.cutter.flute_length = 3 * kMillimetre;
+  job.process.overtravel_end = job.process.overtravel_shank = 0;
+  check = checked(job);
+  EXPECT_FALSE(check.complete.has_value());
+  EXPECT_EQ(reasonOf(check, ReasonKind::kIncomplete).limit, job.cutter.flute_length);
+  EXPECT_EQ(check.reasons.size(), 1u) << text(check.reasons);
+  job.cutter.core_tolerance = 0.02 * kMillimetre;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = job.cutter.end_diameter - job.process.depth;
+  EXPECT_LT(reasonOf(checked(job), ReasonKind::kCoreSize).value, job.cutter.core_diameter);
 }
 
 TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
@@ -198,6 +209,32 @@ TEST(GroundJob, ThePitchIsThatOfTheLandOfEitherHand) {
       EXPECT_NEAR(reason.limit, 20 * kDegree, 1e-12) << name;
       EXPECT_GT(reason.value, reason.limit) << name;
     }
+  }
+}
+
+// Straight slots, 3 mm wide and to 2.5 mm from the axis: eight of them leave 15 deg on the circle of 12 mm, and meet
+// below it. At the floor's corner each takes atan(3 / 2.5).
+TEST(GroundJob, FlutesThatMeetBelowTheLandAreRefused) {
+  GrindJob job = jobOf("roughing_d10_t4");
+  job.cutter.end_diameter = job.cutter.shank_diameter = 12 * kMillimetre;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = 5 * kMillimetre;
+  job.cutter.spiral_angle = job.cutter.rake_angle = 0;
+  job.process.depth = 3.5 * kMillimetre;
+  job.process.setup_swivel = 0;
+  job.process.setup_height = -1.5 * kMillimetre;
+  const auto withTeeth = [&](int teeth) {
+    job.tooth_angles.clear();
+    for (int i = 0; i < teeth; ++i) job.tooth_angles.push_back(2 * kPi * i / teeth);
+    return checked(job);
+  };
+  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+    job.cutter.cut = cut;
+    job.process.setup_height = (cut == CutDirection::kRightHand ? -1.5 : 1.5) * kMillimetre;
+    EXPECT_TRUE(withTeeth(6).reasons.empty()) << text(withTeeth(6).reasons);
+    const Reason reason = reasonOf(withTeeth(8), ReasonKind::kLand);
+    EXPECT_NEAR(reason.limit, kPi / 4, 1e-12);
+    EXPECT_GT(reason.value, reason.limit);
+    EXPECT_LE(reason.value, std::atan2(3, 2.5));
   }
 }
 
@@ -361,7 +398,9 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   }
   for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
-    const ValidJob job(nearApex(overtravel));
+    GrindJob spoiled = nearApex(overtravel);
+    spoiled.process.incomplete_ok = overtravel > 11.5;  // which makes it no better
+    const ValidJob job(spoiled);
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_FALSE(cutter.section(0).teeth[0].complete) << overtravel;
     const CutterCheck check = checkGroundCutter(job, cutter);

@@ -168,6 +168,8 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   // And near the upper face it ends on the land.
   EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process.setup_height - 1.2e-3 * per_width))),
             std::set<ReasonKind>{ReasonKind::kHeel});
+  // Of the primary, 0.15 mm of the rim are behind the edge, where the secondary is to begin at 0.3 mm.
+  EXPECT_EQ(kindsOf(checkOf(withHeight(reamer("primary"), -4.19e-3))), std::set<ReasonKind>{ReasonKind::kHeel});
   GrindJob wrong = reamer("primary");
   wrong.cutter.spiral_tolerance = 1;
   wrong.operations[0].process.setup_lead += 3e-3;  // the flutes' edge is another helix than the relief follows

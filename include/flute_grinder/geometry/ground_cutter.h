@@ -29,11 +29,12 @@ struct ToothSection {
   /// Radial, of the chord from the edge to the rake face at CutterGeometry::chordal_rake_depth: what a measuring
   /// machine finds, where the rake is the tangent at the edge, and may be that of a narrow facet [rad].
   std::optional<double> chordal_rake;
-  std::optional<double> flute;          ///< angle that the flute takes at the outer circle [rad]
-  std::optional<double> land;           ///< angle between this flute and the next one behind its edge [rad]
-  std::optional<double> spiral;         ///< of the ground edge against the axis [rad]
-  double depth = 0;                     ///< of the flute below the outer circle [m]
-  bool complete = false;                ///< over its whole depth, as a longer stroke would leave it
+  std::optional<double> flute;   ///< angle that the flute takes at the outer circle [rad]
+  std::optional<double> land;    ///< angle between this flute and the next one behind its edge [rad]
+  double least_land = 0;         ///< the same where it is least, from the core out; 0 or less: none is left [rad]
+  std::optional<double> spiral;  ///< of the ground edge against the axis [rad]
+  double depth = 0;              ///< of the flute below the outer circle [m]
+  bool complete = false;         ///< over its whole depth, as a longer stroke would leave it
   std::optional<ReliefSection> relief;  ///< of a tooth that has an edge and reliefs
 };
 
@@ -122,6 +123,9 @@ class GroundCutter {
   NextTooth next(std::size_t tooth) const;
 
  private:
+  /// Of a flute, on circles from the core out; nothing where it is not that deep.
+  using Arcs = std::vector<std::optional<Arc>>;
+
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const {
     return outermostWall(flute, x, r, direction() == CutDirection::kRightHand);
   }
@@ -133,7 +137,8 @@ class GroundCutter {
   bool isComplete(const Flute& flute, double x, double core_radius) const;
   bool arcIsComplete(const Flute& flute, double x, double r) const;
   bool isComplete(double x) const;
-  std::optional<double> land(std::size_t tooth, const std::vector<ToothSection>& measured) const;
+  void measureLand(std::size_t tooth, const std::vector<ToothSection>& measured, const std::vector<Arcs>& arcs,
+                   ToothSection& section) const;
   bool landsAreAlike(std::size_t a, std::size_t b) const;
 
   ConicalCutter cutter_;

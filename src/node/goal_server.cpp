@@ -156,7 +156,7 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
   }
   if (status.wheel.in_work) return "the wheel stands in the work of the last job; lift it first";
-  return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
+  return tracker_.refusal(digest, {goal.first_tooth, goal.first_pass}, goal.discard != 0);
 }
 
 std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,

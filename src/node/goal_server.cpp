@@ -251,9 +251,10 @@ void GoalServer::startJob() {
       goal_->number, handle.getGoalID().id, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
                                   asked.ignore_offset_check != 0));
+  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false};
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    posted = loop_.startJob(goal_->stream.get(), false);
+    posted = loop_.startJob(start);
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   if (!started) return cancelBeforeStart();

@@ -85,7 +85,7 @@ std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint3
 }
 
 bool RequestBox::startJob(SetpointStream* stream, bool in_journal) noexcept {
-  return job_starts_.post({stream, wheelOf(stream->program()), in_journal});
+  return startJob(JobStart{stream, wheelOf(stream->program()), in_journal});
 }
 
 RequestReply RequestBox::jog(const JogRequest& jog) {

@@ -69,9 +69,9 @@ class AtomicFile::File {
     return text;
   }
 
-  /// @param text short.
-  void replace(const std::string& text) {
-    requireDone(ftruncate(fd_, 0) == 0 && ::write(fd_, text.data(), text.size()) >= 0);
+  /// @param text short. @return whether it is there.
+  bool replace(const std::string& text) {
+    return ftruncate(fd_, 0) == 0 && ::write(fd_, text.data(), text.size()) >= 0;
   }
 
   /// @return false if another process has locked it.
@@ -111,14 +111,17 @@ void AtomicFile::acquire() const {
     throw std::runtime_error("is not a regular file");
   }
   std::filesystem::create_directories(file.parent_path());
-  auto lock = std::make_unique<File>(file.string() + ".lock", O_RDWR | O_CREAT);
+  const std::string beside = file.string() + ".lock";
+  // Root's, or on a disk that is mounted read-only, it can be locked all the same, so that the file is read.
+  const bool writable = faccessat(AT_FDCWD, beside.c_str(), W_OK, AT_EACCESS) == 0 || errno == ENOENT;
+  auto lock = std::make_unique<File>(beside, writable ? O_RDWR | O_CREAT : O_RDONLY);
   lock->requireRegular();
   if (!lock->lock()) {
     const std::string holder = lock->read();
     throw AtomicFileOwned(kind_ + " " + path_ + " is in use by " + holder.substr(0, holder.find('\n')) +
                           "; allowed: a " + kind_ + " of its own for every node");
   }
-  lock->replace("node " + owner_ + ", process " + std::to_string(getpid()) + "\n");
+  lock->replace("node " + owner_ + ", process " + std::to_string(getpid()) + "\n");  // for people, if it can be
   file_ = file.string();
   lock_ = std::move(lock);
 }

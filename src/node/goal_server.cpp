@@ -156,7 +156,7 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
   }
   if (status.wheel.in_work) return "the wheel is in the work of the last job; lift it first";
-  return goal.discard ? "" : tracker_.refusal(digest, {goal.first_tooth, goal.first_pass});
+  return tracker_.refusal(digest, {goal.first_tooth, goal.first_pass}, goal.discard != 0);
 }
 
 std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
@@ -251,9 +251,10 @@ void GoalServer::startJob() {
       goal_->number, handle.getGoalID().id, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
                                   asked.ignore_offset_check != 0));
+  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false};
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
-    posted = loop_.startJob(goal_->stream.get(), false);
+    posted = loop_.startJob(start);
     if (posted && held) loop_.postStop(MachineEvent::kHold);
   });
   if (!started) return cancelBeforeStart();

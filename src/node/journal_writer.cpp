@@ -30,6 +30,7 @@ struct JournalWriter::Work {
       status.error = status.damage = error.what();
     } catch (const JournalError& error) {
       status.error = unread = error.what();
+      status.unread = true;
     }
   }
 
@@ -67,6 +68,7 @@ void JournalWriter::Work::storePending() {
   if (error.empty()) {
     status.on_disk = progress;
     status.damage.clear();
+    status.unread = false;
   }
   status.number = number;
   status.error = error;

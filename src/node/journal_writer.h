@@ -19,6 +19,7 @@ class JournalWriter {
     std::uint64_t number = 0;  ///< of the last write that succeeded or failed; 0 before the first
     std::string error;         ///< of the last write or its settling, or of the initial read; empty if none
     std::string damage;        ///< of the file as it was read, until it is replaced; empty if none
+    bool unread = false;       ///< the file could not be read at the start, and has not been replaced
   };
 
   /// Reads the journal and starts the thread, which waits at the end as DiskThread does: if the disk is dead by then,

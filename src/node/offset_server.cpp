@@ -102,13 +102,17 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
   response.large_change = static_cast<std::uint8_t>(large_change);
 }
 
-std::string OffsetServer::setProbed(int axis, double value, const flute_grinder::ProbeGoal& goal, bool& large_change) {
+std::string OffsetServer::setProbed(int axis, double value, const WorkOffsets& before,
+                                    const flute_grinder::ProbeGoal& goal, bool& large_change) {
   WorkOffset offset;
   offset.set_by = goal.set_by;
   offset.basis = basisOf(goal.job, OffsetMethod::kProbe);
   const auto answer = std::make_shared<std::promise<std::string>>();
   std::future<std::string> answered = answer->get_future();
-  thread_.post([=, &large_change, large_change_ok = goal.large_change_ok != 0] {
+  thread_.post([=, &large_change, large_change_ok = goal.large_change_ok != 0, x = before.axes[kX].value] {
+    if (axis == kA && store_.offsets().axes[kX].value != x) {
+      return answer->set_value("the work offset of X was changed meanwhile; probe again");
+    }
     answer->set_value(setWithoutJob(
         axis, offset, [=](double) { return value; }, large_change_ok, large_change));
   });

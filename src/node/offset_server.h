@@ -30,10 +30,12 @@ class OffsetServer {
   WorkOffsets offsets() const { return store_.offsets(); }
 
   /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
-  /// which it waits. @param value [m], A [rad]. @param goal by whom and for what it is set.
+  /// which it waits. @param value [m], A [rad]. @param before the offsets when the cycle began; it is not set if it was
+  /// computed with one that has changed since. @param goal by whom and for what it is set.
   /// @param large_change whether it was not set only because it would change by too much.
   /// @return why it was not set; empty if it was.
-  std::string setProbed(int axis, double value, const flute_grinder::ProbeGoal& goal, bool& large_change);
+  std::string setProbed(int axis, double value, const WorkOffsets& before, const flute_grinder::ProbeGoal& goal,
+                        bool& large_change);
 
  private:
   /// The offset of an axis whose position is as given [m or rad].

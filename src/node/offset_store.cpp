@@ -113,10 +113,22 @@ std::string OffsetStore::unknown() const {
 }
 
 void OffsetStore::set(int axis, const WorkOffset& offset) {
-  WorkOffsets changed = offsets();
+  const WorkOffsets before = offsets();
+  WorkOffsets changed = before;
   changed.axes[static_cast<std::size_t>(axis)] = offset;
-  file_.named([&] { file_.write(offsetsText(changed)); });
-  file_.settle();
+  const auto write = [this](const WorkOffsets& all) { file_.named([&] { file_.write(offsetsText(all)); }); };
+  write(changed);
+  try {
+    file_.settle();
+  } catch (const AtomicFileError& unsettled) {
+    try {
+      write(before);
+    } catch (const AtomicFileError& error) {
+      throw AtomicFileError(unsettled.what() + std::string("; the file has the new offset all the same: ") +
+                            error.what());
+    }
+    throw;
+  }
   const std::lock_guard<std::mutex> lock(mutex_);
   offsets_ = changed;
 }

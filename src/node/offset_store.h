@@ -25,7 +25,8 @@ class OffsetStore {
   /// disk.
   std::string unknown() const;
 
-  /// Sets the offset of an axis. Returns once it is on the disk; if it throws, nothing has changed. For one thread.
+  /// Sets the offset of an axis. Returns once it is on the disk; if it throws, nothing has changed, or what() says that
+  /// the file has. For one thread.
   /// @param axis Axis. @param offset its value is at most kMaxOffset in size.
   /// @throw AtomicFileError
   void set(int axis, const WorkOffset& offset);

@@ -102,12 +102,13 @@ void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, flute_gr
     feedback.touch = static_cast<std::uint16_t>(touch);
     handle.publishFeedback(feedback);
   });
-  const double offset = runCycle(prober, goal, offsets_.offsets(), result);
+  const WorkOffsets before = offsets_.offsets();
+  const double offset = runCycle(prober, goal, before, result);
   if (!goal.set_offset) return;
   prober.checkStop();
   const int axis = rowOf(static_cast<ProbingCycle>(goal.cycle)).axis;
   bool large_change = false;
-  const std::string refused = offsets_.setProbed(axis, offset, goal, large_change);
+  const std::string refused = offsets_.setProbed(axis, offset, before, goal, large_change);
   result.large_change = static_cast<std::uint8_t>(large_change);
   result.offset = offset;
   if (!refused.empty()) throw ProbingError(refused);

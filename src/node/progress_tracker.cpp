@@ -31,9 +31,11 @@ std::string describe(const Progress& p) {
 
 ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progress_(writer.status().on_disk) {}
 
-std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first) const {
-  const std::string damage = writer_.status().damage;
-  if (!damage.empty()) return damage + "; what job it kept is unknown; restore the file, or discard it";
+std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first, bool discard) const {
+  const JournalWriter::Status journal = writer_.status();
+  if (journal.unread) return journal.error;
+  if (discard) return "";
+  if (!journal.damage.empty()) return journal.damage + "; what job it kept is unknown; restore the file, or discard it";
   if (progress_.job_digest.empty() || progress_.finished) return "";
   const bool from_the_beginning = first == ToothPass{};
   if (digest == progress_.job_digest && (!from_the_beginning || first == progress_.next)) return "";
@@ -112,8 +114,10 @@ void ProgressTracker::update(const LoopStatus& status) {
     progress_.wheel = status.wheel;
     write();
   }
-  // Retry an entry that failed: the disk may have room again.
-  const bool due = changed_ || (request_ > 0 && upToDate() && !error().empty());
+  // Retry an entry that failed: the disk may have room again, or the journal that could not be read be gone.
+  const JournalWriter::Status journal = writer_.status();
+  const bool failed = journal.unread || (request_ > 0 && !journal.error.empty());
+  const bool due = changed_ || (failed && journal.number >= request_);
   if (due && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
 }
 

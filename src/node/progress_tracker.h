@@ -20,9 +20,10 @@ class ProgressTracker {
   /// @param writer must outlive this object.
   explicit ProgressTracker(JournalWriter& writer);
 
-  /// Why a job must not overwrite the journal: it holds another, unfinished one, or is damaged. Empty if it may.
-  /// @param first pass to grind.
-  std::string refusal(const std::string& digest, const ToothPass& first) const;
+  /// Why a job must not overwrite the journal: it holds another, unfinished one, is damaged, or could not be read.
+  /// Empty if it may.
+  /// @param first pass to grind. @param discard what is known of the last job.
+  std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
   /// them (0.1 um, A 1e-6 rad). Empty if it may, or if it is another job.
   /// @param offset see RunStart [m], A [rad].

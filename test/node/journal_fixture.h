@@ -37,11 +37,12 @@ class JournalTest : public ::testing::Test {
   std::string path_ = folder_ + "/journal";
 };
 
-/// Nobody may use a file or a folder while this lives; root, who may always, is nobody meanwhile.
+/// Nobody may use a file or a folder, but as said, while this lives; root, who may always, is nobody meanwhile.
 class Forbidden {
  public:
-  explicit Forbidden(const std::string& path) : path_(path) {
-    permit(std::filesystem::perms::none);
+  explicit Forbidden(const std::string& path, std::filesystem::perms allowed = std::filesystem::perms::none)
+      : path_(path) {
+    permit(allowed);
     EXPECT_EQ(seteuid(user_ == 0 ? 65534 : user_), 0);
   }
   ~Forbidden() {

@@ -210,6 +210,16 @@ TEST_F(JournalFileTest, ForbiddenFoldersAreRefusedByReadAndWrite) {
   expectUnusable(folder_ + "/forbidden/journal");
 }
 
+// As root's is by others, and every one on a disk that is mounted read-only.
+TEST_F(JournalFileTest, IsReadByWhoMayNotWriteIt) {
+  written();
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  const Forbidden lock(path_ + ".lock", std::filesystem::perms{0444});
+  const Journal journal(path_, "/grinder");
+  expectSame(journal.read().value(), someProgress());
+  EXPECT_THROW(Journal(path_, "/second"), JournalOwned);
+}
+
 /// That the journal is refused to whoever comes now, with the one who has it.
 void expectOwned(const std::string& path, const std::string& owner, pid_t process) {
   try {

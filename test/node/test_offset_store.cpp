@@ -154,6 +154,13 @@ TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(readFile(path_), good);
+  {
+    // Written to, but not opened to be synchronized.
+    const Forbidden folder(folder_, std::filesystem::perms{0333});
+    EXPECT_THROW(store.set(kY, kOther), AtomicFileError);
+  }
+  EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
+  EXPECT_EQ(readFile(path_), good) << "a restart would set it";
 }
 
 }  // namespace test_offset_store

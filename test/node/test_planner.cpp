@@ -110,6 +110,23 @@ TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
   EXPECT_NE(withFirstPass(1), withFirstPass(0));
 }
 
+// The last relief must leave no heel, which is why the reamer has a secondary one.
+TEST(Planner, KeepsNoPlanOfAReliefThatIsNowTheLast) {
+  Planner planner(machine(), kShapes);
+  const auto planOf = [&](const GrindJob& job) {
+    Asked asked(job);
+    EXPECT_TRUE(planner.submit(asked.request));
+    return asked.wait();
+  };
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
+  const auto plan = planOf(job);
+  ASSERT_TRUE(plan->good()) << text(plan->reasons);
+  job.operations[2].process.feed *= 0.9;
+  EXPECT_EQ(planOf(job), plan);
+  job.operations.pop_back();
+  EXPECT_EQ(planOf(job)->fault, PlanFault::kTool);
+}
+
 TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
   Planner planner(machine(), kShapes);
   GrindJob job = endless();

@@ -7,11 +7,12 @@ import os
 import re
 import signal
 import subprocess
+import threading
 
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from flute_grinder.msg import GrinderState, GrindResult
+from flute_grinder.msg import GrinderState, GrindResult, ProbeGoal
 from flute_grinder.srv import JogStep
 
 import grinder_client as gc
@@ -40,7 +41,9 @@ class ProbeTest(gc.OwnNode):
         parameters['hardware'].pop('blank', None)
         if blank:
             parameters['hardware']['blank'] = blank
-        super().start(parameters).make_ready()
+        self.disk = gc.SlowDisk(self.folder)
+        super().start(parameters, environment=self.disk.environment).make_ready()
+        self.addCleanup(self.disk.release)
 
     def jog(self, axis, distance):
         reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
@@ -126,9 +129,27 @@ class TestCycles(ProbeTest):
         self.jog(Y, 7 * MM)
         self.jog(X, 12 * MM)
         self.jog(Y, -5.5 * MM)
+        self.check_x_set_meanwhile(path)
         self.cycle('tooth', '--job', path)
         # The blank's rake face is horizontal at this angle of the machine, the job's at A = 0.
         self.assertAlmostEqual(self.offset(A)['offset_deg'], math.degrees(angle), delta=0.01)
+
+    def check_x_set_meanwhile(self, path):
+        """That A is not set by an X that another client changes during the cycle."""
+        x = self.offset(X)['offset_mm'] * MM
+        self.disk.stop()
+        setting = threading.Thread(target=self.client.set_offset, args=(X, x + 1 * MM))
+        setting.start()
+        gc.poll(lambda: os.path.exists(self.node.folder + '/offsets.new'), 'the disk being written')
+        with self.client.probing(1.5, ProbeGoal.TOOTH, set_offset=True, job=gc.goal_of(gc.job_from_file(path))) as cycle:
+            self.client.wait_for(lambda: cycle.touches, 'the search')
+            self.disk.release()
+            setting.join()
+            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+            self.assertEqual(cycle.get_result().message,
+                             'probing ended: the work offset of X was changed meanwhile; probe again')
+        self.assertIsNone(self.offset(A)['set_by'])
+        self.assertTrue(self.client.set_offset(X, x).success)
 
 
 class TestTouches(ProbeTest):

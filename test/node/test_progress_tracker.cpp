@@ -136,9 +136,24 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   const std::string path = folder_.path() / "damaged";
   std::ofstream(path) << "nothing of a journal";
   JournalWriter writer(path, "/test");
+  const ProgressTracker tracker(writer);
   EXPECT_EQ(
-      ProgressTracker(writer).refusal("job", kFirst),
+      tracker.refusal("job", kFirst),
       "journal " + path + ": its checksum is missing; what job it kept is unknown; restore the file, or discard it");
+  EXPECT_EQ(tracker.refusal("job", kFirst, true), "");
+}
+
+TEST_F(ProgressTrackerTest, AJournalThatCannotBeReadIsInTheWayEvenIfDiscardedUntilItIsGone) {
+  const std::filesystem::path folder = folder_.path() / "folder";
+  std::ofstream(folder) << "a file";
+  JournalWriter writer(folder / "journal", "/test");
+  ProgressTracker tracker(writer);
+  EXPECT_EQ(tracker.refusal("job", kFirst, true).rfind("journal " + folder.string(), 0), 0U);
+  std::filesystem::remove(folder);
+  EXPECT_TRUE(test_support::soon([&] {
+    tracker.update(status_);
+    return tracker.refusal("job", kFirst).empty();
+  }));
 }
 
 TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {

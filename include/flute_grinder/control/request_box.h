@@ -71,6 +71,8 @@ class RequestBox {
   ///     confirmJournal() before it moves, as for any other interlock.
   /// @return false while the previous start is unanswered; this one is then not posted.
   bool startJob(SetpointStream* stream, bool in_journal = true) noexcept;
+  /// The same with what takes time, as the wheel of a long job does, done ahead.
+  bool startJob(const JobStart& start) noexcept { return job_starts_.post(start); }
   /// States that the journal contains a job. Thread safe.
   /// @param number the loop's number for this job, see LoopStatus::jobs_started.
   void confirmJournal(std::uint64_t number) noexcept { job_in_journal_.store(number, std::memory_order_release); }

@@ -29,21 +29,24 @@ RequestReply await(const char* request, double timeout, const Poll& poll) {
   return {false, std::string(request) + ": the control loop does not answer", false};
 }
 
-/// Posts a request, and waits for its answer.
-template <typename Post, typename Poll>
-RequestReply ask(const char* request, double timeout, const Post& post, const Poll& poll) {
-  bool posted = false;
-  return await(request, timeout, [&]() -> std::optional<RequestReply> {
-    // The slot may still contain a request that timed out.
-    if (posted) return poll();
-    posted = post();
-    return std::nullopt;
-  });
-}
-
 std::optional<RequestReply> toReply(const std::optional<Answer>& answer) {
   if (answer) return answer->reply();
   return std::nullopt;
+}
+
+/// Posts a request, and waits for its answer.
+template <typename Request>
+RequestReply ask(const char* name, double timeout, RequestSlot<Request>& slot, const Request& request) {
+  bool posted = false;
+  RequestReply reply = await(name, timeout, [&]() -> std::optional<RequestReply> {
+    // The slot may still contain a request that timed out.
+    if (posted) return toReply(slot.reply());
+    posted = slot.post(request);
+    return std::nullopt;
+  });
+  // Nothing moves later that nobody waits for.
+  slot.withdraw();
+  return reply;
 }
 
 }  // namespace
@@ -52,8 +55,7 @@ RequestReply RequestBox::request(MachineEvent event) {
   if (!isTrigger(event)) {
     return {false, std::string(toString(event)) + " refused: allowed: " + namesOf<MachineEvent>(isTrigger), true};
   }
-  return ask(
-      toString(event), kAnswerTimeout + enable_timeout_, [&] { return post(event); }, [&] { return reply(); });
+  return ask(toString(event), kAnswerTimeout + enable_timeout_, requests_, event);
 }
 
 std::optional<RequestReply> RequestBox::reply() { return toReply(requests_.reply()); }
@@ -66,8 +68,7 @@ RequestReply RequestBox::confirmSwivel(double angle) {
                 degrees(kMaxSwivel),
             true};
   }
-  return ask(
-      "confirm-swivel", kAnswerTimeout, [&] { return postSwivel(angle); }, [&] { return swivelReply(); });
+  return ask("confirm-swivel", kAnswerTimeout, swivels_, angle);
 }
 
 std::optional<RequestReply> RequestBox::swivelReply() { return toReply(swivels_.reply()); }
@@ -89,16 +90,13 @@ bool RequestBox::startJob(SetpointStream* stream, bool in_journal) noexcept {
 }
 
 RequestReply RequestBox::jog(const JogRequest& jog) {
-  return ask(
-      toString(MachineEvent::kJog), kAnswerTimeout, [&] { return postJog(jog); }, [&] { return jogReply(); });
+  return ask(toString(MachineEvent::kJog), kAnswerTimeout, jogs_, jog);
 }
 
 std::optional<RequestReply> RequestBox::jogReply() { return toReply(jogs_.reply()); }
 
 RequestReply RequestBox::jogInSeries(const JogRequest& jog) {
-  return ask(
-      toString(MachineEvent::kJog), kAnswerTimeout, [&] { return series_jogs_.post(jog); },
-      [&] { return toReply(series_jogs_.reply()); });
+  return ask(toString(MachineEvent::kJog), kAnswerTimeout, series_jogs_, jog);
 }
 
 std::optional<RequestReply> RequestBox::startJobReply() { return toReply(job_starts_.reply()); }

@@ -215,6 +215,20 @@ TEST(ControlLoopDisable, SwitchesPowerOffAndCommandsFollowThePositionsAgain) {
   EXPECT_TRUE(sameBits(toAxes(rig.drive.written), pushed));
 }
 
+TEST(RequestSlot, ARequestThatIsWithdrawnIsNotTakenAndOneThatIsTakenIsAnswered) {
+  RequestSlot<MachineEvent> slot;
+  ASSERT_TRUE(slot.post(E::kHome));
+  slot.withdraw();
+  EXPECT_FALSE(slot.take().has_value());
+  ASSERT_TRUE(slot.post(E::kResume));
+  EXPECT_EQ(slot.take(), E::kResume);
+  slot.withdraw();
+  EXPECT_FALSE(slot.post(E::kHome)) << "it is being executed";
+  slot.answer({});
+  EXPECT_TRUE(slot.reply().has_value());
+  EXPECT_TRUE(slot.post(E::kHome));
+}
+
 TEST(Start, IsRefusedAfterTheLeastMotionOfAnyAxis) {
   for (const int axis : {kX, kY, kZ, kA}) {
     Rig<FakeDrive> rig;

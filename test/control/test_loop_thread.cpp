@@ -202,5 +202,12 @@ TEST_F(ControlLoopThread, AStopToALoopThatDoesNotRunIsNotAnswered) {
   EXPECT_EQ(answer.text, "hold: the control loop does not answer");
 }
 
+TEST_F(ControlLoopThread, ARequestThatNobodyWaitsForAnyLongerIsNotExecuted) {
+  EXPECT_EQ(loop_->confirmSwivel(0.3).text, "confirm-swivel: the control loop does not answer");
+  loop_->cycle(ros::Time(1), ros::Duration(1e-3));
+  EXPECT_FALSE(loop_->swivelReply().has_value());
+  EXPECT_FALSE(loop_->status().swivel.isAt(0.3));
+}
+
 }  // namespace test_loop_thread
 }  // namespace grinder::test_support

@@ -28,11 +28,16 @@ class RequestSlot {
     stage_.store(Stage::kFree, std::memory_order_relaxed);
     return answer;
   }
+  /// For the requesting thread, which waits no longer: a request that the loop has not taken is not executed any more.
+  void withdraw() noexcept {
+    Stage posted = Stage::kPosted;
+    stage_.compare_exchange_strong(posted, Stage::kFree, std::memory_order_relaxed);
+  }
 
   /// For the loop: returns the posted request once.
   std::optional<Request> take() noexcept {
-    if (stage_.load(std::memory_order_acquire) != Stage::kPosted) return std::nullopt;
-    stage_.store(Stage::kTaken, std::memory_order_relaxed);
+    Stage posted = Stage::kPosted;
+    if (!stage_.compare_exchange_strong(posted, Stage::kTaken, std::memory_order_acquire)) return std::nullopt;
     return request_;
   }
   /// For the loop: answers the request it took, in the same cycle or a later one.

@@ -165,7 +165,7 @@ void HalHardware::writeSwitches(const DriveCommand& command) {
 }
 
 bool HalHardware::powerOff() {
-  *pins_->enable = false;
+  *pins_->enable = *pins_->spindle_run = *pins_->coolant_run = false;
   return true;
 }
 

@@ -231,8 +231,9 @@ void RosControlDrive::readStatus(DriveStatus& status) {
   status.emergency_stop = signals_.emergency_stop->at(now);
   status.enabled = mode_.isOn() && !power_off_ && signals_.enabled->at(now);
   status.homed = signals_.homed->at(now);
-  // Reported in at least one reading, however soon the service answers.
-  status.homing = sent_.home && commands_.home && (commands_.home->isBusy() || !homing_seen_);
+  // Reported in at least one reading, however soon the service answers; its answer may overtake the topic of `homed`.
+  status.homing = sent_.home && commands_.home &&
+                  (commands_.home->isBusy() || !homing_seen_ || !(status.homed || commands_.home->hasFailed()));
   homing_seen_ = sent_.home;
   status.spindle_at_speed = signals_.spindle_at_speed->at(now);
   status.coolant_on = signals_.coolant_on->at(now);

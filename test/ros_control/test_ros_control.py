@@ -213,6 +213,28 @@ class TestRosControl(unittest.TestCase):
         emergency.unregister()
         homed.unregister()
 
+    def test_reference_that_comes_after_the_answer_and_moves_nothing(self):
+        answer, homed = threading.Event(), rospy.Publisher('/cell/homed', Bool, queue_size=1, latch=True)
+
+        def on_home(_):
+            answer.wait(gc.PATIENCE)
+            return TriggerResponse(True, '')
+
+        service = rospy.Service('/cell/home', Trigger, on_home)
+        client = self.start(with_velocity=True, signals={'homed': '/cell/homed'}, commands={'home': {'service': '/cell/home'}})
+        self.enable()
+        self.assertTrue(self.call('home').success)
+        self.now.publish('drift')
+        client.wait_for(lambda: client.states[-1].position[0] > -0.049, 'another place')
+        self.now.publish('')
+        answer.set()
+        for _ in range(5):
+            self.assertEqual(client.fresh_state().state, GrinderState.HOMING, client.states[-1].fault)
+        homed.publish(True)
+        client.wait_state(GrinderState.READY)
+        service.shutdown()
+        homed.unregister()
+
     def test_power_home_spindle_by_services(self):
         calls, refuse = [], threading.Event()
 

@@ -274,7 +274,8 @@ void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command
   const bool was_on = mode_.isOn();
   mode_.update(powered, *this);
   if (!powered) prepareStop();
-  commandJoints(cycle, last, was_on && mode_.isOn());
+  // In homing the commands follow the positions.
+  commandJoints(cycle, last, was_on && mode_.isOn() && !command.home && !last.home);
 }
 
 void RosControlDrive::prepareStop() {

@@ -232,6 +232,7 @@ class TestRosControl(unittest.TestCase):
             self.assertEqual(client.fresh_state().state, GrinderState.HOMING, client.states[-1].fault)
         homed.publish(True)
         client.wait_state(GrinderState.READY)
+        self.assertEqual({row[4:] for row in self.recorded()[1]}, {(0, 0, 0, 0)}, 'velocities')
         service.shutdown()
         homed.unregister()
 

@@ -235,7 +235,9 @@ void RosControlDrive::readStatus(DriveStatus& status) {
   status.homing = sent_.home && commands_.home &&
                   (commands_.home->isBusy() || !homing_seen_ || !(status.homed || commands_.home->hasFailed()));
   homing_seen_ = sent_.home;
-  status.spindle_at_speed = signals_.spindle_at_speed->at(now);
+  // `always` means: as soon as it is commanded. A wheel that always turned could not be probed beside.
+  status.spindle_at_speed =
+      signals_.spindle_at_speed->at(now) && (sent_.spindle || !signals_.spindle_at_speed->topic().empty());
   status.coolant_on = signals_.coolant_on->at(now);
   status.probe_free = signals_.probe_free->at(now);
   status.probe_contact = signals_.probe_contact->at(now);

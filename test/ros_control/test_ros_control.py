@@ -76,6 +76,7 @@ class TestRosControl(unittest.TestCase):
 
     def run_job(self, client):
         self.enable()
+        self.assertFalse(client.fresh_state().spindle_at_speed, 'always, if it is commanded')
         run = client.run(gc.paper())
         run.wait_complete()
         self.assertEqual(run.code, GrindResult.SUCCESSFUL, run.text)

@@ -81,7 +81,8 @@ void HalHardware::checkServoThread(double control_rate) const {
 void HalHardware::read(const DriveCycle&, DriveFeedback& feedback) {
   DriveStatus& status = feedback.status;
   // Read before the other pins: whatever has just switched the power off is then visible in them.
-  enabled_ = status.enabled = *pins_->enabled;
+  enabled_ = *pins_->enabled;
+  status.enabled = enabled_ && !power_off_;
   status.emergency_stop = *pins_->emergency_stop;
   status.underruns = static_cast<std::uint32_t>(*pins_->underruns);
   status.commands_waiting = waiting();
@@ -128,8 +129,9 @@ void HalHardware::readHoming(DriveStatus& status) {
 }
 
 void HalHardware::write(const DriveCycle&, const DriveCommand& command) {
+  if (!command.enable) power_off_ = false;
   writeSwitches(command);
-  if (!command.enable) {
+  if (!command.enable || power_off_) {
     switchOff();
   } else if (!*pins_->enable) {
     switchOn(command.position);
@@ -147,8 +149,8 @@ void HalHardware::writeSwitches(const DriveCommand& command) {
   *pins_->fault_reset = reset_cycles_ > 0;
   if (reset_cycles_ > 0) --reset_cycles_;
   *pins_->home = command.home;
-  *pins_->spindle_run = command.spindle;
-  *pins_->coolant_run = command.coolant;
+  *pins_->spindle_run = command.spindle && !power_off_;
+  *pins_->coolant_run = command.coolant && !power_off_;
   for (std::size_t i = 0; i < command.position.size(); ++i) {
     *pins_->joints[i].command = command.position[i];
     *pins_->joints[i].enable = command.enable;
@@ -156,6 +158,7 @@ void HalHardware::writeSwitches(const DriveCommand& command) {
 }
 
 bool HalHardware::powerOff() {
+  power_off_ = true;
   *pins_->enable = *pins_->spindle_run = *pins_->coolant_run = false;
   return true;
 }
@@ -175,7 +178,7 @@ void HalHardware::switchOn(const AxisValues& position) {
   fifo_->drain();
   sent_ = *pins_->played;
   for (std::uint32_t i = 0; i < can_.buffer; ++i) send(position);
-  *pins_->enable = true;
+  *pins_->enable = !power_off_;
 }
 
 void HalHardware::send(const AxisValues& position) {

@@ -5,6 +5,7 @@
 #include "flute_grinder/drive/drive.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -58,6 +59,8 @@ class HalHardware : public Drive {
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
   DriveCapabilities can_;  ///< as far as HAL has the signals; the buffer is what to keep in the FIFO
+
+  std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false
 
   bool enabled_ = false;    ///< at the last read()
   std::uint32_t sent_ = 0;  ///< number of the last command

@@ -26,20 +26,11 @@ void nap(std::int64_t nanoseconds) {
 
 void HalHardware::init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) {
   const HalParameters parameters = readHalParameters(ParameterReader(node_nh), ParameterReader(drive_nh));
-  buffer_ = parameters.buffer;
+  can_.buffer = parameters.buffer;
   component_ = std::make_unique<HalComponent>(parameters.component);
-  fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, 2 * buffer_);
+  fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, 2 * can_.buffer);
   makePins();
   checkServoThread(parameters.control_rate);
-}
-
-DriveCapabilities HalHardware::capabilities() const {
-  DriveCapabilities can;
-  can.homing = can.spindle = can.coolant = true;
-  can.probe = has_probe_;
-  can.swivel = has_swivel_;
-  can.buffer = buffer_;
-  return can;
 }
 
 void HalHardware::makePins() {
@@ -62,8 +53,8 @@ void HalHardware::makePins() {
   c.addPin("spindle-at-speed", HAL_IN, pins.spindle_at_speed, true);
   c.addPin("coolant-on", HAL_IN, pins.coolant_on, true);
   c.addPin("probe-free", HAL_IN, pins.probe_free, true);
-  has_probe_ = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
-  has_swivel_ = c.addPin("swivel", HAL_IN, pins.swivel, false);
+  can_.probe = c.addPin("probe-contact", HAL_IN, pins.probe_contact, false);
+  can_.swivel = c.addPin("swivel", HAL_IN, pins.swivel, false);
   c.addPin("servo-cycles", HAL_IN, pins.servo_cycles, true);
   c.addPin("servo-rate", HAL_IN, pins.servo_rate, true);
   c.addPin("played", HAL_IN, pins.played, true);
@@ -71,9 +62,9 @@ void HalHardware::makePins() {
   c.addPin("enable", HAL_OUT, pins.enable, true);
   c.addPin("heartbeat", HAL_OUT, pins.heartbeat, true);
   c.addPin("fault-reset", HAL_OUT, pins.fault_reset, false);
-  c.addPin("home", HAL_OUT, pins.home, false);
-  c.addPin("spindle-run", HAL_OUT, pins.spindle_run, false);
-  c.addPin("coolant-run", HAL_OUT, pins.coolant_run, false);
+  can_.homing = c.addPin("home", HAL_OUT, pins.home, false);
+  can_.spindle = c.addPin("spindle-run", HAL_OUT, pins.spindle_run, false);
+  can_.coolant = c.addPin("coolant-run", HAL_OUT, pins.coolant_run, false);
   component_->ready();
 }
 
@@ -90,15 +81,16 @@ void HalHardware::checkServoThread(double control_rate) const {
 void HalHardware::read(const DriveCycle&, DriveFeedback& feedback) {
   DriveStatus& status = feedback.status;
   // Read before the other pins: whatever has just switched the power off is then visible in them.
-  enabled_ = status.enabled = *pins_->enabled;
+  enabled_ = *pins_->enabled;
+  status.enabled = enabled_ && !power_off_;
   status.emergency_stop = *pins_->emergency_stop;
   status.underruns = static_cast<std::uint32_t>(*pins_->underruns);
   status.commands_waiting = waiting();
   status.spindle_at_speed = *pins_->spindle_at_speed;
   status.coolant_on = *pins_->coolant_on;
   status.probe_free = *pins_->probe_free;
-  if (has_probe_) status.probe_contact = *pins_->probe_contact;
-  if (has_swivel_) status.swivel = *pins_->swivel;
+  if (can_.probe) status.probe_contact = *pins_->probe_contact;
+  if (can_.swivel) status.swivel = *pins_->swivel;
   readJoints(feedback);
   readHoming(status);
   const double servo_cycles = *pins_->servo_cycles;
@@ -137,8 +129,9 @@ void HalHardware::readHoming(DriveStatus& status) {
 }
 
 void HalHardware::write(const DriveCycle&, const DriveCommand& command) {
+  if (!command.enable) power_off_ = false;
   writeSwitches(command);
-  if (!command.enable) {
+  if (!command.enable || power_off_) {
     switchOff();
   } else if (!*pins_->enable) {
     switchOn(command.position);
@@ -156,8 +149,8 @@ void HalHardware::writeSwitches(const DriveCommand& command) {
   *pins_->fault_reset = reset_cycles_ > 0;
   if (reset_cycles_ > 0) --reset_cycles_;
   *pins_->home = command.home;
-  *pins_->spindle_run = command.spindle;
-  *pins_->coolant_run = command.coolant;
+  *pins_->spindle_run = command.spindle && !power_off_;
+  *pins_->coolant_run = command.coolant && !power_off_;
   for (std::size_t i = 0; i < command.position.size(); ++i) {
     *pins_->joints[i].command = command.position[i];
     *pins_->joints[i].enable = command.enable;
@@ -165,7 +158,8 @@ void HalHardware::writeSwitches(const DriveCommand& command) {
 }
 
 bool HalHardware::powerOff() {
-  *pins_->enable = false;
+  power_off_ = true;
+  *pins_->enable = *pins_->spindle_run = *pins_->coolant_run = false;
   return true;
 }
 
@@ -183,8 +177,8 @@ void HalHardware::switchOn(const AxisValues& position) {
   // job was aborted.
   fifo_->drain();
   sent_ = *pins_->played;
-  for (std::uint32_t i = 0; i < buffer_; ++i) send(position);
-  *pins_->enable = true;
+  for (std::uint32_t i = 0; i < can_.buffer; ++i) send(position);
+  *pins_->enable = !power_off_;
 }
 
 void HalHardware::send(const AxisValues& position) {
@@ -199,7 +193,7 @@ ros::Duration HalHardware::wait(const ros::Duration& nominal) {
   if (!*pins_->enabled || !*pins_->enable) return Drive::wait(nominal);
   const std::int64_t time = nominal.toNSec() / kNapsPerCycle;
   for (int naps = 0; naps < kNapsPerCycle * kMaxWait; ++naps) {
-    if (waiting() < buffer_ || !*pins_->enabled) break;
+    if (waiting() < can_.buffer || !*pins_->enabled) break;
     nap(time);
   }
   return sinceLastCycle(nominal);

@@ -5,6 +5,7 @@
 #include "flute_grinder/drive/drive.h"
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 
@@ -20,7 +21,7 @@ namespace grinder {
 class HalHardware : public Drive {
  public:
   void init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) override;
-  DriveCapabilities capabilities() const override;
+  DriveCapabilities capabilities() const override { return can_; }
   void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
   void write(const DriveCycle& cycle, const DriveCommand& command) override;
   bool powerOff() override;
@@ -57,9 +58,9 @@ class HalHardware : public Drive {
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
-  bool has_swivel_ = false;   ///< HAL reads the swivel's encoder
-  bool has_probe_ = false;    ///< HAL reads the measuring probe
-  std::uint32_t buffer_ = 0;  ///< number of commands to keep in the FIFO
+  DriveCapabilities can_;  ///< as far as HAL has the signals; the buffer is what to keep in the FIFO
+
+  std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false
 
   bool enabled_ = false;    ///< at the last read()
   std::uint32_t sent_ = 0;  ///< number of the last command

@@ -231,10 +231,13 @@ void RosControlDrive::readStatus(DriveStatus& status) {
   status.emergency_stop = signals_.emergency_stop->at(now);
   status.enabled = mode_.isOn() && !power_off_ && signals_.enabled->at(now);
   status.homed = signals_.homed->at(now);
-  // Reported in at least one reading, however soon the service answers.
-  status.homing = sent_.home && commands_.home && (commands_.home->isBusy() || !homing_seen_);
+  // Reported in at least one reading, however soon the service answers; its answer may overtake the topic of `homed`.
+  status.homing = sent_.home && commands_.home &&
+                  (commands_.home->isBusy() || !homing_seen_ || !(status.homed || commands_.home->hasFailed()));
   homing_seen_ = sent_.home;
-  status.spindle_at_speed = signals_.spindle_at_speed->at(now);
+  // `always` means: as soon as it is commanded. A wheel that always turned could not be probed beside.
+  status.spindle_at_speed =
+      signals_.spindle_at_speed->at(now) && (sent_.spindle || !signals_.spindle_at_speed->topic().empty());
   status.coolant_on = signals_.coolant_on->at(now);
   status.probe_free = signals_.probe_free->at(now);
   status.probe_contact = signals_.probe_contact->at(now);
@@ -273,7 +276,8 @@ void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command
   const bool was_on = mode_.isOn();
   mode_.update(powered, *this);
   if (!powered) prepareStop();
-  commandJoints(cycle, last, was_on && mode_.isOn());
+  // In homing the commands follow the positions.
+  commandJoints(cycle, last, was_on && mode_.isOn() && !command.home && !last.home);
 }
 
 void RosControlDrive::prepareStop() {

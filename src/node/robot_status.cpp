@@ -1,6 +1,8 @@
 #include "node/robot_status.h"
 
 #ifdef HAS_INDUSTRIAL_MSGS
+#include "flute_grinder/machine/machine_state.h"
+
 #include <industrial_msgs/RobotStatus.h>
 #endif
 
@@ -21,22 +23,23 @@ industrial_msgs::TriState triState(bool value) {
 RobotStatus::RobotStatus(ros::NodeHandle nh)
     : publisher_(nh.advertise<industrial_msgs::RobotStatus>("robot_status", 10)) {}
 
-void RobotStatus::publish(const CycleSample& sample) {
+void RobotStatus::publish(const flute_grinder::GrinderState& state) {
+  const auto machine = static_cast<MachineState>(state.state);
   industrial_msgs::RobotStatus status;
-  status.header.stamp = ros::Time(sample.time);
+  status.header.stamp = state.header.stamp;
   status.mode.val = industrial_msgs::RobotMode::AUTO;
-  status.e_stopped = triState(sample.drive.emergency_stop);
-  status.drives_powered = triState(sample.drive.enabled);
-  status.motion_possible = triState(isPowered(sample.state) && sample.drive.homed);
-  status.in_motion = triState(rowOf(sample.state).moves);
-  status.in_error = triState(sample.state == MachineState::kFault);
+  status.e_stopped = triState(state.emergency_stop != 0);
+  status.drives_powered = triState(state.enabled != 0);
+  status.motion_possible = triState(isPowered(machine) && state.homed != 0);
+  status.in_motion = triState(rowOf(machine).moves);
+  status.in_error = triState(machine == MachineState::kFault);
   publisher_.publish(status);
 }
 
 #else
 
 RobotStatus::RobotStatus(ros::NodeHandle) {}
-void RobotStatus::publish(const CycleSample&) {}
+void RobotStatus::publish(const flute_grinder::GrinderState&) {}
 
 #endif
 

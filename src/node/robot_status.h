@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/control/cycle_sample.h"
+#include "flute_grinder/GrinderState.h"
 
 #include <ros/ros.h>
 
@@ -12,7 +12,7 @@ class RobotStatus {
  public:
   /// @param nh the node's namespace.
   explicit RobotStatus(ros::NodeHandle nh);
-  void publish(const CycleSample& sample);
+  void publish(const flute_grinder::GrinderState& state);
 
  private:
   ros::Publisher publisher_;

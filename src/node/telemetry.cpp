@@ -302,7 +302,7 @@ void Telemetry::publishState() {
   flute_grinder::GrinderState message = stateMessage();
   message.header.stamp = ros::Time(sample_.time);
   state_.publish(message);
-  robot_status_.publish(sample_);
+  robot_status_.publish(message);
 }
 
 /// Without a stamp.

@@ -104,6 +104,7 @@ class FakeDrive : public Drive {
 
   bool powerOff() override {
     power_off = true;
+    if (power_off_fails) throw std::runtime_error("no bus");
     return true;
   }
 
@@ -120,7 +121,8 @@ class FakeDrive : public Drive {
 
   int writes = 0;
   std::atomic<bool> power_off{false};  ///< by powerOff()
-  AxisValues written{};                ///< as of the last write()
+  std::atomic<bool> power_off_fails{false};
+  AxisValues written{};  ///< as of the last write()
   DriveCommand written_drive;
 
  private:

@@ -78,6 +78,11 @@ TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {
   hangs = true;
   ASSERT_TRUE(soon([&] { return watchdog.finding() == LoopWatchdog::Finding::kHangsPowerIsOff; }));
   EXPECT_TRUE(drive_.power_off);
+  hangs = false;
+  ASSERT_TRUE(soon([&] { return watchdog.finding() == LoopWatchdog::Finding::kRuns; }));
+  drive_.power_off_fails = true;
+  hangs = true;
+  ASSERT_TRUE(soon([&] { return watchdog.finding() == LoopWatchdog::Finding::kHangs; }));
   loop_->requestEnd();
   EXPECT_FALSE(loop_->hasEnded());
   hangs = false;

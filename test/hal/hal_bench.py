@@ -88,6 +88,10 @@ def halcmd(*words):
     return text
 
 
+def wait_signal(name, value):
+    gc.poll(lambda: halcmd('gets', name).split()[-1] == value, 'HAL signal %s %s' % (name, value))
+
+
 def press_emergency_stop(pressed):
     halcmd('sets', 'emergency-stop', str(pressed))
 

@@ -10,7 +10,7 @@ import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import hal_bench
-from hal_bench import gc
+from hal_bench import gc, wait_signal
 import path_checks as checks
 from grinder_client import MM, MM_MIN
 
@@ -23,14 +23,6 @@ NOT_HOMED = 'the axes are not homed'
 FIRST = (-1 / 32, 1 / 32, 1 / 128, 0.5)
 SECOND = (1 / 64, 1 / 16, -1 / 256, -2.5)
 JOB = gc.paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
-
-
-def signal(name):
-    return hal_bench.halcmd('gets', name).split()[-1]
-
-
-def wait_signal(name, value):
-    gc.poll(lambda: signal(name) == value, 'HAL signal %s %s' % (name, value))
 
 
 def set_homed(homed):

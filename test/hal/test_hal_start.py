@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Shows how the node starts on HAL: not at all, with the reason, where HAL, its FIFO, a signal or a permission is missing; and
-that a start that fails leaves HAL as it was; and that it takes the swivel's encoder from HAL where there is one."""
+that a start that fails leaves HAL as it was; and that it takes the swivel's encoder from HAL where there is one, and offers
+what HAL has a signal for."""
 
 import ctypes
 import math
@@ -12,12 +13,13 @@ import unittest
 
 import rospy
 import rostest
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrinderState, MachineInfo
 
 import hal_bench
 from hal_bench import gc
 
 IN_HAL = hal_bench.ROOT + '/test/hal/in_hal'
+IN_TEMPLATE = ('env', '-u', 'INSIDE_HAL', 'HAL_FILE=' + hal_bench.ROOT + '/hal/template.hal', IN_HAL)
 NAMESPACE = ('unshare', '--ipc') if os.getuid() == 0 else ('unshare', '--user', '--map-current-user', '--ipc')
 
 
@@ -132,6 +134,17 @@ class TestTakeover(unittest.TestCase):
         grinder.close()
         self.assertEqual(node.end(), 0, node.output)
         self.assertNotIn('flute-grinder ', hal_bench.halcmd('show', 'comp'))
+
+
+class TestTemplate(unittest.TestCase):
+    def test_node_starts_and_offers_what_it_has_signals_for(self):
+        node = hal_bench.Node('templated', prefix=IN_TEMPLATE)
+        self.addCleanup(node.end, signal.SIGKILL)
+        grinder = gc.Grinder('templated')
+        self.addCleanup(grinder.close)
+        self.assertTrue(grinder.fresh_state().emergency_stop)
+        machine = rospy.wait_for_message('/templated/machine', MachineInfo, gc.PATIENCE)
+        self.assertEqual((machine.homing, machine.spindle, machine.coolant), (False, True, True))
 
 
 class TestSwivel(unittest.TestCase):

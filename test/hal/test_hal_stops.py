@@ -151,8 +151,11 @@ class TestHeartbeat(Stop, unittest.TestCase):
 
     def test_killed_node_loses_power_and_a_new_one_takes_over(self):
         self.expect_heartbeat()
+        hal_bench.wait_signal('spindle-at-speed', 'TRUE')
         self.node.end(signal.SIGKILL)
         self.wait_power_off()
+        hal_bench.wait_signal('spindle-at-speed', 'FALSE')
+        hal_bench.wait_signal('coolant-on', 'FALSE')
         hal_bench.patience(NEVER)
         self.assertEqual({row.underruns for row in RECORDER.read()[self.first:]}, {RECORDER.rows[self.first].underruns})
         self.check_standing()

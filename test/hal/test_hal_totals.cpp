@@ -155,6 +155,19 @@ TEST_F(Totals, LastSetpointIsPlayedAndNothingIsLeftBehind) {
   switchPower(false);
 }
 
+TEST_F(Totals, PowerOffLastsAsLongAsPowerIsAskedFor) {
+  read();
+  std::copy(feedback_.position.begin(), feedback_.position.end(), command_.data());
+  switchPower(true);
+  EXPECT_TRUE(drive_.powerOff());
+  EXPECT_FALSE(read().enabled) << "ahead of HAL";
+  for (std::uint32_t i = 0; i < kBuffer; ++i) cycle(true);
+  EXPECT_FALSE(read().enabled);
+  cycle(false);
+  switchPower(true);
+  switchPower(false);
+}
+
 }  // namespace
 }  // namespace grinder
 

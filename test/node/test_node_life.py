@@ -30,6 +30,7 @@ class TestLoopback(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         folder = gc.temp_folder(cls.addClassCleanup)
+        rospy.set_param('/listener/of_before', True)
         launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=listener',
                                    'journal:=' + os.path.join(folder, 'journal')],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
@@ -40,10 +41,15 @@ class TestLoopback(unittest.TestCase):
             pid = xmlrpc.client.ServerProxy(uri).getPid('/test_node_life')[2]
             cls.program = os.path.basename(os.readlink('/proc/%d/exe' % pid))
             cls.listening = gc.listening(pid)
+            cls.parameters = rospy.get_param('/listener')
             node.close()
         finally:
             launch.send_signal(signal.SIGINT)
             launch.wait(timeout=gc.PATIENCE)
+
+    def test_parameters_are_those_of_the_launch_alone(self):
+        self.assertNotIn('of_before', self.parameters)
+        self.assertTrue({'control_rate', 'hardware', 'journal'} <= set(self.parameters))
 
     def test_probe_reports_other_addresses(self):
         with socket.socket() as elsewhere:

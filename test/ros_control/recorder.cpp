@@ -71,6 +71,7 @@ class Recorder : public hi::RobotHW {
     if (now_ == "read") throw std::runtime_error("E17: encoder");
     while (now_ == "hang") std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (written_ && on_) position_ = command_;
+    if (now_ == "drift") position_[0] += 1e-6;  // a new reference, bit by bit
     shown_ = position_;
     if (now_ == "nan") shown_[1] = std::numeric_limits<double>::quiet_NaN();
   }
@@ -96,7 +97,7 @@ class Recorder : public hi::RobotHW {
   class Word {
    public:
     void set(const std::string& word) {
-      for (const char* known : {"", "read", "write", "hang", "nan", "limit"}) {
+      for (const char* known : {"", "read", "write", "hang", "nan", "limit", "drift"}) {
         if (word == known) word_ = known;
       }
     }

@@ -76,6 +76,7 @@ class TestRosControl(unittest.TestCase):
 
     def run_job(self, client):
         self.enable()
+        self.assertFalse(client.fresh_state().spindle_at_speed, 'always, if it is commanded')
         run = client.run(gc.paper())
         run.wait_complete()
         self.assertEqual(run.code, GrindResult.SUCCESSFUL, run.text)
@@ -189,6 +190,9 @@ class TestRosControl(unittest.TestCase):
         client.wait_for(lambda: shown() == [0, 0, 0, 0, 0], 'its end')
         self.enable()
         client.wait_for(lambda: shown() == [0, 1, 1, 0, 0], 'the power')
+        self.now.publish('hang')
+        client.wait_for(lambda: shown() == [0, 1, 0, 0, 1], 'a drive that does not return')
+        self.now.publish('')
         pressed.publish(True)
         client.wait_for(lambda: shown() == [1, 0, 0, 0, 1], 'the fault')
         pressed.unregister()
@@ -208,6 +212,29 @@ class TestRosControl(unittest.TestCase):
         client.wait_state(GrinderState.FAULT)
         gc.poll(lambda: self.recorded()[0][3] == '3', 'off, and once more when that was prepared')
         emergency.unregister()
+        homed.unregister()
+
+    def test_reference_that_comes_after_the_answer_and_moves_nothing(self):
+        answer, homed = threading.Event(), rospy.Publisher('/cell/homed', Bool, queue_size=1, latch=True)
+
+        def on_home(_):
+            answer.wait(gc.PATIENCE)
+            return TriggerResponse(True, '')
+
+        service = rospy.Service('/cell/home', Trigger, on_home)
+        client = self.start(with_velocity=True, signals={'homed': '/cell/homed'}, commands={'home': {'service': '/cell/home'}})
+        self.enable()
+        self.assertTrue(self.call('home').success)
+        self.now.publish('drift')
+        client.wait_for(lambda: client.states[-1].position[0] > -0.049, 'another place')
+        self.now.publish('')
+        answer.set()
+        for _ in range(5):
+            self.assertEqual(client.fresh_state().state, GrinderState.HOMING, client.states[-1].fault)
+        homed.publish(True)
+        client.wait_state(GrinderState.READY)
+        self.assertEqual({row[4:] for row in self.recorded()[1]}, {(0, 0, 0, 0)}, 'velocities')
+        service.shutdown()
         homed.unregister()
 
     def test_power_home_spindle_by_services(self):

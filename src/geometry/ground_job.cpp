@@ -155,8 +155,7 @@ class Checker {
   void checkRange(const std::optional<Range>& complete) {
     if (job_.relief(0) != nullptr) return;
     const double length = job_->cutter.flute_length;
-    const bool whole = complete && complete->from <= 0 && complete->to >= length;
-    if (whole || (complete && job_->process.incomplete_ok)) return;
+    if (job_->process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
     const Range range = complete.value_or(Range{});
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
   }

@@ -77,7 +77,7 @@ std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_
   const auto reads = [&](const std::string& formula, double at_end) {
     return line("", format("reads %s: %.3f mm for D = %g mm", formula.c_str(), mm(at_end), mm(end)));
   };
-  return "touch off, with D the blank's diameter where the wheel touches it\n" +
+  return "touch off on a cylinder, blank or shank but no cone, with D its diameter\n" +
          line("Z", "swivel at 0, wheel's lower face on top of the blank") +
          reads("D/2 " + added(touch.z), end / 2 + touch.z) + wheelsPlace(job, above_swivel) +
          line("Y", format("swivel set, Z = %.3f mm, wheel's circumference against the blank", mm(touch.z_for_y))) +

@@ -9,7 +9,8 @@ namespace grinder {
 
 struct GrindJob;
 
-/// What the axes read when the wheel touches a blank, of any diameter D where it touches.
+/// What the axes read when the wheel touches a cylinder of any diameter D. A cone it touches beside the line that is
+/// nearest to it, with its centre lower than that.
 struct TouchReadings {
   double y = 0;        ///< (D - D1) / 2 and this, with the circumference at the height of the cutter's axis [m]
   double z_for_y = 0;  ///< Z at which the circumference, where it is largest, stands at that height [m]

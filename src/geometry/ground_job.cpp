@@ -136,8 +136,8 @@ class Checker {
       add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
     }
     const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
-    const bool carries = last || job_->operation > 1 || job_.relief(number)->surfaceAt(0, c.land).radius > 0;
-    if ((last && !relief.heel) || (job_->operation > 1 && !relief.land) || !carries) {
+    const bool is_wide = last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, c.land).radius > 0;
+    if (!is_wide || (job_->operation > 1 && !relief.land)) {
       add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
     }
   }

@@ -68,7 +68,7 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   EXPECT_FALSE(seeAt(0, true, 200)) << "and nothing brings it back but a job";
 }
 
-TEST(WheelInTheWork, DoesNotRestOnAReadingOfAfterTheFaultAndThoseOfBeforeTheJob) {
+TEST(WheelInTheWork, IsNotOverByReadingsFromBeforeTheJobAndOneAfterAFault) {
   Rig<FakeDrive> rig;
   rig.enable();
   rig.run(200);

@@ -108,15 +108,20 @@ std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, c
 }
 
 Axes termsOf(const ValidJob& job, const std::vector<Helix>& helices, const FeedSchedule::Stroke& stroke) {
-  double turn = 0;
-  for (const Helix& helix : helices) {
-    turn = std::max(turn, std::abs(helix.curve.a(0)));
-    // X is rounded, too.
-    for (const double x : {stroke.from, stroke.to}) turn = std::max(turn, std::abs(helix.curve.slope(x) * x));
-  }
-  for (int tooth = 0; tooth < job.teeth(); ++tooth) turn = std::max(turn, std::abs(job.strokeLaw(tooth).a));
   Axes terms = Axes::Zero();
-  terms[kA] = turn;
+  const auto add = [&terms](int axis, double term) { terms[axis] = std::max(terms[axis], std::abs(term)); };
+  for (const Helix& helix : helices) {
+    add(kA, helix.curve.a(0));
+    const ZCorrection::Bounds z = helix.z_correction.bounds();
+    const double z_slope = std::max(std::abs(z.min_first), std::abs(z.max_first));
+    // X is rounded, too.
+    for (const double x : {stroke.from, stroke.to}) {
+      add(kY, helix.edge.cutter.y(x));
+      add(kZ, std::abs(helix.edge.cutter.z(x)) + std::abs(z_slope * x));
+      add(kA, helix.curve.slope(x) * x);
+    }
+  }
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) add(kA, job.strokeLaw(tooth).a);
   return terms;
 }
 

@@ -67,18 +67,23 @@ void LimitCheck::slowPastDown() noexcept {
 
 void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept {
   const Axes position = setpoint.position + offset;
-  // A machine position at its limit is rounded on the way to work coordinates, and on the way back; a stroke that is
-  // begun again comes to its end by other sums.
-  const Axes rounding = kEpsilon * (offset.abs() + low_.abs().max(high_.abs()));
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const bool low = position[axis] < low_[axis] - rounding[axis];
+    // A machine position at its limit is rounded on the way to work coordinates, and on the way back; a stroke that is
+    // begun again comes to its end by other sums.
+    const double rounding = kEpsilon * std::abs(offset[axis]) + noise(axis);
+    const bool low = position[axis] < low_[axis] - rounding;
     const double limit = low ? low_[axis] : high_[axis];
     if (!std::isfinite(position[axis])) {
       report(setpoint, axis, LimitedQuantity::kNotFinite, position[axis], limit);
-    } else if (low || position[axis] > limit + rounding[axis]) {
+    } else if (low || !(position[axis] <= limit + rounding)) {
       report(setpoint, axis, LimitedQuantity::kPosition, position[axis], limit);
     }
   }
+}
+
+double LimitCheck::noise(int axis) const noexcept {
+  // A position is the sum of a few numbers no larger than that, each rounded to half an epsilon.
+  return roundings_ * 2 * kEpsilon * max_[axis];
 }
 
 void LimitCheck::checkPairEnd(const Setpoint& setpoint) noexcept {
@@ -103,9 +108,7 @@ void LimitCheck::checkPairEnd(const Setpoint& setpoint) noexcept {
 void LimitCheck::checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                            double rounding) noexcept {
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    // A position is the sum of a few numbers no larger than that, each rounded to half an epsilon.
-    const double noise = roundings_ * 2 * kEpsilon * max_[axis] * rounding;
-    if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise)) {
+    if (!(std::abs(value[axis]) <= limit[axis] * (1 + kRelativeRounding) + noise(axis) * rounding)) {
       report(setpoint, axis, quantity, value[axis], limit[axis]);
     }
   }

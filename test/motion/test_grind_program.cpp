@@ -87,6 +87,23 @@ TEST(GrindProgram, StandsWhereThePapersEquationsSay) {
   EXPECT_NEAR(stroke.to[kA], 2 + static_cast<double>(curve.a(31e-3L)), 1e-14);
 }
 
+// X is rounded, and on the path of the edge Y, Z and A are computed from it.
+TEST(GrindProgram, HasTheSizesOfWhatPositionsAreComputedFrom) {
+  const GrindJob job = paperJob();
+  ZCorrection correction;
+  correction.from = -1e-3;
+  correction.piece = 32e-3;
+  correction.pieces = 1;
+  for (std::size_t i = 0; i < 6; ++i) correction.coefficients[i] = 32e-6 * static_cast<double>(i);  // dZ/dX = 1e-3
+  const GrindProgram program(ValidJob(job).withZCorrections({correction}), plainMachine(), {plainMachine().park, {}});
+  const double y = 31e-3 * std::tan(5 * units::kDegree);
+  EXPECT_NEAR(program.terms()[kY], y, 1e-12);
+  EXPECT_NEAR(program.terms()[kZ], y * std::sin(8 * units::kDegree) + 31e-3 * 1e-3, 1e-12);
+  const test_support::ReferenceCurve curve(job.cutter);
+  const double slope = static_cast<double>(curve.a(31e-3L + 1e-6L) - curve.a(31e-3L - 1e-6L)) / 2e-6;
+  EXPECT_NEAR(program.terms()[kA], 31e-3 * slope, 1e-6);
+}
+
 TEST(GrindProgram, EveryPassIndexesGoesOverTheWorkDownAlongAndOut) {
   std::vector<MoveKind> expected, kinds;
   for (int i = 0; i < 6; ++i) {

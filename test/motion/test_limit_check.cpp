@@ -296,5 +296,24 @@ TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPass) {
   EXPECT_FALSE(passes(2));
 }
 
+TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPassALimitOfPositions) {
+  AxisLimits l = plainLimits();
+  l.max_position[kZ] = 1e-5;
+  Axes terms = Axes::Zero();
+  terms[kZ] = 0.5;
+  const auto passes = [&](double roundings, int epsilons, const Axes& terms) {
+    LimitCheck check(l, kPeriod, roundings);
+    check.restart(terms);
+    Setpoint p;
+    p.position[kZ] = l.max_position[kZ] + epsilons * 0.5 * std::numeric_limits<double>::epsilon();
+    return !check.check(p);
+  };
+  EXPECT_TRUE(passes(1, 1, terms));
+  EXPECT_FALSE(passes(1, 3, terms));
+  EXPECT_FALSE(passes(1, 1, Axes::Zero()));
+  EXPECT_TRUE(passes(LimitCheck::kUnplannedRoundings, 5, terms));
+  EXPECT_FALSE(passes(LimitCheck::kUnplannedRoundings, 7, terms));
+}
+
 }  // namespace test_limit_check
 }  // namespace grinder

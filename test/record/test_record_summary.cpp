@@ -95,7 +95,7 @@ TEST_F(RecordSummary, OfATextThatIsCutOffIsNone) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THROW(summaryOf(whole.substr(0, size)), FileError) << whole.substr(0, size);
   }
-  for (const std::string& more : {"}", "1", ","}) EXPECT_THROW(summaryOf(whole + more), FileError) << more;
+  for (const char* const more : {"}", "1", ","}) EXPECT_THROW(summaryOf(whole + more), FileError) << more;
   for (const char* other : {"[]", "1", "{}", "{\"record\": 2}", "{1: 2}", "{\"a\" 1}", "]", "{\"record\": 1,}"}) {
     EXPECT_THROW(summaryOf(other), FileError) << other;
   }

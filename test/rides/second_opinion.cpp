@@ -111,7 +111,7 @@ void Watch::checkMotion(const Row& row) {
   for (int i = 0; i < 4; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     const Real noise = noiseOf(i);
-    if (!(row.at[axis] >= asked_.low[axis] && row.at[axis] <= asked_.high[axis])) {
+    if (!(row.at[axis] >= asked_.low[axis] - noise && row.at[axis] <= asked_.high[axis] + noise)) {
       throw Violation(
           text("place", i, row.at[axis], row.at[axis] < asked_.low[axis] ? asked_.low[axis] : asked_.high[axis]));
     }

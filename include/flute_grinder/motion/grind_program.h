@@ -81,7 +81,7 @@ class GrindProgram {
   double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
 
   /// The size of the largest numbers from which the positions of strokes are computed, where these may be smaller: A is
-  /// a difference of turns, those up to X = 0 and the tooth's. [m], A [rad]
+  /// a difference of turns, those up to X = 0 and the tooth's, and Y, Z and A are computed from X. [m], A [rad]
   const Axes& terms() const noexcept { return terms_; }
 
   /// Y at which the wheel is clear of the workpiece over the whole stroke [m].

@@ -35,8 +35,8 @@ class LimitCheck {
  public:
   /// @param limits the axes' limits.
   /// @param period control cycle [s].
-  /// @param roundings how many times the rounding of a position is let pass in velocity, acceleration and jerk; 1 where
-  ///        a motion is planned, kUnplannedRoundings where it is made.
+  /// @param roundings how many times the rounding of a position is let pass; 1 where a motion is planned,
+  ///        kUnplannedRoundings where it is made.
   LimitCheck(const AxisLimits& limits, double period, double roundings = 1) noexcept;
 
   /// A plan generates and checks only the first of moves that differ by constant offsets, see planJob(). What passes
@@ -89,6 +89,7 @@ class LimitCheck {
  private:
   void slowPastDown() noexcept;
   void checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept;
+  double noise(int axis) const noexcept;  ///< of a position by its rounding
   void checkPairEnd(const Setpoint& setpoint) noexcept;
   void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                  double rounding) noexcept;

@@ -74,7 +74,7 @@ class Shared {
 template <typename Action>
 class Sender {
  public:
-  ACTION_DEFINITION(Action);
+  ACTION_DEFINITION(Action)
   using Handle = actionlib::ClientGoalHandle<Action>;
 
   explicit Sender(const std::string& name) : client_(name) {

@@ -193,7 +193,7 @@ void cycle(benchmark::State& state) {
     if (!moving) {
       state.PauseTiming();
       stream = std::make_unique<SetpointStream>(program);
-      loop->startJob(stream.get());
+      loop->startJob({stream.get(), wheelOf(stream->program())});
       moving = accepted([&] { return loop->startJobReply(); });
       if (!moving) state.SkipWithError("the job could not be started");
       state.ResumeTiming();

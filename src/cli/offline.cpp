@@ -9,7 +9,6 @@
 #include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
-#include <vector>
 
 namespace grinder {
 

@@ -71,8 +71,6 @@ std::string reasonWhyNot(const Action& action) {
   try {
     action();
     return "";
-  } catch (const ReasonError& error) {
-    return text(error.reason());
   } catch (const std::invalid_argument& error) {
     return error.what();
   }

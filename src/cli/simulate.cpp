@@ -137,9 +137,6 @@ int runSimulate(const SimulateOptions& options) {
     if (!options.stl.empty()) writeStlFile(tool, options.stl);
     if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
     return status;
-  } catch (const ReasonError& error) {
-    std::fprintf(stderr, "%s\n", text(error.reason()).c_str());
-    return 1;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

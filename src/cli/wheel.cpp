@@ -2,7 +2,7 @@
 
 #include "cli/csv.h"
 #include "cli/json_output.h"
-#include "cli/machine_file.h"
+#include "cli/time_text.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/job/format.h"
@@ -11,7 +11,6 @@
 #include "flute_grinder/network/user_at_host.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdio>
@@ -32,15 +31,6 @@ constexpr double kRounding = 1e-9;
 std::string millimetres(double metres) {
   constexpr double per_millimetre = 1e9;
   return format("%.10g", std::round(metres / kMillimetre * per_millimetre) / per_millimetre + 0.0);
-}
-
-std::string now() {
-  const std::time_t time = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  std::array<char, 40> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
 }
 
 /// userAtHost(), without what YAML might take for something else.
@@ -108,7 +98,7 @@ bool isPlausible(const char* option, double measured, double before, bool force)
 /// @param old the file's text, from which `before` was read. @param dressed whether it was, not only measured.
 int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width,
            bool dressed) {
-  const std::string date = now();
+  const std::string date = timeText(static_cast<double>(std::time(nullptr)), true);
   std::vector<JobEdit> edits{{"measured.date", date}, {"measured.diameter_mm", millimetres(diameter)}};
   const bool same_width = std::abs(width - before.process.wheel_width) <= kRounding;
   if (!same_width) edits.push_back({"measured.width_mm", millimetres(width)});

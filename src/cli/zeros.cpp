@@ -51,8 +51,6 @@ double flangeOf(const std::string& job, int operation, const std::optional<doubl
   return *flange;
 }
 
-MachineGeometry geometryOf(const ros::NodeHandle& nh) { return readMachineGeometry(ParameterReader(nh)); }
-
 int printZeros(const ZerosOptions& options) {
   const MachineGeometry geometry = readMachineFiles(options.parameters, options.urdf).geometry;
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometry);
@@ -64,7 +62,7 @@ int printZeros(const ZerosOptions& options) {
 int setZeros(const std::string& node, const ZerosOptions& options) {
   ros::NodeHandle nh(node);
   if (!await(kPatience, [&] { return nh.hasParam("geometry"); })) return noGrinder(nh);
-  const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometryOf(nh));
+  const std::optional<Eigen::Vector3d> zero = zeroOf(options, readMachineGeometry(ParameterReader(nh)));
   if (!zero) return 1;
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {

@@ -26,9 +26,6 @@ struct ZerosOptions {
 /// @param operation from 0. @throw std::invalid_argument if neither does; JobFileError
 double flangeOf(const std::string& job, int operation, const std::optional<double>& flange_mm);
 
-/// The geometry in a grinder's parameters. @param nh the grinder's namespace. @throw ParameterError
-MachineGeometry geometryOf(const ros::NodeHandle& nh);
-
 /// Prints where a job's X, Y and Z are zero in machine coordinates, by the geometry of options.parameters. @return the
 /// exit status.
 int printZeros(const ZerosOptions& options);

@@ -7,29 +7,29 @@ namespace grinder {
 
 void ControlLoop::executeRequests() {
   // Taken first, executed last: a stop also stops anything requested before it.
-  const StopRequests::Taken stops = takeStops();
-  if (const auto angle = takeSwivel()) answerSwivel(answerTo(MachineEvent::kStart, setSwivel(*angle)));
-  if (const auto job = takeJobStart()) {
+  const StopRequests::Taken stops = stops_.take();
+  if (const auto angle = swivels_.take()) swivels_.answer(answerTo(MachineEvent::kStart, setSwivel(*angle)));
+  if (const auto job = job_starts_.take()) {
     Answer answer = answerTo(MachineEvent::kStart, beginJob(*job));
     answer.job_swivel = job->stream->program().swivel();
-    answerJobStart(answer);
+    job_starts_.answer(answer);
   }
-  if (const auto event = takeRequest()) executeRequest(*event);
-  if (const auto jog = takeJog()) answerJog(executeJog(*jog));
-  if (const auto jog = takeSeriesJog()) answerSeriesJog(executeJog(*jog));
+  if (const auto event = requests_.take()) executeRequest(*event);
+  if (const auto jog = jogs_.take()) jogs_.answer(executeJog(*jog));
+  if (const auto jog = series_jogs_.take()) series_jogs_.answer(executeJog(*jog));
   for (const MachineEvent stop : StopRequests::kStops) {
     if (!stops.has(stop)) continue;
     dead_man_.block();
     ++next_status_.stops;
     const Answer answer = answerTo(stop, execute(stop));
-    if (stops.wantsReply(stop)) answerStop(answer);
+    if (stops.wantsReply(stop)) stops_.answer(answer);
   }
 }
 
 void ControlLoop::executeRequest(MachineEvent event) {
   const Refusal refusal = isTrigger(event) ? execute(event) : Refusal::kState;
   // Switching the power on takes time: awaitPower() answers.
-  if (!awaiting_power_) answerRequest(answerTo(event, refusal));
+  if (!awaiting_power_) requests_.answer(answerTo(event, refusal));
 }
 
 Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
@@ -147,7 +147,7 @@ Refusal ControlLoop::awaitPreparation() {
 
 void ControlLoop::answerEnable(Refusal refusal) {
   awaiting_power_ = false;
-  answerRequest(answerTo(MachineEvent::kEnable, refusal));
+  requests_.answer(answerTo(MachineEvent::kEnable, refusal));
 }
 
 void ControlLoop::switchOff() {

@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include <chrono>
-#include <string>
 
 // Construction and the thread; the cycle is in control_loop.cpp.
 namespace grinder {

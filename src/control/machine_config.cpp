@@ -5,7 +5,6 @@
 #include <urdf/model.h>
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 namespace grinder {

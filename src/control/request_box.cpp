@@ -85,10 +85,6 @@ std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint3
   return toReply(stops_.reply(event, ticket));
 }
 
-bool RequestBox::startJob(SetpointStream* stream, bool in_journal) noexcept {
-  return startJob(JobStart{stream, wheelOf(stream->program()), in_journal});
-}
-
 RequestReply RequestBox::jog(const JogRequest& jog) {
   return ask(toString(MachineEvent::kJog), kAnswerTimeout, jogs_, jog);
 }

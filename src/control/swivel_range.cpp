@@ -5,7 +5,6 @@
 
 #include <urdf/model.h>
 
-#include <cmath>
 #include <sstream>
 
 namespace grinder {

@@ -3,7 +3,6 @@
 #include "drive/hal_parameters.h"
 #include "flute_grinder/drive/export_drive.h"
 
-#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <sstream>

@@ -169,14 +169,12 @@ class Checker {
       for (const WheelSweep& sweep : flute) {
         const auto spoils = sectionSpoilsFrom(sweep, nearest, cutter.cutter().radius(nearest));
         if (!spoils) continue;
-        Reason reason;
-        reason.kind = ReasonKind::kNotBelow;
-        reason.field = opens ? "process.overtravel_end" : "process.overtravel_shank";
-        reason.unit = Unit::kMetre;
-        reason.value = opens ? job_->process.overtravel_end : job_->process.overtravel_shank;
-        reason.limit = std::abs(*spoils - nearest);
-        reason.detail = "where the wheel, near the cone's apex, grinds into the flute again";
-        if (!(reason.value < reason.limit)) return reasons_.push_back(std::move(reason));
+        const double overtravel = opens ? job_->process.overtravel_end : job_->process.overtravel_shank;
+        const double limit = std::abs(*spoils - nearest);
+        if (overtravel < limit) continue;
+        return reasons_.push_back(
+            {ReasonKind::kNotBelow, 0, opens ? "process.overtravel_end" : "process.overtravel_shank",
+             "where the wheel, near the cone's apex, grinds into the flute again", Unit::kMetre, overtravel, 0, limit});
       }
     }
   }
@@ -235,16 +233,9 @@ class Checker {
            const char* detail = "") {
     const auto same = [&](const Reason& r) { return r.kind == kind; };
     if (std::any_of(reasons_.begin(), reasons_.end(), same)) return;
-    Reason reason;
-    reason.kind = kind;
+    Reason& reason = reasons_.emplace_back(Reason{kind, 0, "", detail, unit, value, low, limit});
     reason.x = x;
     reason.tooth = tooth;
-    reason.unit = unit;
-    reason.value = value;
-    reason.limit = limit;
-    reason.low = low;
-    reason.detail = detail;
-    reasons_.push_back(std::move(reason));
   }
 
   const ValidJob& job_;

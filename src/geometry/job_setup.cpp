@@ -303,8 +303,6 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
       setup.check = checkGroundCutter(withLaws(valid));
       if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
     }
-  } catch (const ReasonError& error) {
-    return text(error.reason());
   } catch (const InvalidJob& error) {
     return "the set-up does not suit the job: " + text(error.reasons());
   } catch (const std::invalid_argument& error) {

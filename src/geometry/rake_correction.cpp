@@ -51,10 +51,7 @@ class Correction {
 
  private:
   void goOn() const {
-    if (!watch_ || watch_(0)) return;
-    Reason reason;
-    reason.kind = ReasonKind::kGivenUp;
-    throw ReasonError(reason);
+    if (watch_ && !watch_(0)) throw ReasonError(Reason{ReasonKind::kGivenUp});
   }
 
   double maxError(const RakeCorrection& c) const {

@@ -196,15 +196,8 @@ double rounded(double length) { return std::nearbyint(length / kRounding) * kRou
 /// Refuses what is asked of a ball.
 /// @param why said after the allowed range.
 [[noreturn]] void refuse(const char* what, double value, const Range& allowed, std::string why) {
-  Reason reason;
-  reason.kind = ReasonKind::kOutOfRange;
-  reason.field = what;
-  reason.detail = std::move(why);
-  reason.unit = Unit::kMetre;
-  reason.value = rounded(value);
-  reason.low = rounded(allowed.from);
-  reason.limit = rounded(allowed.to);
-  throw ReasonError(std::move(reason));
+  throw ReasonError({ReasonKind::kOutOfRange, 0, what, std::move(why), Unit::kMetre, rounded(value),
+                     rounded(allowed.from), rounded(allowed.to)});
 }
 
 /// The distances from the axis at which a ball comes to the rake face, of some that are tried: the innermost that
@@ -237,13 +230,8 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
     if (fittingDistances(cutter, x, smaller))
       refuse("ball diameter", 2 * radius, {kRounding, 2 * smaller}, else_touches);
   }
-  Reason reason;
-  reason.kind = ReasonKind::kNotAllowed;
-  reason.field = "ball's X";
-  reason.unit = Unit::kMetre;
-  reason.value = rounded(x);
-  reason.detail = "where the first tooth has a rake face";
-  throw ReasonError(std::move(reason));
+  throw ReasonError(
+      {ReasonKind::kNotAllowed, 0, "ball's X", "where the first tooth has a rake face", Unit::kMetre, rounded(x)});
 }
 
 }  // namespace

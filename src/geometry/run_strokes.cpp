@@ -18,23 +18,10 @@ constexpr double kApart = 5e-6;  ///< of the positions that are kept outside str
 constexpr std::size_t kPosesOfPart = 32;  ///< as many as WheelSweep looks at
 constexpr double kShortest = 1e-6;        ///< a move in which X rests counts as this long [m]
 
-PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) {
-  return {a.y + part * (b.y - a.y), a.z + part * (b.z - a.z), a.a + part * (b.a - a.a)};
-}
-
 /// X of a stroke's deviation.
 double xOf(const RunStroke& stroke, std::size_t i) {
   const auto parts = static_cast<double>(std::max<std::size_t>(1, stroke.deviations.size() - 1));
   return stroke.range.from + (stroke.range.to - stroke.range.from) * static_cast<double>(i) / parts;
-}
-
-PathDeviation deviationAt(const RunStroke& stroke, double x) {
-  const std::vector<PathDeviation>& all = stroke.deviations;
-  const double length = stroke.range.to - stroke.range.from;
-  const double at = length > 0 ? std::clamp((x - stroke.range.from) / length, 0.0, 1.0) : 0;
-  const double place = at * static_cast<double>(all.size() - 1);
-  const auto i = static_cast<std::size_t>(place);
-  return i + 1 < all.size() ? between(all[i], all[i + 1], place - static_cast<double>(i)) : all.back();
 }
 
 bool holds(const Range& range, double x) {
@@ -179,7 +166,7 @@ void RunStrokes::addPose(const Part& part, const Axes& actual) {
 
 bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double x, const PathDeviation& off) const {
   if (!holds(stroke.range, x)) return false;
-  const PathDeviation own = deviationAt(stroke, x);
+  const PathDeviation own = deviationAt(stroke.deviations, stroke.range, x);
   // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
   const double wear = wearOf(stroke.place);
   const double smaller = std::max(0.0, wear - wearOf(place)) / (job_->process.wheel_diameter / 2 - wear);
@@ -190,7 +177,9 @@ bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double 
 
 bool RunStrokes::covers(const RunStroke& stroke, const RunStroke& other) const {
   if (stroke.place.tooth != other.place.tooth) return false;
-  const auto at = [&](double x) { return covers(stroke, other.place, x, deviationAt(other, x)); };
+  const auto at = [&](double x) {
+    return covers(stroke, other.place, x, deviationAt(other.deviations, other.range, x));
+  };
   // In between, both are linear.
   for (std::size_t i = 0; i < other.deviations.size(); ++i) {
     if (!at(xOf(other, i))) return false;

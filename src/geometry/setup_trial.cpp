@@ -104,19 +104,18 @@ double SetupTrial::formedByFace(const WheelSweep& sweep, double x) const {
   return 1;
 }
 
-SetupTrial::Reach SetupTrial::reach(const WheelSweep& sweep, double x) const {
+Range SetupTrial::reach(const WheelSweep& sweep, double x) const {
   const double r = cutter_.radius(x);
   const double core = sweep.minRadius(x, r);
-  Reach reach{x, x, true};
+  Range reach{x, x};
   for (int i = 0; i <= kRingsOfReach; ++i) {
     const double part = i == 0 ? kFloor : static_cast<double>(i) / kRingsOfReach;
     const double ring = core + part * (r - core);
     for (const bool high : {false, true}) {
       const auto wall = sweep.wall(x, ring, high);
-      if (!wall) return {x, x, false};
+      if (!wall) return {x, x};
       reach.from = std::min(reach.from, wall->axis_x);
       reach.to = std::max(reach.to, wall->axis_x);
-      reach.complete = reach.complete && sweep.isComplete(x, ring, wall->angle, wall->axis_x, high);
     }
   }
   return reach;

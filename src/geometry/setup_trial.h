@@ -64,11 +64,7 @@ class SetupTrial {
   double formedByFace(const WheelSweep& sweep, double x) const;
 
   /// Where a section's walls are formed.
-  struct Reach {
-    double from, to;  ///< on the stroke [m]
-    bool complete;    ///< a longer stroke, if the cone allowed it, would not move a wall
-  };
-  Reach reach(const WheelSweep& sweep, double x) const;
+  Range reach(const WheelSweep& sweep, double x) const;
 
  private:
   ConicalCutter cutter_;

@@ -40,6 +40,18 @@ void requireFinite(const char* name, double value) {
 
 }  // namespace
 
+PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) noexcept {
+  return {a.y + part * (b.y - a.y), a.z + part * (b.z - a.z), a.a + part * (b.a - a.a)};
+}
+
+PathDeviation deviationAt(const std::vector<PathDeviation>& all, const Range& range, double x) noexcept {
+  const double length = range.to - range.from;
+  const double at = length > 0 ? std::clamp((x - range.from) / length, 0.0, 1.0) : 0;
+  const double place = at * static_cast<double>(all.size() - 1);
+  const auto i = static_cast<std::size_t>(place);
+  return i + 1 < all.size() ? between(all[i], all[i + 1], place - static_cast<double>(i)) : all.back();
+}
+
 WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
                        const WheelSetup& setup, const GrindStroke& stroke)
     : curve_(cutter, setup.lead),
@@ -84,18 +96,9 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
 }
 
 PathDeviation WheelSweep::deviation(double axis_x) const noexcept {
-  const std::vector<PathDeviation>& all = stroke_.deviations;
-  if (all.empty()) return {};
-  const double from = std::min(stroke_.from, stroke_.to), length = std::abs(stroke_.to - stroke_.from);
-  const double last = static_cast<double>(all.size() - 1);
-  const double at = length > 0 ? std::clamp((axis_x - from) / length, 0.0, 1.0) * last : 0;
-  const auto i = static_cast<std::size_t>(at);
-  if (i + 1 >= all.size()) return all.back();
-  const double part = at - static_cast<double>(i);
-  const auto between = [&](double PathDeviation::*axis) {
-    return all[i].*axis + part * (all[i + 1].*axis - all[i].*axis);
-  };
-  return {between(&PathDeviation::y), between(&PathDeviation::z), between(&PathDeviation::a)};
+  if (stroke_.deviations.empty()) return {};
+  const auto [from, to] = std::minmax(stroke_.from, stroke_.to);
+  return deviationAt(stroke_.deviations, {from, to}, axis_x);
 }
 
 PathDeviation WheelSweep::deviationSlope(double axis_x) const noexcept {

@@ -27,14 +27,9 @@ ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch)
   if (found && std::abs(found->min_rake - rake) <= kEvenRake && std::abs(found->max_rake - rake) <= kEvenRake) {
     return found->z;
   }
-  Reason reason;
-  reason.kind = ReasonKind::kUnevenRake;
-  reason.field = "process.z_law";
-  reason.unit = Unit::kRadian;
+  Reason reason{ReasonKind::kUnevenRake, 0, "process.z_law", "", Unit::kRadian, 0, 1, rake};
   reason.tooth = tooth;
-  reason.low = found ? found->min_rake : 1;
-  reason.value = found ? found->max_rake : 0;
-  reason.limit = rake;
+  if (found) reason.low = found->min_rake, reason.value = found->max_rake;
   throw ReasonError(reason);
 }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string_view>
 
 namespace grinder {
@@ -40,15 +39,7 @@ class Checker {
 
   void refuse(ReasonKind kind, const char* path, const Quantity& value, const std::string& detail, double limit = 0,
               double low = 0) {
-    Reason reason;
-    reason.kind = kind;
-    reason.field = path;
-    reason.detail = detail;
-    reason.unit = value.unit;
-    reason.value = value.si;
-    reason.low = low;
-    reason.limit = limit;
-    reasons_.push_back(std::move(reason));
+    reasons_.push_back({kind, 0, path, detail, value.unit, value.si, low, limit});
   }
 
   bool good() const { return reasons_.empty(); }

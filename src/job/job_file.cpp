@@ -216,11 +216,7 @@ class OperationReader {
     if (isRelief(p.kind)) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
     const std::string incomplete_ok = keys_("process.incomplete_ok");
-    if (file_.has(incomplete_ok)) {
-      file_.take(incomplete_ok, "true, false", p.incomplete_ok);
-    } else {
-      file_.know(incomplete_ok);
-    }
+    if (file_.mayHave(incomplete_ok)) file_.take(incomplete_ok, "true, false", p.incomplete_ok);
   }
 
   template <typename Value, typename Take>

@@ -54,8 +54,7 @@ void takeFlange(FlatFile& file, WheelFile& wheel) {
   const Quantity low{-0.1, Unit::kMetre}, high{0.1, Unit::kMetre};
   const std::string allowed = text(low, high);
   double value = 0;
-  if (!file.has(key)) return file.know(key);
-  if (!file.take(key, allowed, value)) return;
+  if (!file.mayHave(key) || !file.take(key, allowed, value)) return;
   const Quantity flange{value * kMillimetre, Unit::kMetre};
   if (!(flange.si >= low.si && flange.si <= high.si)) {
     return file.fail(file.line(key), key + " = " + text(flange, 10) + "; allowed: " + allowed);
@@ -105,16 +104,10 @@ void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
   takeMeasuredDiameter(file, process);
   double width = 0;
   const JobField field = fieldOf("process.wheel_width");
-  if (!file.has(kWidth)) {
-    file.know(kWidth);
-  } else if (file.take(kWidth, text(field.low(), field.high()), width)) {
+  if (file.mayHave(kWidth) && file.take(kWidth, text(field.low(), field.high()), width)) {
     process.wheel_width = width * kMillimetre;
   }
-  if (file.has(kBy)) {
-    file.take(kBy, "a text", wheel.by);
-  } else {
-    file.know(kBy);
-  }
+  if (file.mayHave(kBy)) file.take(kBy, "a text", wheel.by);
 }
 
 /// The key of a wrong number of the wheel, new or as measured.
@@ -163,11 +156,7 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
   wheel.new_width = job.process.wheel_width;
   GrindJob now = job;
   takeMeasurement(file, wheel, now.process);
-  if (file.has(kDressed)) {
-    takeDate(file, kDressed, wheel.dressed);
-  } else {
-    file.know(kDressed);
-  }
+  if (file.mayHave(kDressed)) takeDate(file, kDressed, wheel.dressed);
   file.refuseTheRest();
   file.throwErrors();
   check(file, job, false);

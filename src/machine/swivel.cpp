@@ -3,15 +3,8 @@
 namespace grinder {
 
 Reason reasonOf(const Swivel& swivel, double asked) {
-  Reason reason;
-  reason.kind = ReasonKind::kSwivel;
-  reason.field = "process.setup_swivel";
-  if (!std::isnan(swivel.angle)) reason.detail = swivel.measured ? "measured" : "confirmed";
-  reason.unit = Unit::kRadian;
-  reason.value = swivel.angle;
-  reason.low = kSwivelTolerance;
-  reason.limit = asked;
-  return reason;
+  const char* const known = std::isnan(swivel.angle) ? "" : swivel.measured ? "measured" : "confirmed";
+  return {ReasonKind::kSwivel, 0, "process.setup_swivel", known, Unit::kRadian, swivel.angle, kSwivelTolerance, asked};
 }
 
 }  // namespace grinder

@@ -62,27 +62,14 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
 void requireSwivel(const Machine& machine, const ValidJob& job) {
   const double swivel = job->process.setup_swivel;
   if (swivel >= machine.swivel.from && swivel <= machine.swivel.to) return;
-  Reason reason;
-  reason.kind = ReasonKind::kOutOfRange;
-  reason.field = "process.setup_swivel";
-  reason.detail = "to which the machine swivels";
-  reason.unit = Unit::kRadian;
-  reason.value = swivel;
-  reason.low = machine.swivel.from;
-  reason.limit = machine.swivel.to;
-  throw ReasonError(reason);
+  throw ReasonError({ReasonKind::kOutOfRange, 0, "process.setup_swivel", "to which the machine swivels", Unit::kRadian,
+                     swivel, machine.swivel.from, machine.swivel.to});
 }
 
 /// @param clearance_y in work coordinates. @param park, offset of Y; see RunStart [m].
 void requireParkClear(double clearance_y, double park, double offset) {
   if (park - offset >= clearance_y) return;
-  Reason reason;
-  reason.kind = ReasonKind::kParkInWork;
-  reason.axis = kY;
-  reason.unit = Unit::kMetre;
-  reason.value = park;
-  reason.limit = clearance_y + offset;
-  throw ReasonError(reason);
+  throw ReasonError({ReasonKind::kParkInWork, kY, "", "", Unit::kMetre, park, 0, clearance_y + offset});
 }
 
 std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {

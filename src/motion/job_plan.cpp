@@ -66,9 +66,7 @@ class Supervisor {
   bool isWanted(const Setpoint& p) {
     const double done = (p.move_index + p.move_fraction) / static_cast<double>(plan_.program->moves().size());
     if (!watch_ || watch_(done)) return true;
-    Reason reason;
-    reason.kind = ReasonKind::kGivenUp;
-    refuse(plan_, PlanFault::kGivenUp, std::move(reason));
+    refuse(plan_, PlanFault::kGivenUp, Reason{ReasonKind::kGivenUp});
     return false;
   }
 

@@ -77,8 +77,6 @@ void ProbeServer::run(GoalHandle handle, std::uint64_t stops) {
   flute_grinder::ProbeResult result;
   try {
     runUnguarded(handle, stops, result);
-  } catch (const ReasonError& error) {
-    result.message = "probing ended: " + text(error.reason());
   } catch (const std::exception& error) {
     result.message = std::string("probing ended: ") + error.what();
   }

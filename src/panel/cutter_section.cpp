@@ -1,7 +1,6 @@
 #include "panel/cutter_section.h"
 
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/valid_job.h"
 #include "panel/text_view.h"
 
 #include <QStringList>
@@ -42,12 +41,13 @@ QString rakeLine(const CutterSection& section) {
     good = good && tooth.rake && section.rakeIsWithin(tooth);
     complete = complete && tooth.complete;
   }
+  const CutterGeometry& c = section.job->cutter;
   const auto rake = rangeText(rakes);
   if (!rake) return line("No flute is ground here", false);
   return line(QString("Rake %1 deg, asked %2 to %3 deg")
                   .arg(*rake)
-                  .arg((section.asked_rake - section.rake_tolerance) / kDegree, 0, 'f', 2)
-                  .arg((section.asked_rake + section.rake_tolerance) / kDegree, 0, 'f', 2),
+                  .arg((c.rake_angle - c.rake_tolerance) / kDegree, 0, 'f', 2)
+                  .arg((c.rake_angle + c.rake_tolerance) / kDegree, 0, 'f', 2),
               good) +
          (chords.empty() ? "" : line(", chordal " + *rangeText(chords) + " deg", chords_good)) +
          line(complete ? "" : "; flute not complete", complete);
@@ -59,7 +59,7 @@ QString coreLine(const CutterSection& section) {
               section.coreIsWithin()) +
          QString(", asked %1 within %2 mm")
              .arg(shown(2 * section.asked_core))
-             .arg(section.core_tolerance / kMillimetre);
+             .arg(section.job->cutter.core_tolerance / kMillimetre);
 }
 
 QString spiralLine(const CutterSection& section) {
@@ -67,13 +67,13 @@ QString spiralLine(const CutterSection& section) {
   bool good = true;
   for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
     good = good && section.spiralIsWithin(i);
-    asked.push_back(section.asked_spirals[i] / kDegree);
+    asked.push_back(section.job.cutterOf(static_cast<int>(i)).spiral_angle / kDegree);
     if (section.ground.teeth[i].spiral) spirals.push_back(*section.ground.teeth[i].spiral / kDegree);
   }
   const auto spiral = rangeText(spirals);
   if (!spiral) return "";
   return line("Spiral " + *spiral + " deg", good) +
-         QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.spiral_tolerance / kDegree);
+         QString(", asked %1 within %2 deg").arg(*rangeText(asked)).arg(section.job->cutter.spiral_tolerance / kDegree);
 }
 
 QString reliefLine(const CutterSection& section) {
@@ -86,12 +86,13 @@ QString reliefLine(const CutterSection& section) {
     if (relief.land) widths.push_back(*relief.land / kMillimetre);
     if (relief.heel) heels.push_back(*relief.heel / kMillimetre);
   }
+  const CutterGeometry& c = section.job->cutter;
   const auto clearance = rangeText(clearances), width = rangeText(widths), heel = rangeText(heels);
   if (!clearance) return line("No relief is ground here", false);
   return line(QString("Clearance %1, asked %2 to %3 deg")
                   .arg(*clearance)
-                  .arg((*section.asked_clearance - section.clearance_tolerance) / kDegree, 0, 'f', 2)
-                  .arg((*section.asked_clearance + section.clearance_tolerance) / kDegree, 0, 'f', 2),
+                  .arg((c.clearance - c.clearance_tolerance) / kDegree, 0, 'f', 2)
+                  .arg((c.clearance + c.clearance_tolerance) / kDegree, 0, 'f', 2),
               good) +
          (width ? "<br>Primary relief " + *width + " mm" : "") + (width && heel ? ", heel at " + *heel + " mm" : "");
 }
@@ -114,46 +115,37 @@ QString landLine(const CutterSection& section) {
 
 bool CutterSection::coreIsWithin() const {
   const double off = 2 * std::abs(ground.core_radius - asked_core);
-  return !outline.empty() && off <= core_tolerance;
+  return !outline.empty() && off <= job->cutter.core_tolerance;
 }
 
 bool CutterSection::spiralIsWithin(std::size_t tooth) const {
   const ToothSection& measured = ground.teeth[tooth];
   if (!measured.complete || !measured.spiral) return true;
-  return std::abs(*measured.spiral - asked_spirals[tooth]) <= spiral_tolerance;
+  return std::abs(*measured.spiral - job.cutterOf(static_cast<int>(tooth)).spiral_angle) <=
+         job->cutter.spiral_tolerance;
 }
 
 bool CutterSection::rakeIsWithin(const ToothSection& tooth) const {
-  return !tooth.rake || std::abs(*tooth.rake - asked_rake) <= rake_tolerance;
+  return !tooth.rake || std::abs(*tooth.rake - job->cutter.rake_angle) <= job->cutter.rake_tolerance;
 }
 
 bool CutterSection::chordIsWithin(const ToothSection& tooth) const {
   if (!tooth.complete || !tooth.chordal_rake) return true;
-  return std::abs(*tooth.chordal_rake - asked_rake) <= chordal_rake_tolerance;
+  return std::abs(*tooth.chordal_rake - job->cutter.rake_angle) <= job->cutter.chordal_rake_tolerance;
 }
 
 bool CutterSection::clearanceIsWithin(const ToothSection& tooth) const {
   return tooth.relief && tooth.relief->clearance &&
-         std::abs(*tooth.relief->clearance - *asked_clearance) <= clearance_tolerance;
+         std::abs(*tooth.relief->clearance - job->cutter.clearance) <= job->cutter.clearance_tolerance;
 }
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }
 
 CutterSection cutterSection(const ValidJob& job, double x) {
   const GroundCutter cutter = groundCutterOf(job);
-  CutterSection made;
-  made.ground = cutter.section(x);
-  made.cut = job->cutter.cut;
-  made.asked_rake = job->cutter.rake_angle;
-  made.rake_tolerance = job->cutter.rake_tolerance;
-  made.chordal_rake_tolerance = job->cutter.chordal_rake_tolerance;
+  CutterSection made{job, cutter.section(x)};
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(*job, x));
-  made.core_tolerance = job->cutter.core_tolerance;
-  made.spiral_tolerance = job->cutter.spiral_tolerance;
-  if (isRelief(job->process.kind)) made.asked_clearance = job->cutter.clearance;
-  made.clearance_tolerance = job->cutter.clearance_tolerance;
   const std::size_t teeth = job->tooth_angles.size();
-  for (int i = 0; i < job.teeth(); ++i) made.asked_spirals.push_back(job.cutterOf(i).spiral_angle);
   if (!(made.ground.core_radius >= kMinCore)) return made;
   made.outline = sectionOutline(cutter, x, made.ground.radius, {teeth, kRings, kColumns / teeth + 1});
   return made;
@@ -162,7 +154,7 @@ CutterSection cutterSection(const ValidJob& job, double x) {
 QString figuresText(const CutterSection& section) {
   // There is no room for all, and the flutes' are those of another operation.
   QStringList lines{rakeLine(section)};
-  if (section.asked_clearance) {
+  if (isRelief(section.job->process.kind)) {
     lines.prepend(reliefLine(section));
   } else {
     lines << coreLine(section) << spiralLine(section) << landLine(section);

@@ -1,30 +1,20 @@
 #pragma once
 
 #include "flute_grinder/geometry/section_outline.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <QString>
 
-#include <optional>
 #include <vector>
 
 namespace grinder {
 
-class ValidJob;
-
 /// A section of the cutter that a job grinds, with what is asked of it there.
 struct CutterSection {
+  ValidJob job;
   GroundSection ground;
-  std::vector<PolarPoint> outline;  ///< at A = 0; empty if the core is cut through
-  CutDirection cut = CutDirection::kRightHand;
-  double asked_rake = 0;                  ///< [rad]
-  double rake_tolerance = 0;              ///< [rad]
-  double chordal_rake_tolerance = 0;      ///< [rad]
-  double asked_core = 0;                  ///< radius [m]
-  double core_tolerance = 0;              ///< of the diameter [m]
-  std::vector<double> asked_spirals;      ///< of every tooth [rad]
-  double spiral_tolerance = 0;            ///< [rad]
-  std::optional<double> asked_clearance;  ///< of a relief [rad]
-  double clearance_tolerance = 0;         ///< [rad]
+  double asked_core = 0;              ///< radius [m]
+  std::vector<PolarPoint> outline{};  ///< at A = 0; empty if the core is cut through
 
   bool coreIsWithin() const;
   bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here

@@ -178,32 +178,30 @@ void GrinderLink::call(const std::string& service, const typename Service::Reque
                       ros::serialization::serializeMessage(request), ros::WallDuration(timeout), on_answer);
 }
 
+template <typename Service>
+void GrinderLink::ask(const std::string& service, const typename Service::Request& request, const std::string& name,
+                      const std::string& refused, const OnAnswer& on_answer) {
+  call<Service>(service, request, kRequestTimeout,
+                [name, refused, on_answer, silence = noAnswer()](const auto& response) {
+                  if (!response) return on_answer(name + ": " + silence);
+                  on_answer(response->success ? "" : refused + response->message);
+                });
+}
+
 void GrinderLink::request(MachineEvent event, const OnAnswer& on_answer) {
-  call<std_srvs::Trigger>(serviceOf(event), {}, kRequestTimeout,
-                          [event, on_answer, silence = noAnswer()](const auto& response) {
-                            if (!response) return on_answer(toString(event) + (": " + silence));
-                            on_answer(response->success ? "" : response->message);
-                          });
+  ask<std_srvs::Trigger>(serviceOf(event), {}, toString(event), "", on_answer);
 }
 
 void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
   flute_grinder::SetFeedOverride::Request request;
   request.fraction = fraction;
-  call<flute_grinder::SetFeedOverride>("set_feed_override", request, kRequestTimeout,
-                                       [on_answer, silence = noAnswer()](const auto& response) {
-                                         if (!response) return on_answer("feed override: " + silence);
-                                         on_answer(response->success ? "" : response->message);
-                                       });
+  ask<flute_grinder::SetFeedOverride>("set_feed_override", request, "feed override", "", on_answer);
 }
 
 void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
   flute_grinder::ConfirmSwivel::Request request;
   request.swivel = angle;
-  call<flute_grinder::ConfirmSwivel>("confirm_swivel", request, kRequestTimeout,
-                                     [on_answer, silence = noAnswer()](const auto& response) {
-                                       if (!response) return on_answer("confirm-swivel: " + silence);
-                                       on_answer(response->success ? "" : response->message);
-                                     });
+  ask<flute_grinder::ConfirmSwivel>("confirm_swivel", request, "confirm-swivel", "", on_answer);
 }
 
 void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
@@ -228,11 +226,7 @@ void GrinderLink::setOffset(int axis, double value, const OffsetBasis& basis, co
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
   request.large_change_ok = 1;
-  call<flute_grinder::SetOffset>("set_offset", request, kRequestTimeout,
-                                 [on_answer, silence = noAnswer()](const auto& response) {
-                                   if (!response) return on_answer("set-offset: " + silence);
-                                   on_answer(response->success ? "" : "set-offset: " + response->message);
-                                 });
+  ask<flute_grinder::SetOffset>("set_offset", request, "set-offset", "set-offset: ", on_answer);
 }
 
 void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswer& on_answer) {
@@ -240,11 +234,7 @@ void GrinderLink::jogStep(int axis, double distance, double speed, const OnAnswe
   request.axis = static_cast<std::uint8_t>(axis);
   request.distance = distance;
   request.speed = speed;
-  call<flute_grinder::JogStep>("jog_step", request, kRequestTimeout,
-                               [on_answer, silence = noAnswer()](const auto& response) {
-                                 if (!response) return on_answer("jog: " + silence);
-                                 on_answer(response->success ? "" : response->message);
-                               });
+  ask<flute_grinder::JogStep>("jog_step", request, "jog", "", on_answer);
 }
 
 void GrinderLink::jog(int axis, double velocity) {

@@ -132,6 +132,10 @@ class GrinderLink {
   template <typename Service, typename OnResponse>
   void call(const std::string& service, const typename Service::Request& request, double timeout,
             OnResponse on_response);
+  /// @param name in the answer if none comes. @param refused ahead of the refusal.
+  template <typename Service>
+  void ask(const std::string& service, const typename Service::Request& request, const std::string& name,
+           const std::string& refused, const OnAnswer& on_answer);
   std::string noAnswer() const { return "no answer from the grinder " + name(); }
 
   ros::CallbackQueue queue_;

@@ -36,7 +36,7 @@ class Painting {
       : painter_(painter), section_(section), sheet_(sheet), centre_(sheet.center()) {
     const QFontMetricsF metrics(painter.font());
     label_ = {metrics.horizontalAdvance("asked 00.00"),
-              (kLines + (section.asked_clearance ? 1 : 0)) * metrics.lineSpacing()};
+              (kLines + (isRelief(section.job->process.kind) ? 1 : 0)) * metrics.lineSpacing()};
     // The corners belong to the labels.
     const double w = sheet.width() / 2, h = sheet.height() / 2;
     const double corner = std::hypot(std::max(0.0, w - label_.width()), std::max(0.0, h - label_.height()));
@@ -44,7 +44,7 @@ class Painting {
     scale_ = radius_ / section.ground.radius;
     const ToothSection& first = section.ground.teeth.front();
     turn_ = kTop - first.edge.value_or(0);
-    side_ = section.cut == CutDirection::kRightHand ? 1 : -1;
+    side_ = section.job->cutter.cut == CutDirection::kRightHand ? 1 : -1;
   }
 
   void paint() {
@@ -52,7 +52,7 @@ class Painting {
     circles();
     const ToothSection& first = section_.ground.teeth.front();
     if (first.rake) rake(first);
-    if (section_.asked_clearance) {
+    if (isRelief(section_.job->process.kind)) {
       if (first.relief && first.relief->clearance) relief(first, *first.relief);
     } else if (first.land) {
       land(*first.land);
@@ -94,7 +94,7 @@ class Painting {
     const QPointF edge = at(section_.ground.radius, kTop);
     const auto inward = [&](double angle) { return QPointF(-side_ * std::sin(angle), std::cos(angle)); };
     painter_.setPen(dashed(kThin));
-    painter_.drawLine(edge, edge + 0.95 * radius_ * inward(section_.asked_rake));
+    painter_.drawLine(edge, edge + 0.95 * radius_ * inward(section_.job->cutter.rake_angle));
     painter_.setPen(QPen(kThin, 1));
     painter_.drawLine(edge - kDimension * inward(0), centre_);
     const QColor colour = section_.rakeIsWithin(tooth) ? kMeasured : QColor(kWrong);
@@ -102,8 +102,8 @@ class Painting {
     painter_.drawLine(edge - kDimension * inward(*tooth.rake), edge + 0.95 * radius_ * inward(*tooth.rake));
     const double r = 0.8 * radius_;
     arc(edge, r, -kTop, -side_ * *tooth.rake);
-    label(side_, -1, {deg(*tooth.rake) + " deg", "asked " + deg(section_.asked_rake)}, section_.rakeIsWithin(tooth),
-          edge + r * inward(*tooth.rake / 2));
+    label(side_, -1, {deg(*tooth.rake) + " deg", "asked " + deg(section_.job->cutter.rake_angle)},
+          section_.rakeIsWithin(tooth), edge + r * inward(*tooth.rake / 2));
   }
 
   /// Between the circle's tangent and the primary relief's, at the edge; and how wide that is.
@@ -113,13 +113,13 @@ class Painting {
     painter_.setPen(QPen(kThin, 1));
     painter_.drawLine(edge, edge + 0.95 * radius_ * behind(0));
     painter_.setPen(dashed(kThin));
-    painter_.drawLine(edge, edge + 0.95 * radius_ * behind(*section_.asked_clearance));
+    painter_.drawLine(edge, edge + 0.95 * radius_ * behind(section_.job->cutter.clearance));
     const bool good = section_.clearanceIsWithin(tooth);
     painter_.setPen(QPen(good ? kMeasured : QColor(kWrong), 1.5));
     painter_.drawLine(edge, edge + 0.95 * radius_ * behind(*relief.clearance));
     const double r = 0.75 * radius_;
     arc(edge, r, side_ > 0 ? kPi : 0, side_ * *relief.clearance);
-    QStringList lines{deg(*relief.clearance) + " deg", "asked " + deg(*section_.asked_clearance)};
+    QStringList lines{deg(*relief.clearance) + " deg", "asked " + deg(section_.job->cutter.clearance)};
     if (relief.land) {
       lines << QString::number(*relief.land / kMillimetre, 'f', 2) + " mm";
       alongCircle(*relief.land / section_.ground.radius);

@@ -3,7 +3,6 @@
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_state.h"
-#include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "panel/plain_words.h"
 
@@ -94,8 +93,6 @@ SectionView::Computed SectionView::computed(const Wanted& wanted) {
     const double x = std::min(wanted.x * kMillimetre, (*job)->cutter.flute_length);
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));
     return {wanted.job, section, figuresText(*section), Clock::now() - begin, job};
-  } catch (const ReasonError& error) {
-    return failed(text(error.reason()));
   } catch (const std::exception& error) {
     return failed(error.what());
   }

@@ -8,7 +8,6 @@
 #include "flute_grinder/record/record_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace grinder {

@@ -240,52 +240,35 @@ void appendSolid(MarkerArray& array, const CutterSolid& solid, const Deviations&
   }
 }
 
-/// A relief's strokes, on what was ground before.
-GroundCutter relievedSoFar(const ValidJob& job, const std::vector<std::vector<GrindStroke>>& strokes) {
-  const GroundCutter before = groundBefore(job);
+}  // namespace
+
+GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
+  const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
+  std::optional<GroundCutter> before;
+  if (job.relief(0) != nullptr) before = groundBefore(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   std::vector<Reliefs> reliefs;
+  const auto spiral = [&](std::size_t k) { return job.cutterOf(static_cast<int>(k)).spiral_angle; };
   for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const std::size_t of_tooth = before.teeth()[i].flute;
     const auto is_same = [&](std::size_t k) {
-      return before.teeth()[k].flute == of_tooth && isSame(strokes[k], strokes[i]);
+      return (before ? before->teeth()[k].flute == before->teeth()[i].flute : spiral(k) == spiral(i)) &&
+             isSame(strokes[k], strokes[i]);
     };
     std::size_t same = 0;
     while (same < i && !is_same(same)) ++same;
     teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
     if (same < i) continue;
-    flutes.push_back(before.flutes()[of_tooth]);
-    reliefs.push_back(before.reliefs(i));
-    Relief relief;
+    std::vector<WheelSweep> swept;
     for (const GrindStroke& stroke : strokes[i]) {
-      relief.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
+      swept.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
     }
-    if (!relief.empty()) reliefs.back().push_back(std::move(relief));
+    flutes.push_back(before ? before->flutes()[before->teeth()[i].flute] : swept);
+    if (!before) continue;
+    reliefs.push_back(before->reliefs(i));
+    if (!swept.empty()) reliefs.back().push_back(std::move(swept));
   }
   return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth), std::move(reliefs)};
-}
-
-}  // namespace
-
-GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
-  const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
-  if (job.relief(0) != nullptr) return relievedSoFar(job, strokes);
-  std::vector<Flute> flutes;
-  std::vector<GroundTooth> teeth;
-  for (std::size_t i = 0; i < strokes.size(); ++i) {
-    const auto spiral = [&](std::size_t k) { return job.cutterOf(static_cast<int>(k)).spiral_angle; };
-    const auto is_same = [&](std::size_t k) { return spiral(k) == spiral(i) && isSame(strokes[k], strokes[i]); };
-    std::size_t same = 0;
-    while (same < i && !is_same(same)) ++same;
-    teeth.push_back({job->tooth_angles[i], same < i ? teeth[same].flute : flutes.size()});
-    if (same < i) continue;
-    Flute& flute = flutes.emplace_back();
-    for (const GrindStroke& stroke : strokes[i]) {
-      flute.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
-    }
-  }
-  return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth)};
 }
 
 MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const char* ns,

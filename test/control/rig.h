@@ -70,7 +70,7 @@ class Rig {
 
   /// Requests to start a job and runs cycles until the request is answered.
   RequestReply askToStart(SetpointStream& job) {
-    post([&] { return loop->startJob(&job); }, "the start");
+    post([&] { return loop->startJob({&job, wheelOf(job.program())}); }, "the start");
     return answerOf([&] { return loop->startJobReply(); });
   }
 

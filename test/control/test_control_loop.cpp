@@ -53,7 +53,7 @@ TEST(ControlLoopSamples, AJobIsStreamedWholeWithoutRoomForThemAndItsEndIsReporte
   RigIn rig(S::kReady);
   SetpointStream stream = rig.paperStream();
   rig.runUnseen(8192);
-  ASSERT_TRUE(rig.loop->startJob(&stream));
+  ASSERT_TRUE(rig.loop->startJob({&stream, wheelOf(stream.program())}));
   rig.runUnseen(planned().size() + 10);
   EXPECT_EQ(rig.loop->status().jobs_ended, 1u);
   EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);

@@ -48,7 +48,7 @@ TEST(WaitsFor, EachPartAndTheJournalWithSpindleAndCoolantAndEndsTheJobAtTheTimeo
       RigIn rig(S::kReady);
       const Axes before = rig.last().command;
       rig.stream.emplace(rig.paperStream());
-      ASSERT_TRUE(rig.loop->startJob(&*rig.stream, !is_journal));
+      ASSERT_TRUE(rig.loop->startJob({&*rig.stream, wheelOf(rig.stream->program()), !is_journal}));
       const RequestReply answer = rig.answerOf([&] { return rig.loop->startJobReply(); });
       ASSERT_TRUE(answer.accepted) << answer.text;
       if (is_journal) rig.loop->confirmJournal(rig.loop->status().jobs_started - 1);  // of the job before

@@ -64,7 +64,7 @@ class LoopThreads : public testing::Test {
     Axes at;
     std::copy(before.command.begin(), before.command.end(), at.data());
     const auto stream = std::make_unique<SetpointStream>(paperStream(machineConfig().machine, at));
-    ASSERT_TRUE(loop_->startJob(stream.get()));
+    ASSERT_TRUE(loop_->startJob({stream.get(), wheelOf(stream->program())}));
     std::optional<RequestReply> reply;
     ASSERT_TRUE(soon([&] { return (reply = loop_->startJobReply()).has_value(); }));
     if (!reply->accepted) return;

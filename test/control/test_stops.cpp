@@ -188,7 +188,7 @@ TEST(CancelWithLift, AHoldDuringTheLiftStopsItAndTheJobEndsWithTheWheelInTheWork
 TEST(Cancel, InTheCycleOfTheStartEndsTheJobBeforeAnythingMoves) {
   RigIn rig(S::kReady);
   rig.stream.emplace(rig.paperStream());
-  ASSERT_TRUE(rig.loop->startJob(&*rig.stream));
+  ASSERT_TRUE(rig.loop->startJob({&*rig.stream, wheelOf(rig.stream->program())}));
   rig.loop->postStop(E::kCancel);
   rig.cycle();
   const auto started = rig.loop->startJobReply();

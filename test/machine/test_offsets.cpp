@@ -114,7 +114,9 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
     EXPECT_EQ(axesOf(found), row.axes) << row.has;
     for (const auto& mismatch : found) {
       EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
-      if (row.axes[0] == 'X') EXPECT_FALSE(mismatch.change) << row.has;
+      if (row.axes[0] == 'X') {
+        EXPECT_FALSE(mismatch.change) << row.has;
+      }
     }
   }
 }

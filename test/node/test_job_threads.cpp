@@ -83,7 +83,7 @@ class JobThreads : public ::testing::Test {
     }
     SetpointStream stream(plan.program);
     const bool started = gate_.start([&](bool held) {
-      ASSERT_TRUE(loop_->startJob(&stream));
+      ASSERT_TRUE(loop_->startJob({&stream, wheelOf(stream.program())}));
       if (held) loop_->postStop(E::kHold);
     });
     if (!started) {

@@ -342,7 +342,7 @@ class Ride {
     streams_.clear();
     streams_.emplace_back(GrindProgram(job_.job, job_.machine,
                                        RunStart(Axes(status.command.data()), {first.tooth, first.pass}, job_.offset)));
-    if (loop_->startJob(&streams_.back())) ++result_.runs;
+    if (loop_->startJob({&streams_.back(), wheelOf(streams_.back().program())})) ++result_.runs;
   }
 
   void post(E event) { loop_->post(event); }

@@ -20,7 +20,6 @@
 
 #include <pthread.h>
 
-#include <array>
 #include <atomic>
 #include <optional>
 #include <thread>

@@ -15,9 +15,11 @@ namespace grinder {
 
 /// A job to start.
 struct JobStart {
-  SetpointStream* stream = nullptr;
-  Wheel wheel;             ///< for this job
-  bool in_journal = true;  ///< otherwise confirmed later
+  SetpointStream* stream = nullptr;  ///< stays alive until the job has ended, see LoopStatus, or its start is refused
+  Wheel wheel;                       ///< wheelOf() the stream's program
+  /// Whether the journal contains the job; one that it does not contain yet waits for confirmJournal() before it moves,
+  /// as for any other interlock.
+  bool in_journal = true;
 };
 
 /// Holds other threads' requests to the control loop, and the answers. Stops, job starts, jogs, confirmations of the
@@ -66,12 +68,7 @@ class RequestBox {
   void postStop(MachineEvent event) noexcept { stops_.post(event); }
 
   /// Requests to start a job, without waiting. For one thread at a time.
-  /// @param stream not null; must stay alive until the job has ended (LoopStatus::jobs_ended) or its start is refused.
-  /// @param in_journal whether the journal contains the job. A job that it does not contain yet waits for
-  ///     confirmJournal() before it moves, as for any other interlock.
   /// @return false while the previous start is unanswered; this one is then not posted.
-  bool startJob(SetpointStream* stream, bool in_journal = true) noexcept;
-  /// The same with what takes time, as the wheel of a long job does, done ahead.
   bool startJob(const JobStart& start) noexcept { return job_starts_.post(start); }
   /// States that the journal contains a job. Thread safe.
   /// @param number the loop's number for this job, see LoopStatus::jobs_started.
@@ -100,30 +97,18 @@ class RequestBox {
   explicit RequestBox(double enable_timeout) noexcept : enable_timeout_(enable_timeout) {}
   ~RequestBox() = default;
 
-  // For the loop. Real-time safe.
-  StopRequests::Taken takeStops() noexcept { return stops_.take(); }
-  std::optional<JobStart> takeJobStart() noexcept { return job_starts_.take(); }
+  // For the loop, which takes and answers. Real-time safe.
   std::uint64_t jobInJournal() const noexcept { return job_in_journal_.load(std::memory_order_acquire); }
-  std::optional<MachineEvent> takeRequest() noexcept { return requests_.take(); }
-  std::optional<double> takeSwivel() noexcept { return swivels_.take(); }
-  std::optional<JogRequest> takeJog() noexcept { return jogs_.take(); }
-  std::optional<JogRequest> takeSeriesJog() noexcept { return series_jogs_.take(); }
   std::uint32_t keepAlives() const noexcept { return keep_alives_.load(std::memory_order_relaxed); }
-  void answerStop(const Answer& answer) noexcept { stops_.answer(answer); }
-  void answerJobStart(const Answer& answer) noexcept { job_starts_.answer(answer); }
-  void answerJog(const Answer& answer) noexcept { jogs_.answer(answer); }
-  void answerSeriesJog(const Answer& answer) noexcept { series_jogs_.answer(answer); }
-  void answerRequest(const Answer& answer) noexcept { requests_.answer(answer); }
-  void answerSwivel(const Answer& answer) noexcept { swivels_.answer(answer); }
-
- private:
-  const double enable_timeout_;
   StopRequests stops_;
   RequestSlot<JobStart> job_starts_;
   RequestSlot<JogRequest> jogs_;
   RequestSlot<JogRequest> series_jogs_;
   RequestSlot<MachineEvent> requests_;
   RequestSlot<double> swivels_;
+
+ private:
+  const double enable_timeout_;
   std::atomic<std::uint64_t> job_in_journal_{0};  ///< the last one confirmed
   std::atomic<std::uint32_t> keep_alives_{0};     ///< calls of keepAlive()
 };

@@ -8,7 +8,6 @@
 #include "flute_grinder/motion/setpoint.h"
 
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <vector>

@@ -4,7 +4,6 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/geometry/wheel_profile.h"
-#include "flute_grinder/job/axes.h"
 
 #include <optional>
 #include <vector>
@@ -22,6 +21,12 @@ struct WheelSetup {
 struct PathDeviation {
   double y = 0, z = 0, a = 0;  ///< [m], A [rad]
 };
+
+/// Interpolates linearly. @param part of the way from a to b.
+PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) noexcept;
+
+/// Interpolates deviations at equal steps over a range of X, of which there is one at least; beyond it, its end's.
+PathDeviation deviationAt(const std::vector<PathDeviation>& all, const Range& range, double x) noexcept;
 
 /// The deepest stroke of a tooth: X runs from one end to the other, the other axes follow as on the job's path.
 struct GrindStroke {

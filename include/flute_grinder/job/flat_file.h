@@ -66,11 +66,13 @@ class FlatFile {
   /// The same for a key that the file may omit.
   template <typename Enum>
   void takeOptionalChoice(const std::string& key, Enum& value) {
-    if (has(key)) {
-      takeChoice(key, value);
-    } else {
-      know(key);
-    }
+    if (mayHave(key)) takeChoice(key, value);
+  }
+
+  /// Whether there is a value to take of a key that the file may omit.
+  bool mayHave(const std::string& key) {
+    if (!has(key)) know(key);
+    return has(key);
   }
 
   /// Notes a key that the file may have, for the message about those it may not have.

@@ -11,7 +11,6 @@
 #include "flute_grinder/job/z_law.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
 #include <string>
 #include <vector>

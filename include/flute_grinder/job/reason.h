@@ -131,8 +131,8 @@ constexpr int kReasonKindCount = countOf<ReasonKind>();
 struct Reason {
   ReasonKind kind = ReasonKind::kNone;
   int axis = 0;             ///< for kParkInWork, the limits, kInvalidFeedback and kFollowingError
-  std::string field;        ///< for the kinds about a field: its path, e.g. "process.feed"
-  std::string detail;       ///< further information, without numbers that have a unit
+  std::string field{};      ///< for the kinds about a field: its path, e.g. "process.feed"
+  std::string detail{};     ///< further information, without numbers that have a unit
   Unit unit = Unit::kNone;  ///< of value, low and limit
   double value = 0;         ///< the wrong value, in SI
   double low = 0;           ///< lower end of the allowed range, for kOutOfRange
@@ -147,12 +147,7 @@ struct Reason {
 };
 
 /// A reason of kind kOther.
-inline Reason otherReason(std::string detail) {
-  Reason reason;
-  reason.kind = ReasonKind::kOther;
-  reason.detail = std::move(detail);
-  return reason;
-}
+inline Reason otherReason(std::string detail) { return {ReasonKind::kOther, 0, "", std::move(detail)}; }
 
 /// A reason in words and shop units, in which teeth and passes count from 1.
 std::string text(const Reason& reason);

@@ -7,7 +7,6 @@
 #include "flute_grinder/motion/job_plan.h"
 #include "flute_grinder/motion/setpoint.h"
 
-#include <string>
 #include <vector>
 
 /// @file

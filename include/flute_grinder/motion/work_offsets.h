@@ -4,7 +4,6 @@
 #include "flute_grinder/job/axes.h"
 
 #include <array>
-#include <cmath>
 #include <string>
 
 namespace grinder {

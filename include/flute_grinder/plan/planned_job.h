@@ -5,7 +5,6 @@
 #include "flute_grinder/motion/job_plan.h"
 
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -6,7 +6,6 @@
 #include <ros/ros.h>
 
 #include <condition_variable>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>

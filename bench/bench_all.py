@@ -14,21 +14,24 @@ import re
 import subprocess
 import sys
 import tempfile
+import time
 import urllib.parse
 
 import rospy
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 
-import bench_commands
 import figures
-from bench_commands import gc
 from figures import of_times, of_value
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / 'test/node'))
+import grinder_client as gc  # noqa: E402
+
 BUILD = ROOT / 'build/bench'
 PAGE = ROOT / 'docs/performance.md'
 NODE = '/grinder'
+COMMANDS = ('--version', 'status', 'offsets', 'hold', 'resume', 'cancel', 'lift', 'jog x 1')
 COMMAND_RUNS = 10
 
 REPETITIONS = 9
@@ -120,11 +123,17 @@ def grinder():
             yield
 
 
+def seconds(command):
+    begin = time.monotonic()
+    subprocess.run([gc.program('grind'), *command.split()], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    return time.monotonic() - begin
+
+
 def of_commands():
     """How long a command of `grind` takes, of a grinder without power, which refuses most."""
-    bench_commands.seconds('status')  # waits for the grinder
-    for command in bench_commands.COMMANDS:
-        times = [bench_commands.seconds(command) for _ in range(COMMAND_RUNS)]
+    seconds('status')  # waits for the grinder
+    for command in COMMANDS:
+        times = [seconds(command) for _ in range(COMMAND_RUNS)]
         floor = 'command/--version' if command != '--version' else None
         yield 'command/' + command, of_times('`grind %s`' % command, 'ms', times, floor)
 

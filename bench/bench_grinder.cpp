@@ -1,14 +1,11 @@
 /// @file
-/// What a step, a setpoint, a planned job, a simulated tool, a cycle of the control loop and a solved set-up cost.
+/// What a step, a setpoint, a planned job, a checked tool and a cycle of the control loop cost.
 /// Figures per setpoint or per cycle are the item rates: 10M items/s are 100 ns each.
 
 #include "drive/simulated_drive.h"
 #include "flute_grinder/collision/job_collision.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/rake_correction.h"
-#include "flute_grinder/geometry/setup_solver.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/motion/job_plan.h"
 #include "jobs.h"
@@ -139,25 +136,6 @@ void checkCutter(benchmark::State& state) {
 }
 BENCHMARK(checkCutter)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
-/// The whole tool of `grind simulate`: four teeth with a flute each, or sharing one, in 60 sections of 64 rings.
-void simulateTool(benchmark::State& state) {
-  GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
-  const bool shared = state.range(0) != 0;
-  state.SetLabel(shared ? "same flutes" : "a flute each");
-  job.process.wheel_wear_per_pass = shared ? 0 : 1e-6;
-  for (auto _ : state) {
-    const GroundCutter cutter = groundCutterOf(ValidJob(job));
-    for (int i = 0; i < 60; ++i) {
-      const GroundSection section = cutter.section(job.cutter.flute_length * i / 59);
-      benchmark::DoNotOptimize(cutter.areaRemoved(section));
-    }
-  }
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1024;
-}
-BENCHMARK(simulateTool)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
-
 /// One cycle of the control loop: read, checks, next, check, write and sample, with the simulated drive.
 void cycle(benchmark::State& state) {
   SimulatedDrive drive;
@@ -205,42 +183,6 @@ void cycle(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations());
 }
 BENCHMARK(cycle);
-
-SetupRequest paperSetup(bool core) {
-  using units::kDegree;
-  SetupRequest r;
-  r.cutter = {0.01, 5 * kDegree, 30 * kDegree, 8 * kDegree, 0.03};
-  r.rake = 8 * kDegree;
-  r.tooth_angles = {0};
-  r.nominal_radius = r.wheel.maxRadius();
-  r.depth = 0.0016;
-  if (core) r.core_diameter = 0.0072;
-  r.min_swivel = -60 * kDegree;
-  r.max_swivel = 60 * kDegree;
-  return r;
-}
-
-/// The set-up for the paper's cutter, by its depth and by its core.
-void setup(benchmark::State& state) {
-  const SetupRequest request = paperSetup(state.range(0) != 0);
-  for (auto _ : state) {
-    const auto result = solveSetup(request);
-    if (!std::holds_alternative<SolvedSetup>(result)) state.SkipWithError("not solved");
-  }
-}
-BENCHMARK(setup)->DenseRange(0, 1)->Unit(benchmark::kMillisecond);
-
-/// What the published Z law leaves of the rake's error, taken out.
-void rakeCorrection(benchmark::State& state) {
-  const SetupRequest r = paperSetup(false);
-  const auto solved = std::get<SolvedSetup>(solveSetup(r));
-  const GrindStroke stroke{-solved.overtravel[0], 0.03 + solved.overtravel[1], -solved.depth, 0, 0};
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        correctRake(ConicalCutter(r.cutter), r.wheel, r.nominal_radius, solved.setup, stroke, r.rake));
-  }
-}
-BENCHMARK(rakeCorrection)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

@@ -1,8 +1,6 @@
 #!/usr/bin/env python3
-"""Two figures of the node, each alone and under load: from the moment in which a client sends a stop to the first setpoint
-that is slower for it, by the loop's own times; and from the moment in which a client sends the paper's job to its first
-setpoint, the check of the whole job included, without the spindle's run-up. Beside them, how late this computer wakes a
-thread that sleeps.
+"""From the moment in which a client sends a stop to the first setpoint that is slower for it, by the loop's own times,
+alone and under load; beside it, how late this computer wakes a thread that sleeps.
 
 The load is all of it at once: a disk whose fsync takes 5 s, a pipe for the log that nobody reads, a planner that is never
 idle, 1000 goals and calls a second that are refused, a client that takes every marker and one that is stopped, and a
@@ -31,8 +29,8 @@ from std_srvs.srv import Trigger  # noqa: E402
 
 NODE = 'stopped'
 CALLS_PER_SECOND = 500  # and as many goals
-# Some minutes of stroke, at a steady speed.
-LONG = gc.paper(flute_length=60 * MM, feed=30 * MM_MIN, clearance=1 * MM)
+# A minute of stroke and more, at a steady speed.
+LONG = gc.paper(feed=30 * MM_MIN, clearance=1 * MM)
 
 
 def send_goals():
@@ -69,12 +67,11 @@ def compute():
 
 
 @contextlib.contextmanager
-def load(delay_file, planner):
-    with open(delay_file, 'w') as file:
-        file.write('5')
+def load(disk):
+    disk.stop(seconds=5)
     stopped = subprocess.Popen(['rostopic', 'echo', '/%s/setpoints' % NODE], stdout=subprocess.DEVNULL)
     markers = subprocess.Popen(['rostopic', 'echo', '/%s/tool_path' % NODE], stdout=subprocess.DEVNULL)
-    tasks = [send_goals, call_services, compute] + ([plan] if planner else [])
+    tasks = [send_goals, call_services, compute, plan]
     workers = [multiprocessing.get_context('spawn').Process(target=task) for task in tasks]
     for worker in workers:
         worker.start()
@@ -89,7 +86,7 @@ def load(delay_file, planner):
         for process in (stopped, markers):
             process.kill()
             process.wait()
-        os.remove(delay_file)
+        disk.release()
 
 
 def setpoint_times(run):
@@ -118,7 +115,7 @@ class Stops:
         self.run = None
 
     def time(self, stop):
-        if self.run is None or self.run.done or self.run.last.position[X] > 50 * MM:
+        if self.run is None or self.run.done or self.run.last.position[X] > 25 * MM:
             self.begin()
         grinder, run = self.grinder, self.run
         grinder.batches[:-2] = []  # what has been looked at
@@ -138,20 +135,6 @@ class Stops:
         self.run = self.grinder.send(LONG).wait_in_stroke(1 * MM)
 
 
-def goal_to_setpoint(grinder):
-    """Sends the paper's job, and cancels it when it moves."""
-    gc.poll(lambda: grinder.fresh_state().state == GrinderState.READY, 'the machine ready')
-    sent = time.time()
-    run = grinder.send(gc.PAPER)
-    grinder.wait_for(lambda: run.done or run.batches, 'the first setpoint')
-    if not run.batches:
-        return None  # another goal or plan was first
-    taken = run.batches[0].header.stamp.to_sec() - sent
-    run.cancel()
-    gc.poll(lambda: run.done, 'the end')
-    return taken
-
-
 def wake_ups(count=2000):
     """How late a thread is woken that sleeps for a millisecond."""
     late = []
@@ -169,7 +152,7 @@ def show(load_name, what, times):
         milliseconds[-1]), flush=True)
 
 
-def measure(name, grinder, stops, count):
+def measure(name, stops, count):
     show(name, 'hold by the topic ~stop', [stops.time(lambda: stops.topic.publish(Stop(request=Stop.HOLD)))
                                           for _ in range(count)])
     show(name, 'hold by the service ~hold', [stops.time(stops.service) for _ in range(count)])
@@ -179,24 +162,16 @@ def measure(name, grinder, stops, count):
 def main():
     count = int(sys.argv[1])
     rospy.init_node('bench_stop')
-    folder = tempfile.mkdtemp()
-    delay_file = os.path.join(folder, 'delay')
+    disk = gc.SlowDisk(tempfile.mkdtemp())
     parameters = gc.machine()
     parameters['hardware']['spindle_run_up_time'] = 0.0
     _, log = os.pipe()
-    slow_fsync = os.path.join(os.path.dirname(gc.program('grinder')), '..', 'libslow_fsync.so')
-    node = gc.NodeProcess(NODE, parameters, output=log,
-                          environment={'LD_PRELOAD': slow_fsync, 'SLOW_FSYNC': delay_file})
-    grinder = node.client()
-    stops = Stops(grinder)
+    node = gc.NodeProcess(NODE, parameters, output=log, environment=disk.environment)
+    stops = Stops(node.client())
     try:
-        measure('idle', grinder, stops, count)
-        with load(delay_file, planner=True):
-            measure('loaded', grinder, stops, count)
-        stops.run.cancel()
-        stops.run.wait()
-        times = [goal_to_setpoint(grinder) for _ in range(min(count, 100))]
-        show('idle', 'goal to the first setpoint', [t for t in times if t])
+        measure('idle', stops, count)
+        with load(disk):
+            measure('loaded', stops, count)
     finally:
         node.close()
 

@@ -256,11 +256,6 @@ class TestUsage(CommandLine):
                           ['plan', '--help']):
             self.check_not_printed(*arguments)
 
-    def test_arguments_that_parse_and_are_wrong_all_the_same(self):
-        for arguments in (['zeros', PAPER_JOB, '--stickout', '60'], ['report', 'plan.csv']):
-            with self.subTest(arguments):
-                self.grind(2, *arguments)
-
 
 if __name__ == '__main__':
     rostest.rosrun('flute_grinder', 'cli', '__main__')

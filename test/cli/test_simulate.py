@@ -274,7 +274,6 @@ class TestRecord(TestSimulate):
         self.check_same(reported['sections'], self.planned())
         self.assertEqual(reported['source'], 'run.bag, job 2 of 2')
         self.json(1, 'simulate', bag, '--run', '1')
-        self.assertRegex(self.grind(2, 'simulate', bag, '--run', '3').stderr, r'job 3: the bag has 2 job\(s\)')
 
     def test_report_of_a_bag_without_its_goal_says_why_it_shows_no_tool(self):
         reported, _ = self.json(0, 'report', self.bag(self.plan(PAPER_JOB), goal=False))

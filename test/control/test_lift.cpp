@@ -12,15 +12,8 @@ class InTheWork : public testing::Test {
   RigInTheWork rig_;
 };
 
-TEST_F(InTheWork, StartAndHomeAreRefusedUntilItIsLifted) {
-  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
-  EXPECT_EQ(rig_.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  ASSERT_NO_FATAL_FAILURE(rig_.lift());
-  EXPECT_TRUE(rig_.ask(E::kHome).accepted);
-}
-
 TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
+  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
   const std::size_t before = rig_.log.size() - 1;
   const Axes from = rig_.last().command;
   ASSERT_TRUE(rig_.ask(E::kLift).accepted);

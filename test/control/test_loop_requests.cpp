@@ -122,13 +122,6 @@ TEST(ControlLoopEnable, AnEmergencyStopWhileWaitingForPowerTakesTheEnableBack) {
   EXPECT_EQ(rig.last().state, S::kDisabled) << "releasing the emergency stop switched power on";
 }
 
-TEST(ControlLoopEnable, OneRequestAtATime) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  ASSERT_TRUE(rig.loop->post(E::kEnable));
-  EXPECT_FALSE(rig.loop->post(E::kReset));
-}
-
 /// Every request in every state that does not allow it.
 TEST(Request, ThatAStateDoesNotAllowIsRefusedWithTheStateAndWhatItAllows) {
   const std::pair<S, const char*> allowed[]{{S::kDisabled, "enable, disable, reset"},
@@ -221,6 +214,7 @@ TEST(RequestSlot, ARequestThatIsWithdrawnIsNotTakenAndOneThatIsTakenIsAnswered) 
   slot.withdraw();
   EXPECT_FALSE(slot.take().has_value());
   ASSERT_TRUE(slot.post(E::kResume));
+  EXPECT_FALSE(slot.post(E::kReset));
   EXPECT_EQ(slot.take(), E::kResume);
   slot.withdraw();
   EXPECT_FALSE(slot.post(E::kHome)) << "it is being executed";

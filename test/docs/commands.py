@@ -34,7 +34,6 @@ NOT_RUN = {
     'scripts/bench': 'measures for minutes',
     'scripts/bench --json before.json': 'measures for minutes',
     'scripts/bench --json after.json --before before.json': 'measures for minutes',
-    'scripts/bench_commands': 'measures for minutes',
     'scripts/bench_hal': 'measures for minutes',
     'scripts/bench_peers': 'measures for minutes',
     'scripts/bench_peers --docs': 'measures for minutes',

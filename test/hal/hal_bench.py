@@ -12,7 +12,6 @@ import tempfile
 
 import rospkg
 import rosgraph
-import rospy
 import yaml
 
 ROOT = rospkg.RosPack().get_path('flute_grinder')

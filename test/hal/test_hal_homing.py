@@ -92,11 +92,6 @@ class TestHoming(unittest.TestCase):
         state = self.grinder.fresh_state()
         self.assertEqual((state.state, state.homed), (GrinderState.READY, False))
         first = RECORDER.now()
-        job = gc.package_file('test/jobs/paper.yaml')
-        self.grinder.confirm_swivel(gc.PAPER['process.setup_swivel'])
-        refused = gc.grind('run', job, '--ignore-offset-check')
-        self.assertEqual(refused.returncode, 1, refused.stdout)
-        self.assertIn('start refused: ' + NOT_HOMED, refused.stderr)
         run = self.grinder.run(JOB)
         self.assertEqual((run.status, run.code, run.text),
                          ('ABORTED', GrindResult.NOT_READY, 'start refused: ' + NOT_HOMED))

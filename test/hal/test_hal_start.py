@@ -99,9 +99,6 @@ class TestRefusals(unittest.TestCase):
     def test_servo_thread_of_another_rate(self):
         self.check_in_hal('period1=1000000', 'period1=2000000', "HAL's servo thread runs at 500 Hz")
 
-    def test_buffer_out_of_range(self):
-        self.check('parameter /refused/hardware/buffer = 5; allowed: 0.002 to 2.047', buffer=5.0)
-
     def test_component_of_a_running_node(self):
         node = hal_bench.Node('first')
         grinder = gc.Grinder('first')

@@ -744,9 +744,9 @@ class SlowDisk:
         library = os.path.join(os.path.dirname(os.path.dirname(program('grinder'))), 'libflute_grinder_slow_fsync.so')
         self.environment = {'LD_PRELOAD': library, 'SLOW_FSYNC': self._seconds}
 
-    def stop(self):
+    def stop(self, seconds=1e6):
         with open(self._seconds, 'w') as file:
-            file.write('1e6')
+            file.write(str(seconds))
 
     def release(self):
         """Once more does nothing."""

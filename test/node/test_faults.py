@@ -8,7 +8,7 @@ from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 import path_checks as checks
-from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, grinder
+from grinder_client import DEG, MM, MM_MIN, STROKE, X, Y, grinder
 
 # Steep enough for every axis to move by more than its following error may be.
 STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, feed=120 * MM_MIN)
@@ -20,8 +20,6 @@ FAULTS = {
     ('nan_feedback', Y): (GrindResult.HARDWARE_FAULT, r'^axis Y position from the drive is -?nan'),
     ('stuck_axis', X): (GrindResult.PATH_TOLERANCE_VIOLATED,
                                r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm'),
-    ('stuck_axis', A): (GrindResult.PATH_TOLERANCE_VIOLATED,
-                               r'^axis A following error [23]\.\d+ deg is beyond its limit 2\.86479 deg'),
 }
 WHERE = r'\(stroke, tooth 1, pass 1, X = [12]?\d(\.\d+)? mm\)'
 

@@ -74,10 +74,6 @@ TEST(Planner, PlansWhatPlanJobPlans) {
   const JobPlan expected = planJob(ValidJob(paper()), machine(), machine().park);
   EXPECT_EQ(plan->statistics.setpoints, expected.statistics.setpoints);
   EXPECT_EQ(plan->move_ends, expected.move_ends);
-  std::uint64_t streamed = 0;
-  SetpointStream stream(plan->program);
-  for (Setpoint p; stream.next(p);) ++streamed;
-  EXPECT_EQ(streamed, expected.statistics.setpoints);
 }
 
 TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
@@ -125,29 +121,6 @@ TEST(Planner, KeepsNoPlanOfAReliefThatIsNowTheLast) {
   EXPECT_EQ(planOf(job), plan);
   job.operations.pop_back();
   EXPECT_EQ(planOf(job)->fault, PlanFault::kTool);
-}
-
-TEST(Planner, GivesUpWhileItLooksForTheLawOfZ) {
-  Planner planner(machine(), kShapes);
-  GrindJob job = endless();
-  job.process.z_law = ZLaw::kConstantRake;
-  Asked asked(job);
-  asked.request.control->give_up = true;
-  ASSERT_TRUE(planner.submit(asked.request));
-  const auto plan = asked.wait();
-  EXPECT_EQ(plan->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(plan->program, nullptr);
-}
-
-TEST(Planner, ReportsWhyAJobCannotBeGround) {
-  Planner planner(machine(), kShapes);
-  Asked asked(paper());
-  asked.request.run.first = {0, 1};
-  ASSERT_TRUE(planner.submit(asked.request));
-  const auto plan = asked.wait();
-  EXPECT_EQ(plan->fault, PlanFault::kInvalidJob);
-  ASSERT_EQ(plan->reasons.size(), 1U);
-  EXPECT_NE(text(plan->reasons[0]).find("first_pass = 1; allowed: 0 to 0"), std::string::npos);
 }
 
 TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {

@@ -14,7 +14,6 @@ import rostest
 from flute_grinder.msg import Legend
 from PIL import ImageGrab
 from std_srvs.srv import Trigger
-from tf2_msgs.msg import TFMessage
 from visualization_msgs.msg import Marker, MarkerArray
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'node'))
@@ -38,12 +37,10 @@ class Rviz:
 
     def __init__(self):
         self.messages = {topic: [] for topic in TOPICS}
-        self.legends, self.frames = [], set()
+        self.legends = []
         for topic in TOPICS:
             rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
         rospy.Subscriber('/grinder/legend', Legend, self.legends.append)
-        for topic in ('/tf', '/tf_static'):
-            rospy.Subscriber(topic, TFMessage, lambda m: self.frames.update(t.child_frame_id for t in m.transforms))
         rospy.wait_for_service('/rviz/report', gc.PATIENCE)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
         self._look = rospy.ServiceProxy('/rviz/look', Trigger)
@@ -166,7 +163,6 @@ class TestScene(unittest.TestCase):
         gc.poll(lambda: rviz.legends[-1].max_error > 0, 'the legend of what is measured')
         rim = [p for m in rviz.last('scene', 'wheel') for p in m.points]
         self.assertAlmostEqual(max(numpy.hypot(p.y, p.z) for p in rim), 50 * MM - JOB['process.wheel_wear'], delta=1e-9)
-        self.assertLessEqual({'table', 'chuck', 'work', 'cutter', 'contact', 'column', 'wheel_head', 'wheel'}, rviz.frames)
         # The plan of another job does not change what is shown of this one.
         scenes = len(rviz.messages['scene'])
         self.assertTrue(g.plan(gc.goal_of(gc.PAPER)).valid)

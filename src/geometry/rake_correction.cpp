@@ -1,4 +1,4 @@
-#include "flute_grinder/geometry/rake_correction.h"
+#include "geometry/rake_correction.h"
 
 #include "flute_grinder/curve/units.h"
 

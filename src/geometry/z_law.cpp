@@ -1,8 +1,8 @@
 #include "flute_grinder/geometry/z_law.h"
 
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/rake_correction.h"
 #include "flute_grinder/job/valid_job.h"
+#include "geometry/rake_correction.h"
 
 #include <algorithm>
 #include <cmath>

@@ -236,8 +236,7 @@ class Ride {
                                      [](const Move& move) { return move.kind == MoveKind::kStroke; });
     next_ += static_cast<std::size_t>(ended);
     // A stroke that was stopped within rounding of its end is ground once more.
-    const double left = 1 - loop_->status().place.move_fraction;
-    again_ = (left > 0 && left < 1e-12) || watch_.progress().again || (again_ && ended == 0);
+    again_ = watch_.progress().again || (again_ && ended == 0);
     if (next_ != watch_.ground() && !(again_ && next_ + 1 == watch_.ground())) {
       throw second_opinion::Violation("the loop has ground " + std::to_string(next_) + " passes, not " +
                                       std::to_string(watch_.ground()));

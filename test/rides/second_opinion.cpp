@@ -229,6 +229,7 @@ void Watch::checkStroke(const Row& row) {
   if (std::abs(x - asked_.to) > noiseOf(0)) return;
   ++progress_.ground;
   progress_.reached = asked_.from;
+  progress_.again = row.work[0] != asked_.to;
 }
 
 /// A stroke goes forward, and a pair no faster than the feed.

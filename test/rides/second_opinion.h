@@ -77,7 +77,7 @@ class Watch {
     std::size_t ground = 0;
     Real reached = 0;      ///< X up to which the next pass has been ground without a gap
     bool in_work = false;  ///< a job has left the wheel there
-    bool again = false;    ///< the last stroke was of a pass that is ground
+    bool again = false;    ///< the last stroke was of a pass that is ground, or is but for rounding
   };
   const Progress& progress() const { return progress_; }
   /// What was commanded since then has not come to pass.

@@ -63,7 +63,7 @@ class SetupTrial {
   /// section.
   double formedByFace(const WheelSweep& sweep, double x) const;
 
-  /// Where a section's walls are formed.
+  /// From where to where on the stroke a section's walls are formed [m].
   Range reach(const WheelSweep& sweep, double x) const;
 
  private:

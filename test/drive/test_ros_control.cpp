@@ -1,6 +1,7 @@
 #include "drive/mode_switch.h"
 #include "drive/remote_signals.h"
 #include "drive/ros_control_parameters.h"
+#include "soon.h"
 
 #include <gtest/gtest.h>
 
@@ -73,14 +74,6 @@ class Receiver {
   std::mutex mutex_;
   std::string got_;
 };
-
-/// Waits for a condition.
-template <typename Condition>
-bool soon(const Condition& condition) {
-  const auto deadline = Clock::now() + std::chrono::seconds(60);
-  while (!condition() && Clock::now() < deadline) std::this_thread::sleep_for(milliseconds(1));
-  return condition();
-}
 
 class Switch : public testing::Test {
  protected:

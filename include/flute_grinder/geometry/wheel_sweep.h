@@ -25,7 +25,8 @@ struct PathDeviation {
 /// Interpolates linearly. @param part of the way from a to b.
 PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) noexcept;
 
-/// Interpolates deviations at equal steps over a range of X, of which there is one at least; beyond it, its end's.
+/// Interpolates linearly between deviations at equal steps over a range of X; beyond an end, that end's.
+/// @param all one at least. @param range, x [m].
 PathDeviation deviationAt(const std::vector<PathDeviation>& all, const Range& range, double x) noexcept;
 
 /// The deepest stroke of a tooth: X runs from one end to the other, the other axes follow as on the job's path.

@@ -41,9 +41,18 @@ class Rviz:
         for topic in TOPICS:
             rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
         rospy.Subscriber('/grinder/legend', Legend, self.legends.append)
-        rospy.wait_for_service('/rviz/report', gc.PATIENCE)
+        gc.poll(self.draws, 'the first frames of rviz', interval=0.1)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
         self._look = rospy.ServiceProxy('/rviz/look', Trigger)
+
+    @staticmethod
+    def draws():
+        """Whether rviz has drawn some frames: one that dies as it starts does so before, and another is started."""
+        try:
+            said = rospy.ServiceProxy('/rviz/report', Trigger)()
+        except rospy.ServiceException:
+            return False
+        return said.success and int(said.message.split()[1]) > 10
 
     def report(self, key):
         """What follows a key in the lines that rviz reports on itself."""

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 namespace grinder {
 
@@ -19,11 +18,10 @@ constexpr int kOffsetDigits = 9;            ///< so that offsets that differ loo
 const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
 
 /// For the operator; teeth and passes count from 1.
+std::string placeText(const ToothPass& place) { return format("tooth %d, pass %d", place.tooth + 1, place.pass + 1); }
+
 std::string describe(const Progress& p) {
-  std::ostringstream text;
-  text << jobText(p.job_name, p.operation, p.cutter, p.tooth_angles.size()) << ", tooth " << p.next.tooth + 1
-       << ", pass " << p.next.pass + 1;
-  return text.str();
+  return jobText(p.job_name, p.operation, p.cutter, p.tooth_angles.size()) + ", " + placeText(p.next);
 }
 
 }  // namespace
@@ -33,11 +31,16 @@ ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progr
 std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first, bool discard) const {
   const JournalWriter::Status journal = writer_.status();
   if (journal.unread) return journal.error;
+  const bool unfinished = !progress_.job_digest.empty() && !progress_.finished;
+  if (unfinished && digest == progress_.job_digest && first == progress_.next) return "";
+  if (!(first == ToothPass{})) {
+    return "the job is to begin at " + placeText(first) +
+           ", and the journal does not have the passes before as ground; allowed: " + placeText({}) +
+           ", or where the journal has left the job";
+  }
   if (discard) return "";
   if (!journal.damage.empty()) return journal.damage + "; what job it kept is unknown; restore the file, or discard it";
-  if (progress_.job_digest.empty() || progress_.finished) return "";
-  const bool from_the_beginning = first == ToothPass{};
-  if (digest == progress_.job_digest && (!from_the_beginning || first == progress_.next)) return "";
+  if (!unfinished) return "";
   return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 

@@ -20,8 +20,8 @@ class ProgressTracker {
   /// @param writer must outlive this object.
   explicit ProgressTracker(JournalWriter& writer);
 
-  /// Why a job must not overwrite the journal: it holds another, unfinished one, is damaged, or could not be read.
-  /// Empty if it may.
+  /// Why a job must not overwrite the journal: it holds another, unfinished one, is damaged, could not be read, or does
+  /// not have the passes that the job would leave out as ground. Empty if it may.
   /// @param first pass to grind. @param discard what is known of the last job.
   std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of

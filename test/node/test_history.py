@@ -85,6 +85,10 @@ class TestRecords(Kept):
         return self.grinder.send(JOB, **fields).wait_in_stroke(0)
 
     def test_continued_job_reports_where_it_began(self):
+        self.grinder.make_ready(0.2)
+        run = self.grinder.send(JOB).wait_past(lambda s: (s.tooth, s.pass_, s.move) == (1, 1, STROKE), 'the last stroke')
+        self.record_of(lambda: (run.cancel(), run.wait_complete())[1])
+        self.grinder.make_ready()
         record, _ = self.record_of(lambda: self.grinder.run(JOB, first_tooth=1, first_pass=1))
         self.assertEqual(record['first'], {'tooth': 2, 'pass': 2})
         self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(2, 2)])

@@ -132,6 +132,24 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOtherAndAFinishedOne
   EXPECT_EQ(tracker_.refusal("job", kFirst), "");
 }
 
+TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) {
+  const GrindProgram three = program(3);
+  const auto isRefused = [&](const std::string& digest, const ToothPass& first) {
+    const std::string refused = tracker_.refusal(digest, first), discarding = tracker_.refusal(digest, first, true);
+    EXPECT_EQ(refused, discarding) << "what is discarded is not ground";
+    return refused.find("allowed: tooth 1, pass 1, or where the journal has left the job") != std::string::npos;
+  };
+  EXPECT_TRUE(isRefused("job", {0, 1})) << "nothing is ground";
+  grind(three, "job", 1);
+  EXPECT_FALSE(isRefused("job", {0, 1}));
+  EXPECT_TRUE(isRefused("job", {0, 2}));
+  EXPECT_TRUE(isRefused("job", {1, 0}));
+  EXPECT_TRUE(isRefused("other", {0, 1}));
+  EXPECT_EQ(tracker_.refusal("job", kFirst, true), "");
+  grind(three, "job", 3);
+  EXPECT_TRUE(isRefused("job", {0, 2})) << "it is finished";
+}
+
 TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   const std::string path = folder_.path() / "damaged";
   std::ofstream(path) << "nothing of a journal";

@@ -52,7 +52,8 @@ void addWheelCommands(Commands& commands);
 /// Requests to the machine: `override`, `confirm-swivel`, `jog`, `status` and the requests without arguments.
 void addMachineCommands(Commands& commands);
 
-/// The work offsets and how they are found: `offsets`, `touch-off`, `probe`.
+/// The work offsets, what they depend on and how they are found: `confirm-wheel`, `reclamped`, `offsets`, `touch-off`,
+/// `probe`.
 void addOffsetCommands(Commands& commands);
 
 }  // namespace grinder

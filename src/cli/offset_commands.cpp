@@ -50,6 +50,21 @@ void addTouchOff(Commands& commands) {
   addYes(command, options->yes);
 }
 
+void addConfirmWheel(Commands& commands) {
+  const auto options = std::make_shared<ConfirmWheelOptions>();
+  auto& command = commands.add("confirm-wheel", "confirm that the wheel of a job is on the spindle", "jobs/paper.yaml",
+                               commands.online([&commands, options] { return confirmWheel(commands.node, *options); }));
+  addJob(command, options->job);
+  addOperation(command, options->operation);
+  command.add_flag("--again", options->again,
+                   "it was taken off and mounted anew: zero points of X, Y and Z do not count any longer");
+}
+
+void addReclamped(Commands& commands) {
+  commands.add("reclamped", "say that a tool was clamped: where its teeth are is then not known", "",
+               commands.online([&commands] { return sayReclamped(commands.node); }));
+}
+
 void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
   const auto options = std::make_shared<ProbeOptions>();
   options->within = row.within / shopScale(unitOf(row.axis, 0));
@@ -86,6 +101,8 @@ void addProbe(Commands& commands) {
 }  // namespace
 
 void addOffsetCommands(Commands& commands) {
+  addConfirmWheel(commands);
+  addReclamped(commands);
   addOffsets(commands);
   addTouchOff(commands);
   addProbe(commands);

@@ -4,6 +4,8 @@
 #include "cli/json_output.h"
 #include "cli/offset_watch.h"
 #include "cli/time_text.h"
+#include "flute_grinder/ConfirmWheel.h"
+#include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/geometry/touch_off.h"
@@ -88,7 +90,14 @@ Json toJson(const std::string& node, const flute_grinder::WorkOffsets& offsets,
         {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)},
         {"set_for", grinder::toJson(fromMessage(offsets.basis[i]))}};
   }
-  return {{"grinder", node}, {"homed", state.homed != 0}, {"axes", axes}, {"error", offsets.error}};
+  const WorkOffsets all = fromMessage(offsets);
+  const Json diameter = all.wheel.isKnown() ? Json(toShop(kY, all.wheel.diameter)) : Json(nullptr);
+  return {{"grinder", node},
+          {"homed", state.homed != 0},
+          {"axes", axes},
+          {"wheel", {{"name", all.wheel.name}, {"digest", all.wheel.digest}, {"diameter_mm", diameter}}},
+          {"tool", {{"digest", all.tool.digest}, {"text", toolText(all.tool)}}},
+          {"error", offsets.error}};
 }
 
 /// @param node resolved name.
@@ -109,6 +118,8 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
                   timeText(offsets.set_at[i].toSec(), false).c_str(), basis.c_str());
     }
   }
+  std::printf("wheel on the spindle: %s\n", mountedText(all.wheel).c_str());
+  std::printf("tool in the collet: %s\n", toolText(all.tool).c_str());
   if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");
   if (!offsets.error.empty()) std::printf("%s\n", offsets.error.c_str());
 }
@@ -146,7 +157,8 @@ int fit(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, bool large_ch
   bool all = true;
   const std::vector<OffsetMismatch> found = mismatches(offsets, goal);
   for (const OffsetMismatch& mismatch : found) {
-    if (mismatch.change) continue;
+    const bool is_zero_point = mismatch.what != "wheel" && mismatch.what != "A";
+    if (mismatch.change || !is_zero_point) continue;
     status = fail(mismatch.reason + "; set it anew");
     all = all && mismatch.axis == kX;
   }
@@ -165,6 +177,25 @@ int fit(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, bool large_ch
 }
 
 }  // namespace
+
+int confirmWheel(const std::string& node, const ConfirmWheelOptions& options) {
+  const OffsetBasis job = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kUnknown);
+  ros::NodeHandle nh(node);
+  flute_grinder::ConfirmWheel::Request request;
+  request.job = toMessage(job);
+  request.again = static_cast<std::uint8_t>(options.again);
+  request.set_by = userAtHost();
+  const int status = call<flute_grinder::ConfirmWheel>(nh, "confirm_wheel", request);
+  return status != 0 ? status : succeed("the wheel on the spindle is " + wheelText(job));
+}
+
+int sayReclamped(const std::string& node) {
+  ros::NodeHandle nh(node);
+  flute_grinder::Reclamped::Request request;
+  request.set_by = userAtHost();
+  const int status = call<flute_grinder::Reclamped>(nh, "reclamped", request);
+  return status != 0 ? status : succeed("a tool was clamped; where its teeth are is not known");
+}
 
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok) {
   flute_grinder::SetOffset::Request request;

@@ -33,6 +33,20 @@ struct TouchOffOptions {
   bool yes = false;          ///< sets it even if it changes by much, without a question
 };
 
+/// Arguments of `grind confirm-wheel`.
+struct ConfirmWheelOptions {
+  std::string job;        ///< job file, whose wheel it is
+  std::string operation;  ///< of that; empty for the only one
+  bool again = false;     ///< it was taken off and mounted anew
+};
+
+/// Confirms which wheel is on the spindle. @param node the grinder's. @return the exit status.
+/// @throw JobError if the job file is refused.
+int confirmWheel(const std::string& node, const ConfirmWheelOptions& options);
+
+/// Says that a tool was clamped. @param node the grinder's. @return the exit status.
+int sayReclamped(const std::string& node);
+
 /// Sets a work offset in the name of who runs this command. A change beyond the parameter offset_change_limit is
 /// confirmed at the terminal; without one it is refused.
 /// @param nh the grinder's namespace.

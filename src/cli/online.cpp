@@ -101,6 +101,8 @@ void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
     const std::string basis = basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
     std::printf("zero point %c    %s\n", "XYZA"[axis], offsets ? basis.c_str() : "not known");
   }
+  std::printf("wheel           %s\n", offsets ? mountedText(all.wheel).c_str() : "not known");
+  std::printf("tool            %s\n", offsets ? toolText(all.tool).c_str() : "not known");
 }
 
 /// @param node resolved name. @param offsets null if they are not known.
@@ -156,6 +158,11 @@ int fail(const std::string& text) {
   return 1;
 }
 
+int succeed(const std::string& text) {
+  std::printf("%s\n", text.c_str());
+  return 0;
+}
+
 int noGrinder(const ros::NodeHandle& nh) {
   if (!ros::master::check()) return noMaster();
   return noNode(nh.getNamespace());
@@ -204,12 +211,6 @@ int printStatus(const std::string& node, bool json) {
 }
 
 namespace {
-
-/// Prints that a request was carried out. @return the exit status for it.
-int succeed(const std::string& text) {
-  std::printf("%s\n", text.c_str());
-  return 0;
-}
 
 /// The success of a request that is answered when it is done, or has begun.
 std::string doneText(MachineEvent event) {

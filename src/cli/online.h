@@ -29,6 +29,9 @@ void leaveRos();
 
 /// Prints an error. @return the exit status for it.
 int fail(const std::string& text);
+
+/// Prints that something was carried out. @return the exit status for it.
+int succeed(const std::string& text);
 /// Prints why no grinder can be reached: no master, no clock or no node. @return the exit status for it.
 int noGrinder(const ros::NodeHandle& nh);
 

@@ -1,5 +1,6 @@
 #include "flute_grinder/machine/offset_fit.h"
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/swivel.h"
 
@@ -33,15 +34,13 @@ const Dependence& dependenceOf(int axis) { return kDependences[static_cast<std::
 bool isSame(double a, double b) { return std::abs(a - b) <= kSameFigure; }
 bool isSameSwivel(const OffsetBasis& a, const OffsetBasis& b) { return Swivel{a.swivel}.isAt(b.swivel); }
 bool isSameWheel(const OffsetBasis& a, const OffsetBasis& b) {
-  const bool other_file = !a.wheel_name.empty() && !b.wheel_name.empty() && a.wheel_name != b.wheel_name;
-  return a.wheel_digest == b.wheel_digest && !other_file;
+  return a.wheel_digest == b.wheel_digest && a.wheel_name == b.wheel_name;
 }
 
 std::string shown(double value, Unit unit) { return text(Quantity{value, unit}); }
 
-std::string wheelText(const OffsetBasis& basis) {
-  return "wheel " + (basis.wheel_name.empty() ? "" : basis.wheel_name + ", ") + "D " +
-         shown(basis.wheel_diameter, Unit::kMetre);
+std::string wheelText(const std::string& name, double diameter) {
+  return (name.empty() ? "" : name + ", ") + "D " + shown(diameter, Unit::kMetre);
 }
 
 /// The figures of a job that an axis depends on, as "D 6 mm, wheel a.yaml, D 100 mm".
@@ -54,11 +53,12 @@ std::string figures(int axis, const OffsetBasis& basis, const OffsetBasis* other
   };
   const OffsetBasis& to = other ? *other : basis;
   const bool same_wheel = isSameWheel(basis, to);
+  const std::string wheel = "wheel " + wheelText(basis);
   const bool looks_same = other && wheelText(basis) == wheelText(to);
   add(on.end_diameter, isSame(basis.end_diameter, to.end_diameter), "D " + shown(basis.end_diameter, Unit::kMetre));
   add(on.height, isSame(basis.height, to.height), "height " + shown(basis.height, Unit::kMetre));
   add(on.placing, isSameSwivel(basis, to), "swivel " + shown(basis.swivel, Unit::kRadian));
-  add(on.wheel, same_wheel, (looks_same ? "another " : "") + wheelText(basis));
+  add(on.wheel, same_wheel, looks_same ? "another " + wheel : wheel);
   add(on.placing, isSame(basis.wheel_width, to.wheel_width),
       "width of the wheel " + shown(basis.wheel_width, Unit::kMetre));
   return list;
@@ -77,30 +77,84 @@ std::optional<double> changeFor(int axis, const OffsetBasis& was, const OffsetBa
   return change;
 }
 
-std::optional<OffsetMismatch> mismatch(int axis, const WorkOffset& offset, const OffsetBasis& job) {
+std::string nameOf(int axis) { return {"XYZA"[axis]}; }
+
+std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, const OffsetBasis& job) {
   const Dependence& on = dependenceOf(axis);
-  const std::string name(1, "XYZA"[axis]);
+  const WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
   const OffsetBasis& was = offset.basis;
-  if (!on.on_job && !on.wheel && !on.placing) return std::nullopt;
-  if (std::isnan(offset.value)) return OffsetMismatch{axis, name + " cannot be read", {}};
-  if (!offset.wasSet()) return OffsetMismatch{axis, name + " was never set", {}};
-  if (was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) {
-    return OffsetMismatch{axis, name + " was " + basisText(axis, offset), {}};
-  }
+  const std::string name = nameOf(axis);
+  const auto refused = [&](const std::string& reason) { return OffsetMismatch{name, name + reason, axis, {}}; };
+  if (std::isnan(offset.value)) return refused(" cannot be read");
+  if (!offset.wasSet()) return refused(" was never set");
+  const std::string set = " was " + basisText(axis, offset);
+  if (was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) return refused(set);
+  if (offset.mounting != offsets.wheel.mounting) return refused(set + "; another wheel has been mounted since");
   const std::string differs = was.hasJob() ? figures(axis, job, &was) : "";
   if (differs.empty()) return std::nullopt;
-  return OffsetMismatch{axis, name + " was " + basisText(axis, offset) + "; this job has " + differs,
-                        changeFor(axis, was, job)};
+  OffsetMismatch found = refused(set + "; this job has " + differs);
+  found.change = changeFor(axis, was, job);
+  return found;
+}
+
+const char* wordsOf(int operation) { return rowOf(static_cast<OperationKind>(operation)).words; }
+
+/// Why A does not fit what is ground behind the flutes, or what is to be ground is there already.
+std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const OffsetBasis& job) {
+  const auto refused = [](const std::string& reason) { return OffsetMismatch{"A", "A: " + reason, kA, {}}; };
+  const ClampedTool& tool = offsets.tool;
+  const bool same = !job.tool_digest.empty() && tool.digest == job.tool_digest;
+  if (same && tool.isGround(job.operation)) {
+    return refused(std::string("operation ") + wordsOf(job.operation) +
+                   " is ground on this tool already; if another blank is clamped, say so: grind reclamped");
+  }
+  if (job.operation == 0) return std::nullopt;
+  const std::string remedy = "; probe a tooth: grind probe tooth";
+  const std::string where = "where the teeth of this tool are is not known: ";
+  if (!same && tool.digest.empty()) return refused(where + rowOf(tool.unknown).reason + remedy);
+  if (!same) return refused(where + "A is as for " + toolText(tool) + remedy);
+  // On a tooth that was probed, nobody knows what was ground elsewhere.
+  const int before = job.operation - 1;
+  const bool probed = offsets.axes[kA].basis.method == OffsetMethod::kProbe;
+  if (tool.isGround(before) || probed) return std::nullopt;
+  return refused(std::string("operation ") + wordsOf(before) + " is not ground on this tool");
 }
 
 }  // namespace
 
+std::string wheelText(const OffsetBasis& job) { return wheelText(job.wheel_name, job.wheel_diameter); }
+
+std::string mountedText(const MountedWheel& wheel) {
+  return wheel.isKnown() ? wheelText(wheel.name, wheel.diameter) : "not confirmed";
+}
+
+bool isMounted(const MountedWheel& wheel, const OffsetBasis& job) {
+  return wheel.isKnown() && wheel.digest == job.wheel_digest && wheel.name == job.wheel_name;
+}
+
+std::string toolText(const ClampedTool& tool) {
+  if (tool.digest.empty()) return rowOf(tool.unknown).reason;
+  const std::string of = tool.job_name.empty() ? "another tool" : tool.job_name;
+  std::string ground;
+  for (int i = 0; i < countOf<OperationKind>(); ++i) {
+    if (tool.isGround(i)) ground += (ground.empty() ? "" : ", ") + std::string(wordsOf(i));
+  }
+  return of + (ground.empty() ? "" : " with " + ground);
+}
+
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job) {
   std::vector<OffsetMismatch> found;
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    auto one = mismatch(axis, offsets.axes[static_cast<std::size_t>(axis)], job);
-    if (one) found.push_back(std::move(*one));
+  if (!isMounted(offsets.wheel, job)) {
+    found.push_back({"wheel",
+                     "the wheel on the spindle is " + mountedText(offsets.wheel) + "; this job has " + wheelText(job) +
+                         "; once it is mounted, say so: grind confirm-wheel JOB",
+                     0,
+                     {}});
   }
+  for (const int axis : {kX, kY, kZ}) {
+    if (auto one = mismatch(axis, offsets, job)) found.push_back(std::move(*one));
+  }
+  if (auto teeth = mismatchOfTeeth(offsets, job)) found.push_back(std::move(*teeth));
   return found;
 }
 

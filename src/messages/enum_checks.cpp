@@ -76,6 +76,7 @@ static_assert(has<EvenStepRule>(message_text::kInterpolation));
 static_assert(has<CutDirection>(message_text::kCutter));
 static_assert(has<OperationKind, GrindOrder, StrokeDirection, ZLaw, WheelShape, WheelFace>(message_text::kProcess));
 static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
+static_assert(has<TeethUnknown>(message_text::kClampedTool));
 static_assert(has<ProbingCycle>(message_text::kProbe));
 // Its other constants are axes and units, which reasons.cpp compares.
 static_assert(hasAllOf<ReasonKind>(message_text::kReason) &&

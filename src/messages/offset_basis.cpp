@@ -27,6 +27,7 @@ To convertedBasis(const From& from) {
   to.wheel_width = from.wheel_width;
   to.swivel = from.swivel;
   to.height = from.height;
+  to.tool_digest = from.tool_digest;
   return to;
 }
 
@@ -51,7 +52,10 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   basis.method = method;
   basis.job_name = goal.job_name;
   basis.wheel_name = goal.wheel_name;
-  basis.wheel_digest = wheelDigest(jobFromGoal(goal));
+  const GrindJob job = jobFromGoal(goal);
+  basis.wheel_digest = wheelDigest(job);
+  basis.tool_digest = toolDigest(job);
+  basis.operation = job.operation;
   basis.end_diameter = goal.cutter.end_diameter;
   basis.wheel_diameter = goal.process.wheel_diameter;
   basis.wheel_width = goal.process.wheel_width;
@@ -76,21 +80,48 @@ Json toJson(const OffsetBasis& basis) {
 flute_grinder::OffsetBasis toMessage(const OffsetBasis& basis) {
   auto message = convertedBasis<OffsetBasis, flute_grinder::OffsetBasis>(basis);
   message.method = static_cast<std::uint8_t>(basis.method);
+  message.operation = static_cast<std::uint16_t>(basis.operation);
   return message;
 }
 
 OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message) {
   auto basis = convertedBasis<flute_grinder::OffsetBasis, OffsetBasis>(message);
   if (message.method < countOf<OffsetMethod>()) basis.method = static_cast<OffsetMethod>(message.method);
+  basis.operation = message.operation;
   return basis;
 }
 
 WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message) {
   WorkOffsets offsets;
   for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
-    offsets.axes[i] = {message.values[i], message.set_by[i], message.set_at[i].toSec(), fromMessage(message.basis[i])};
+    offsets.axes[i] = {message.values[i], message.set_by[i], message.set_at[i].toSec(), fromMessage(message.basis[i]),
+                       message.mounting[i]};
   }
+  const flute_grinder::MountedWheel& wheel = message.wheel;
+  offsets.wheel = {wheel.name, wheel.digest, wheel.diameter, wheel.mounting};
+  const flute_grinder::ClampedTool& tool = message.tool;
+  offsets.tool = {tool.digest, tool.job_name, tool.ground, static_cast<TeethUnknown>(tool.unknown)};
   return offsets;
+}
+
+flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets) {
+  flute_grinder::WorkOffsets message;
+  for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
+    message.values[i] = offsets.axes[i].value;
+    message.set_by[i] = offsets.axes[i].set_by;
+    message.set_at[i] = ros::Time(offsets.axes[i].set_at);
+    message.basis[i] = toMessage(offsets.axes[i].basis);
+    message.mounting[i] = offsets.axes[i].mounting;
+  }
+  message.wheel.name = offsets.wheel.name;
+  message.wheel.digest = offsets.wheel.digest;
+  message.wheel.diameter = offsets.wheel.diameter;
+  message.wheel.mounting = offsets.wheel.mounting;
+  message.tool.digest = offsets.tool.digest;
+  message.tool.job_name = offsets.tool.job_name;
+  message.tool.ground = offsets.tool.ground;
+  message.tool.unknown = static_cast<std::uint8_t>(offsets.tool.unknown);
+  return message;
 }
 
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal) {
@@ -114,7 +145,7 @@ std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_
 std::string computable(const std::vector<OffsetMismatch>& mismatches) {
   std::string axes;
   for (const OffsetMismatch& mismatch : mismatches) {
-    if (mismatch.change) axes += (axes.empty() ? "" : " and ") + std::string(1, "XYZA"[mismatch.axis]);
+    if (mismatch.change) axes += (axes.empty() ? "" : " and ") + mismatch.what;
   }
   return axes;
 }

@@ -65,7 +65,7 @@ Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& 
 }  // namespace
 
 GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
-                       Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets)
+                       Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets)
     : loop_(loop),
       gate_(gate),
       planner_(planner),
@@ -164,9 +164,9 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   std::string unknown = offsets_.unknown();
   if (!unknown.empty() || goal.dry_run) return unknown;
   if (!goal.discard) {
-    std::string changed = tracker_.offsetRefusal(digest, offsets.values());
+    std::string changed = tracker_.offsetRefusal(digest, offsets);
     // A job goes on with what it began with, whatever was said then.
-    if (!changed.empty() || tracker_.continues(digest, offsets.values())) return changed;
+    if (!changed.empty() || tracker_.continues(digest, offsets)) return changed;
   }
   if (goal.ignore_offset_check) return "";
   const std::string mismatch = text(mismatches(offsets, goal));
@@ -246,7 +246,7 @@ void GoalServer::startJob() {
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->plan;
   goal_->stream = std::make_unique<SetpointStream>(plan.program);
-  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number);
+  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number, goal_->offsets.wheel.mounting);
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
@@ -320,6 +320,8 @@ void GoalServer::releaseWhenJournaled() {
   if (ended) return;
   goal_->journal_error = tracker_.error();
   if (goal_->journal_error.empty()) {
+    const flute_grinder::GrindGoal& asked = *goal_->handle.getGoal();
+    offsets_.noteGrinding(basisOf(asked, OffsetMethod::kUnknown), asked.first_tooth == 0 && asked.first_pass == 0);
     loop_.confirmJournal(goal_->number);
   } else {
     loop_.postStop(MachineEvent::kCancel);
@@ -357,6 +359,7 @@ void GoalServer::endWhenPublished() {
     if (goal_->journal_error.empty()) {
       const std::string how = resultOfJob(status).error_string;
       tracker_.end(status, how.empty() ? outcomeOf(status.end) : how);
+      if (tracker_.finished()) offsets_.noteGround(basisOf(*goal_->handle.getGoal(), OffsetMethod::kUnknown));
     } else {
       tracker_.revert();
     }

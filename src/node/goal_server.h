@@ -3,7 +3,7 @@
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/control/control_loop.h"
 #include "node/job_gate.h"
-#include "node/offset_store.h"
+#include "node/offset_server.h"
 #include "node/planner.h"
 #include "node/progress_tracker.h"
 #include "node/served_queue.h"
@@ -27,7 +27,7 @@ class GoalServer {
   /// @param private_nh the node's own namespace.
   /// @param the rest must outlive this object.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
-             Telemetry& telemetry, JournalWriter& journal, const OffsetStore& offsets);
+             Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets);
   ~GoalServer();
 
   /// Whether there is a goal that has not ended. Thread safe.
@@ -83,7 +83,7 @@ class GoalServer {
   JobGate& gate_;
   Planner& planner_;
   Telemetry& telemetry_;
-  const OffsetStore& offsets_;
+  OffsetServer& offsets_;
   ProgressTracker tracker_;
 
   std::uint64_t cycles_ = 0;    ///< of the loop, when last seen

@@ -119,12 +119,12 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   stopAxesOnCrash(*loop_);
   if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
   telemetry_->start(*watchdog_);
-  requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_);
   offset_server_ = std::make_unique<OffsetServer>(private_nh_, *loop_, gate_, *offsets_,
                                                   offsetLimits(config.machine.limits, own.offset_change_limit));
+  requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_, *offset_server_);
   probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_server_);
   plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
-  goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offsets_);
+  goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *planner_, *telemetry_, *journal_, *offset_server_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }

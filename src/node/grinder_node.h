@@ -61,8 +61,8 @@ class GrinderNode {
   std::unique_ptr<Planner> planner_;
   std::unique_ptr<Telemetry> telemetry_;
   std::unique_ptr<StopServer> stops_;
-  std::unique_ptr<RequestServer> requests_;
   std::unique_ptr<OffsetServer> offset_server_;
+  std::unique_ptr<RequestServer> requests_;
   std::unique_ptr<ProbeServer> probes_;
   std::unique_ptr<PlanServer> plans_;
   std::unique_ptr<GoalServer> goals_;

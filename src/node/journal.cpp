@@ -35,6 +35,7 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("offset_y_m", progress.offset[kY]);
   visit("offset_z_m", progress.offset[kZ]);
   visit("offset_a_rad", progress.offset[kA]);
+  visit("mounting", progress.mounting);
 }
 
 void requireFinite(const std::string& key, double value) {

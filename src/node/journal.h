@@ -34,6 +34,7 @@ struct Progress {
   double feed_override = 1;    ///< at which it was left, fraction
   Wheel wheel;                 ///< as it was left
   Axes offset = Axes::Zero();  ///< with which the job began, see RunStart [m], A [rad]
+  std::uint32_t mounting = 0;  ///< of the wheel with which the job began, see MountedWheel
 };
 
 /// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.

@@ -27,8 +27,11 @@ std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
   }
   if (!isPlainName(basis.job_name)) return nameRefusal("basis.job_name", basis.job_name);
   if (!isPlainName(basis.wheel_name)) return nameRefusal("basis.wheel_name", basis.wheel_name);
-  if (!basis.wheel_digest.empty() && !isDigest(basis.wheel_digest)) {
-    return "basis.wheel_digest; allowed: 64 hexadecimal digits, or none";
+  for (const auto& [name, digest] :
+       {std::pair("wheel_digest", &basis.wheel_digest), std::pair("tool_digest", &basis.tool_digest)}) {
+    if (!digest->empty() && !isDigest(*digest)) {
+      return std::string("basis.") + name + "; allowed: 64 hexadecimal digits, or none";
+    }
   }
   for (const double figure :
        {basis.end_diameter, basis.wheel_diameter, basis.wheel_width, basis.swivel, basis.height}) {
@@ -55,6 +58,30 @@ std::string refusal(const LoopStatus& status) {
   return "";
 }
 
+/// Why an offset cannot be set for a job; empty if it can.
+std::string wheelRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis& job) {
+  if (axis == kA || !job.hasJob() || !offsets.wheel.isKnown() || isMounted(offsets.wheel, job)) return "";
+  return "the wheel on the spindle is " + mountedText(offsets.wheel) + "; allowed: for " + wheelText(job) +
+         " once it is mounted: grind confirm-wheel JOB";
+}
+
+/// Sets an offset, and what hangs on it. @param offset all but its mounting.
+void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
+  offset.mounting = offsets.wheel.mounting;
+  const OffsetBasis& basis = offset.basis;
+  if (axis == kA) {
+    const bool probed = basis.method == OffsetMethod::kProbe && !basis.tool_digest.empty();
+    const bool same = probed && basis.tool_digest == offsets.tool.digest;
+    const std::uint32_t ground = same ? offsets.tool.ground : 0;
+    if (probed) {
+      offsets.tool = {basis.tool_digest, basis.job_name, ground, {}};
+    } else {
+      offsets.tool.forget(TeethUnknown::kSet);
+    }
+  }
+  offsets.axes[static_cast<std::size_t>(axis)] = std::move(offset);
+}
+
 }  // namespace
 
 OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate,
@@ -66,6 +93,8 @@ OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop&
   publish();
   services_.push_back(nh.advertiseService("set_offset", &OffsetServer::onSet, this));
   services_.push_back(nh.advertiseService("touch_off", &OffsetServer::onTouchOff, this));
+  services_.push_back(nh.advertiseService("confirm_wheel", &OffsetServer::onConfirmWheel, this));
+  services_.push_back(nh.advertiseService("reclamped", &OffsetServer::onReclamped, this));
   thread_.start();
 }
 
@@ -83,23 +112,112 @@ bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_g
 
 template <typename Request, typename Response>
 void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response) {
-  std::string refused = requestRefusal(request);
   bool large_change = false;
-  if (refused.empty() && !gate_.lockOutJobs()) {
+  withoutJob(
+      [&] {
+        const std::string refused = requestRefusal(request);
+        if (!refused.empty()) return refused;
+        WorkOffset offset;
+        offset.set_by = request.set_by;
+        offset.basis = fromMessage(request.basis);
+        offset.basis.method = method;
+        return setWithoutJob(request.axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
+      },
+      response);
+  response.large_change = static_cast<std::uint8_t>(large_change);
+}
+
+bool OffsetServer::onConfirmWheel(flute_grinder::ConfirmWheel::Request& request,
+                                  flute_grinder::ConfirmWheel::Response& response) {
+  withoutJob(
+      [&]() -> std::string {
+        if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
+        const std::string refused = basisRefusal(request.job);
+        if (!refused.empty()) return refused;
+        const OffsetBasis job = fromMessage(request.job);
+        if (!job.hasJob()) return "job.wheel_digest is empty; allowed: of the wheel of a job";
+        if (isMounted(store_.offsets().wheel, job) && !request.again) return "";
+        const auto mount = [&job](WorkOffsets& offsets) {
+          MountedWheel& wheel = offsets.wheel;
+          // What was set before any wheel was confirmed is known by its own wheel.
+          const std::uint32_t mounting = wheel.mounting + (wheel.isKnown() ? 1 : 0);
+          wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, mounting};
+        };
+        return changed(mount, "wheel on the spindle: " + wheelText(job) + ", by " + request.set_by);
+      },
+      response);
+  return true;
+}
+
+bool OffsetServer::onReclamped(flute_grinder::Reclamped::Request& request,
+                               flute_grinder::Reclamped::Response& response) {
+  withoutJob(
+      [&]() -> std::string {
+        if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
+        return changed([](WorkOffsets& offsets) { offsets.tool.forget(TeethUnknown::kClamped); },
+                       "a tool was clamped, by " + request.set_by);
+      },
+      response);
+  return true;
+}
+
+/// Acts while no job is planned or runs. @param act why it has not; empty if it has.
+template <typename Response>
+void OffsetServer::withoutJob(const std::function<std::string()>& act, Response& response) {
+  std::string refused;
+  if (gate_.lockOutJobs()) {
+    refused = act();
+    gate_.letJobsIn();
+  } else {
     const LoopStatus status = loop_.status();
     refused = isInJob(status.state) ? refusal(status) : "a job is being planned, or ends; allowed: after its end";
-  } else if (refused.empty()) {
-    WorkOffset offset;
-    offset.set_by = request.set_by;
-    offset.basis = fromMessage(request.basis);
-    offset.basis.method = method;
-    refused = setWithoutJob(request.axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
-    gate_.letJobsIn();
   }
-  if (!refused.empty()) ROS_WARN_STREAM("work offset not set: " << refused);
+  if (!refused.empty()) ROS_WARN_STREAM("refused: " << refused);
   response.success = static_cast<std::uint8_t>(refused.empty());
   response.message = refused;
-  response.large_change = static_cast<std::uint8_t>(large_change);
+}
+
+/// Changes what is kept. @param done for the log. @return why it was not changed; empty if it was.
+std::string OffsetServer::changed(const OffsetStore::Change& change, const std::string& done) {
+  try {
+    store_.change(change);
+  } catch (const AtomicFileError& error) {
+    return error.what();
+  }
+  ROS_INFO_STREAM(done);
+  publish();
+  return "";
+}
+
+void OffsetServer::note(const OffsetStore::Change& change) {
+  store_.changeAtOnce(change);
+  thread_.post([this] {
+    try {
+      store_.change([](WorkOffsets&) {});
+    } catch (const AtomicFileError& error) {
+      ROS_ERROR_STREAM(error.what() << "; what happened to the tool in the collet is lost with the node's end");
+    }
+    publish();
+  });
+}
+
+void OffsetServer::noteHoming() {
+  if (store_.offsets().tool.digest.empty()) return;
+  note([](WorkOffsets& offsets) { offsets.tool.forget(TeethUnknown::kHomed); });
+}
+
+void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
+  if (job.operation > 0) return;
+  note([=](WorkOffsets& offsets) {
+    const bool goes_on = !whole && offsets.tool.digest == job.tool_digest;
+    offsets.tool = {job.tool_digest, job.job_name, goes_on ? offsets.tool.ground : 0, {}};
+  });
+}
+
+void OffsetServer::noteGround(const OffsetBasis& job) {
+  note([=](WorkOffsets& offsets) {
+    if (offsets.tool.digest == job.tool_digest) offsets.tool.ground |= 1U << job.operation;
+  });
 }
 
 std::string OffsetServer::setProbed(int axis, double value, const WorkOffsets& before,
@@ -129,33 +247,23 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   if (!refused.empty()) return refused;
   const auto i = static_cast<std::size_t>(axis);
   offset.set_at = ros::WallTime::now().toSec();
+  refused = wheelRefusal(store_.offsets(), axis, offset.basis);
+  if (!refused.empty()) return refused;
   offset.value = offset_at(status.position[i]);
   refused = travelRefusal(limits_, axis, offset.value);
   if (!refused.empty()) return refused;
   if (!large_change_ok) refused = changeRefusal(limits_, axis, store_.offsets().axes[i], offset.value);
   large_change = !refused.empty();
   if (large_change) return refused;
-  try {
-    store_.set(axis, offset);
-  } catch (const AtomicFileError& error) {
-    return error.what();
-  }
-  ROS_INFO_STREAM("work offset of " << kJointNames[i] << " = " << text(Quantity{offset.value, unitOf(axis, 0)}, 9)
-                                    << ", " << basisText(axis, offset) << ", by " << offset.set_by);
-  publish();
-  return "";
+  return changed([&](WorkOffsets& offsets) { setIn(offsets, axis, offset); },
+                 std::string("work offset of ") + kJointNames[i] + " = " +
+                     text(Quantity{offset.value, unitOf(axis, 0)}, 9) + ", " + basisText(axis, offset) + ", by " +
+                     offset.set_by);
 }
 
 void OffsetServer::publish() {
-  flute_grinder::WorkOffsets message;
-  const WorkOffsets offsets = store_.offsets();
+  flute_grinder::WorkOffsets message = toMessage(store_.offsets());
   message.header.stamp = ros::Time::now();
-  for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
-    message.values[i] = offsets.axes[i].value;
-    message.set_by[i] = offsets.axes[i].set_by;
-    message.set_at[i] = ros::Time(offsets.axes[i].set_at);
-    message.basis[i] = toMessage(offsets.axes[i].basis);
-  }
   message.error = store_.unknown();
   offsets_.publish(message);
 }

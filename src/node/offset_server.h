@@ -1,6 +1,8 @@
 #pragma once
 
+#include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/ProbeGoal.h"
+#include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/control/control_loop.h"
@@ -17,8 +19,8 @@
 
 namespace grinder {
 
-/// Serves `~set_offset` and `~touch_off`, and publishes the work offsets on `~offsets`. Runs in its own thread, which
-/// waits for the disk.
+/// Serves `~set_offset`, `~touch_off`, `~confirm_wheel` and `~reclamped`, and publishes the work offsets with the wheel
+/// on the spindle and the tool in the collet on `~offsets`. Runs in its own thread, which waits for the disk.
 class OffsetServer {
  public:
   /// @param private_nh the node's own namespace.
@@ -28,6 +30,17 @@ class OffsetServer {
 
   /// The work offsets. Thread safe; never waits for the disk.
   WorkOffsets offsets() const { return store_.offsets(); }
+  /// As OffsetStore::unknown().
+  std::string unknown() const { return store_.unknown(); }
+
+  // What happens to the tool in the collet. In force at once, and on the disk soon; thread safe, without a wait.
+
+  /// The axes are being homed: A may get another reference.
+  void noteHoming();
+  /// A job is about to grind. @param whole it begins at its first pass.
+  void noteGrinding(const OffsetBasis& job, bool whole);
+  /// A job has ground its last pass.
+  void noteGround(const OffsetBasis& job);
 
   /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
   /// which it waits. @param value [m], A [rad]. @param before the offsets when the cycle began; it is not set if it was
@@ -43,6 +56,12 @@ class OffsetServer {
 
   bool onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response);
   bool onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response);
+  bool onConfirmWheel(flute_grinder::ConfirmWheel::Request& request, flute_grinder::ConfirmWheel::Response& response);
+  bool onReclamped(flute_grinder::Reclamped::Request& request, flute_grinder::Reclamped::Response& response);
+  template <typename Response>
+  void withoutJob(const std::function<std::string()>& act, Response& response);
+  std::string changed(const OffsetStore::Change& change, const std::string& done);
+  void note(const OffsetStore::Change& change);
   template <typename Request, typename Response>
   void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
   std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,

@@ -13,18 +13,22 @@ namespace {
 
 constexpr double kLatest = 4e9;  ///< time that a ROS message can hold [s]
 
-OffsetMethod methodOf(const std::string& key, const std::string& name) {
-  const auto method = valueOf<OffsetMethod>(name);
-  requireAllowed(method.has_value(), key, name, namesOf<OffsetMethod>());
-  return *method;
+/// Calls visit(key, name) for a field that is one of a list.
+template <typename Enum, typename Visit>
+void visitChoice(Enum& value, const std::string& key, const Visit& visit) {
+  std::string name = toString(value);
+  visit(key, name);
+  if constexpr (!std::is_const_v<Enum>) {
+    const auto read = valueOf<Enum>(name);
+    requireAllowed(read.has_value(), key, name, namesOf<Enum>());
+    value = *read;
+  }
 }
 
 /// Calls visit(key, value) for every field of what an offset was set for.
 template <typename AnyBasis, typename Visit>
 void visitBasis(AnyBasis& basis, const std::string& joint, const Visit& visit) {
-  std::string method = toString(basis.method);
-  visit(joint + "_method", method);
-  if constexpr (!std::is_const_v<AnyBasis>) basis.method = methodOf(joint + "_method", method);
+  visitChoice(basis.method, joint + "_method", visit);
   visit(joint + "_job", basis.job_name);
   visit(joint + "_wheel", basis.wheel_name);
   visit(joint + "_wheel_digest", basis.wheel_digest);
@@ -33,20 +37,30 @@ void visitBasis(AnyBasis& basis, const std::string& joint, const Visit& visit) {
   visit(joint + "_wheel_width_m", basis.wheel_width);
   visit(joint + "_swivel_rad", basis.swivel);
   visit(joint + "_height_m", basis.height);
+  visit(joint + "_tool_digest", basis.tool_digest);
+  visit(joint + "_operation", basis.operation);
 }
 
 /// Calls visit(key, value) for every field of the file.
-/// @param with_basis whether the file has what the offsets were set for; older ones have not.
 template <typename AnyOffsets, typename Visit>
-void visitOffsets(AnyOffsets& offsets, bool with_basis, const Visit& visit) {
+void visitOffsets(AnyOffsets& offsets, const Visit& visit) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     auto& offset = offsets.axes[static_cast<std::size_t>(axis)];
     const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
     visit(joint + "_" + axisUnit(axis), offset.value);
     visit(joint + "_set_by", offset.set_by);
     visit(joint + "_set_at", offset.set_at);
-    if (with_basis) visitBasis(offset.basis, joint, visit);
+    visit(joint + "_mounting", offset.mounting);
+    visitBasis(offset.basis, joint, visit);
   }
+  visit("wheel", offsets.wheel.name);
+  visit("wheel_digest", offsets.wheel.digest);
+  visit("wheel_diameter_m", offsets.wheel.diameter);
+  visit("wheel_mounting", offsets.wheel.mounting);
+  visit("tool_digest", offsets.tool.digest);
+  visit("tool_job", offsets.tool.job_name);
+  visit("tool_ground", offsets.tool.ground);
+  visitChoice(offsets.tool.unknown, "tool_unknown", visit);
 }
 
 bool isKnown(const WorkOffset& offset) { return !std::isnan(offset.value); }
@@ -64,18 +78,18 @@ void requireSound(const WorkOffsets& offsets) {
       }
     });
   }
+  requireAllowed(std::isfinite(offsets.wheel.diameter), "wheel_diameter_m", offsets.wheel.diameter, "a finite number");
 }
 
 std::string offsetsText(const WorkOffsets& offsets) {
   requireSound(offsets);
   return toYaml("The grinder's work offsets: machine position - work position; .nan is unknown.",
-                [&](const auto& visit) { visitOffsets(offsets, true, visit); });
+                [&](const auto& visit) { visitOffsets(offsets, visit); });
 }
 
 WorkOffsets offsetsFromText(const std::string& text) {
   WorkOffsets offsets;
-  const bool with_basis = text.find("\naxis_x_method: ") != std::string::npos;
-  fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, with_basis, visit); });
+  fromYaml(text, [&](const auto& visit) { visitOffsets(offsets, visit); });
   requireSound(offsets);
   return offsets;
 }
@@ -112,10 +126,10 @@ std::string OffsetStore::unknown() const {
          "; set each of them, or touch off";
 }
 
-void OffsetStore::set(int axis, const WorkOffset& offset) {
+void OffsetStore::change(const Change& change) {
   const WorkOffsets before = offsets();
   WorkOffsets changed = before;
-  changed.axes[static_cast<std::size_t>(axis)] = offset;
+  change(changed);
   const auto write = [this](const WorkOffsets& all) { file_.named([&] { file_.write(offsetsText(all)); }); };
   write(changed);
   try {
@@ -124,13 +138,16 @@ void OffsetStore::set(int axis, const WorkOffset& offset) {
     try {
       write(before);
     } catch (const AtomicFileError& error) {
-      throw AtomicFileError(unsettled.what() + std::string("; the file has the new offset all the same: ") +
-                            error.what());
+      throw AtomicFileError(unsettled.what() + std::string("; the file has the change all the same: ") + error.what());
     }
     throw;
   }
+  changeAtOnce(change);
+}
+
+void OffsetStore::changeAtOnce(const Change& change) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  offsets_ = changed;
+  change(offsets_);
 }
 
 }  // namespace grinder

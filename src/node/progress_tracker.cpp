@@ -44,20 +44,24 @@ std::string ProgressTracker::refusal(const std::string& digest, const ToothPass&
   return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
 }
 
-std::string ProgressTracker::offsetRefusal(const std::string& digest, const Axes& offset) const {
+std::string ProgressTracker::offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const {
   if (progress_.finished || digest != progress_.job_digest) return "";
-  const std::string changes = offsetChanges(offset);
+  if (offsets.wheel.mounting != progress_.mounting) {
+    return "the job is not finished, and another wheel has been mounted since it began; discard the job";
+  }
+  const std::string changes = offsetChanges(offsets);
   if (changes.empty()) return "";
   return "the job is not finished, and it began with other work offsets" + changes +
          "; set them as they were, or discard the job";
 }
 
-bool ProgressTracker::continues(const std::string& digest, const Axes& offset) const {
-  return !progress_.finished && digest == progress_.job_digest && offsetChanges(offset).empty();
+bool ProgressTracker::continues(const std::string& digest, const WorkOffsets& offsets) const {
+  return !progress_.finished && digest == progress_.job_digest && offsetRefusal(digest, offsets).empty();
 }
 
 /// For the operator; empty if they are those of the last entry.
-std::string ProgressTracker::offsetChanges(const Axes& offset) const {
+std::string ProgressTracker::offsetChanges(const WorkOffsets& offsets) const {
+  const Axes offset = offsets.values();
   std::string changes;
   for (int axis = 0; axis < kAxisCount; ++axis) {
     if (std::abs(offset[axis] - progress_.offset[axis]) <= (axis == kA ? kSameAngle : kSameOffset)) continue;
@@ -69,7 +73,7 @@ std::string ProgressTracker::offsetChanges(const Axes& offset) const {
 }
 
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                            std::uint64_t number) {
+                            std::uint64_t number, std::uint32_t mounting) {
   before_ = progress_;
   number_ = number;
   moves_ = program.moves();
@@ -89,6 +93,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
   progress_.offset = program.run().offset;
+  progress_.mounting = mounting;
   write();
 }
 

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/motion/work_offsets.h"
 #include "node/journal_writer.h"
 
 #include <ros/steady_timer.h>
@@ -25,16 +26,17 @@ class ProgressTracker {
   /// @param first pass to grind. @param discard what is known of the last job.
   std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
-  /// them (0.1 um, A 1e-6 rad). Empty if it may, or if it is another job.
-  /// @param offset see RunStart [m], A [rad].
-  std::string offsetRefusal(const std::string& digest, const Axes& offset) const;
+  /// them (0.1 um, A 1e-6 rad), or another wheel has been mounted since. Empty if it may, or if it is another job.
+  std::string offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
-  bool continues(const std::string& digest, const Axes& offset) const;
+  bool continues(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Enters a job before it starts.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
-  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, std::uint64_t number);
+  /// @param mounting MountedWheel::mounting.
+  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, std::uint64_t number,
+             std::uint32_t mounting);
   /// The job was not started: restores the previous entry.
   void revert();
   /// The job has ended. @param how for display, not empty.
@@ -42,13 +44,15 @@ class ProgressTracker {
   /// Records the job's progress or, without a job, the wheel's position. To be called often.
   void update(const LoopStatus& status);
 
+  /// Whether every pass of the last job is ground.
+  bool finished() const { return progress_.finished; }
   /// Whether every entry has been written to disk, or has failed to be.
   bool upToDate() const { return writer_.status().number >= request_; }
   /// Why the last entry is not on disk; empty if it is.
   std::string error() const { return writer_.status().error; }
 
  private:
-  std::string offsetChanges(const Axes& offset) const;
+  std::string offsetChanges(const WorkOffsets& offsets) const;
   void write();
   void updatePlace(const LoopStatus& status);
 

@@ -25,8 +25,8 @@ std::string staleness(const flute_grinder::Jog& message, double timeout) {
 
 }  // namespace
 
-RequestServer::RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
-    : loop_(loop), gate_(gate) {
+RequestServer::RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets)
+    : loop_(loop), gate_(gate), offsets_(offsets) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
   for (const EventRow& request : kMachineEvents) {
@@ -55,7 +55,10 @@ void RequestServer::serve(ros::NodeHandle& nh, MachineEvent event) {
 RequestReply RequestServer::execute(MachineEvent event) {
   // A hold from before the job's start is still in the gate.
   if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
-  return loop_.request(event);
+  RequestReply reply = loop_.request(event);
+  // Also if the answer came too late: the loop may be homing.
+  if (event == MachineEvent::kHome && (reply.accepted || !reply.answered)) offsets_.noteHoming();
+  return reply;
 }
 
 bool RequestServer::onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,

@@ -5,6 +5,7 @@
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/control/control_loop.h"
 #include "node/job_gate.h"
+#include "node/offset_server.h"
 #include "node/served_queue.h"
 
 #include <ros/ros.h>
@@ -20,8 +21,8 @@ namespace grinder {
 class RequestServer {
  public:
   /// @param private_nh the node's own namespace.
-  /// @param loop,gate must outlive this object.
-  RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
+  /// @param loop,gate,offsets must outlive this object.
+  RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets);
 
  private:
   void serve(ros::NodeHandle& nh, MachineEvent event);
@@ -34,6 +35,7 @@ class RequestServer {
 
   ControlLoop& loop_;
   JobGate& gate_;
+  OffsetServer& offsets_;
   ServedQueue thread_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber jogs_;

@@ -402,7 +402,7 @@ void JobBox::showZeroPoints() {
   QString hint;
   if (offsets_) {
     QStringList axes, said;
-    for (const OffsetMismatch& mismatch : offsetMismatches()) axes << QString("XYZA"[mismatch.axis]);
+    for (const OffsetMismatch& mismatch : offsetMismatches()) axes << QString::fromStdString(mismatch.what);
     if (continue_->isChecked()) said << "as when the job began";
     if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
     if (said.isEmpty()) said << "set for this job";

@@ -31,6 +31,20 @@ std::string figuresOf(const GrindJob& job, const Wanted& wanted) {
   return figures;
 }
 
+bool placesTeeth(std::string_view path) {
+  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
+  const bool of_relief = path == "cutter.clearance" || path == "cutter.land" || path == "cutter.second_clearance";
+  if (begins("cutter.")) return !of_relief && path.find("tolerance") == std::string_view::npos;
+  return begins("process.setup_") || begins("process.depth") || path == "process.z_law" || isOfWheel(path);
+}
+
+std::string teethOf(const GrindJob& job) {
+  std::string figures;
+  for (const double angle : job.tooth_angles) figures += format("tooth %a\n", angle);
+  for (const double angle : job.spiral_angles) figures += format("spiral %a\n", angle);
+  return figures;
+}
+
 std::string digestOf(const std::string& figures) { return sha256Hex(figures.data(), figures.size()); }
 
 }  // namespace
@@ -38,9 +52,11 @@ std::string digestOf(const std::string& figures) { return sha256Hex(figures.data
 std::string jobDigest(const GrindJob& job) {
   std::string figures = figuresOf(job, [](const char*) { return true; });
   for (int i = 0; i < job.operation; ++i) figures += figuresOf(job.ofOperation(i), isOfProcess);
-  for (const double angle : job.tooth_angles) figures += format("tooth %a\n", angle);
-  for (const double angle : job.spiral_angles) figures += format("spiral %a\n", angle);
-  return digestOf(figures);
+  return digestOf(figures + teethOf(job));
+}
+
+std::string toolDigest(const GrindJob& job) {
+  return digestOf(figuresOf(job.ofOperation(0), placesTeeth) + teethOf(job));
 }
 
 std::string wheelDigest(const GrindJob& job) { return digestOf(figuresOf(job, isOfWheel)); }

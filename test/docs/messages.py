@@ -34,7 +34,7 @@ MESSAGES = {
     'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
     'src/control/swivel_range.cpp': (),
     'include/flute_grinder/machine/loop_fault.h': (),
-    'src/machine/offset_fit.cpp': ('width of the wheel',),
+    'src/machine/offset_fit.cpp': ('width of the wheel', 'another tool', 'not confirmed'),
     'src/machine/offset_limits.cpp': (),
     'include/flute_grinder/job/axes.h': (),
     'include/flute_grinder/job/reason.h': (),
@@ -53,7 +53,7 @@ MESSAGES = {
     'src/node/grinder_node.cpp': (),
     'src/node/journal_writer.cpp': (),
     'src/node/atomic_file.cpp': (),
-    'src/node/offset_server.cpp': (),
+    'src/node/offset_server.cpp': ('wheel on the spindle:', 'a tool was clamped, by'),
     'src/node/offset_store.cpp': ("The grinder's work offsets: machine position - work position; .nan is unknown.",),
     'src/node/plan_server.cpp': (),
     'src/node/probe_server.cpp': (),

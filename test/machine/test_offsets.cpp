@@ -23,25 +23,36 @@ constexpr double kDegree = 0.017453292519943295;
 
 /// A job of D 6 with a wheel of D 100 x 3.
 OffsetBasis basisOf(OffsetMethod method = OffsetMethod::kTouchOff) {
-  return {method, "d6.yaml", "a.yaml", std::string(64, 'a'), 0.006, 0.1, 0.003, 30 * kDegree, 0.0015};
+  return {method, "d6.yaml",    "a.yaml", std::string(64, 'a'), 0.006, 0.1,
+          0.003,  30 * kDegree, 0.0015,   std::string(64, 'c')};
 }
 
 WorkOffset offsetFor(const OffsetBasis& basis) { return {0.001, "anna@grinder", 1.7e9, basis}; }
 
-/// All set for the job of D 6, A never.
+/// All set for a job, A never; its wheel is mounted.
 WorkOffsets offsetsFor(const OffsetBasis& basis) {
   WorkOffsets offsets;
+  offsets.wheel = {basis.wheel_name, basis.wheel_digest, basis.wheel_diameter};
   for (const int axis : {kX, kY, kZ}) offsets.axes[static_cast<std::size_t>(axis)] = offsetFor(basis);
   return offsets;
 }
 
+/// The axes that do not fit.
 std::string axesOf(const std::vector<OffsetMismatch>& mismatches) {
   std::string axes;
-  for (const OffsetMismatch& mismatch : mismatches) axes += "XYZA"[mismatch.axis];
+  for (const OffsetMismatch& mismatch : mismatches) {
+    if (mismatch.what != "wheel") axes += mismatch.what;
+  }
   return axes;
 }
 
-TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsAlways) {
+std::vector<std::string> reasonsOf(const std::vector<OffsetMismatch>& mismatches) {
+  std::vector<std::string> reasons;
+  for (const OffsetMismatch& mismatch : mismatches) reasons.push_back(mismatch.reason);
+  return reasons;
+}
+
+TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsTheFlutes) {
   const OffsetBasis job = basisOf();
   EXPECT_TRUE(mismatches(offsetsFor(job), job).empty());
   WorkOffsets offsets = offsetsFor(job);
@@ -67,12 +78,11 @@ TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
            {offsetsFor(no_job),
             {"Y was touched off, not known for which job", "Z was touched off, not known for which job"}}};
   for (const auto& row : rows) {
-    std::vector<std::string> reasons;
-    for (const OffsetMismatch& mismatch : mismatches(row.offsets, basisOf())) {
-      reasons.push_back(mismatch.reason);
-      EXPECT_FALSE(mismatch.change) << mismatch.reason;
-    }
-    EXPECT_EQ(reasons, row.reasons);
+    WorkOffsets offsets = row.offsets;
+    offsets.wheel = offsetsFor(basisOf()).wheel;
+    const auto found = mismatches(offsets, basisOf());
+    for (const OffsetMismatch& mismatch : found) EXPECT_FALSE(mismatch.change) << mismatch.reason;
+    EXPECT_EQ(reasonsOf(found), row.reasons);
   }
 }
 
@@ -103,7 +113,7 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
       {"Z", "height nan mm", [](OffsetBasis& b) { b.height = kNan; }},
       {"XZ", "swivel nan deg", [](OffsetBasis& b) { b.swivel = kNan; }},
       {"", "", [](OffsetBasis& b) { b.job_name = "other.yaml"; }},
-      {"", "", [](OffsetBasis& b) { b.wheel_name = ""; }},
+      {"XYZ", "wheel D 100 mm", [](OffsetBasis& b) { b.wheel_name = ""; }},
       {"", "", [](OffsetBasis& b) { b.swivel += 0.04 * kDegree; }},
       {"", "", [](OffsetBasis& b) { b.end_diameter += 1e-12; }},
   };
@@ -113,6 +123,7 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
     const auto found = mismatches(offsetsFor(basisOf()), job);
     EXPECT_EQ(axesOf(found), row.axes) << row.has;
     for (const auto& mismatch : found) {
+      if (mismatch.what == "wheel") continue;
       EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
       if (row.axes[0] == 'X') {
         EXPECT_FALSE(mismatch.change) << row.has;
@@ -153,7 +164,8 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
                          job.process.wheel_diameter,
                          job.process.wheel_width,
                          job.process.setup_swivel,
-                         job.process.setup_height};
+                         job.process.setup_height,
+                         ""};
     };
     WorkOffsets offsets = offsetsFor(basis(was));
     const Eigen::Vector3d before = workZero(machine, was, mounting), after = workZero(machine, is, mounting);
@@ -166,6 +178,78 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
     }
     EXPECT_NEAR(before.x(), after.x(), 1e-15);
   }
+}
+
+TEST(OffsetFit, TheWheelOnTheSpindleIsThatOfTheJob) {
+  const OffsetBasis job = basisOf();
+  WorkOffsets offsets = offsetsFor(job);
+  const std::string remedy = "; this job has a.yaml, D 100 mm; once it is mounted, say so: grind confirm-wheel JOB";
+  offsets.wheel = {};
+  EXPECT_EQ(reasonsOf(mismatches(offsets, job)),
+            std::vector<std::string>{"the wheel on the spindle is not confirmed" + remedy});
+  offsets.wheel = {"b.yaml", job.wheel_digest, 0.1};
+  EXPECT_EQ(reasonsOf(mismatches(offsets, job)),
+            std::vector<std::string>{"the wheel on the spindle is b.yaml, D 100 mm" + remedy});
+  offsets.wheel = {job.wheel_name, std::string(64, 'b'), 0.1};
+  EXPECT_EQ(mismatches(offsets, job).size(), 1U) << "of other figures";
+}
+
+TEST(OffsetFit, WhatWasSetWithAWheelDoesNotFitOnceAnotherWasOnTheSpindle) {
+  WorkOffsets offsets = offsetsFor(basisOf());
+  offsets.axes[kX].basis = OffsetBasis{};
+  offsets.axes[kX].basis.method = OffsetMethod::kTouchOff;
+  ++offsets.wheel.mounting;
+  offsets.axes[kZ].mounting = offsets.wheel.mounting;
+  const auto found = mismatches(offsets, basisOf());
+  ASSERT_EQ(axesOf(found), "XY");
+  for (const OffsetMismatch& mismatch : found) {
+    EXPECT_FALSE(mismatch.change);
+    EXPECT_NE(mismatch.reason.find("; another wheel has been mounted since"), std::string::npos) << mismatch.reason;
+  }
+}
+
+TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
+  OffsetBasis primary = basisOf(), secondary = basisOf();
+  primary.operation = 1;
+  secondary.operation = 2;
+  const auto refusalOf = [](const WorkOffsets& offsets, const OffsetBasis& job) {
+    const auto found = mismatches(offsets, job);
+    EXPECT_LE(found.size(), 1U);
+    return found.empty() ? "" : found[0].reason;
+  };
+  WorkOffsets offsets = offsetsFor(primary);
+  const auto is = [&](const std::string& tool, std::uint32_t ground) {
+    offsets.tool = {tool, "d6.yaml", ground, TeethUnknown::kNeverGround};
+  };
+  const std::string remedy = "; probe a tooth: grind probe tooth",
+                    unknown = "A: where the teeth of this tool are is not known: ";
+  EXPECT_EQ(refusalOf(offsets, basisOf()), "") << "flutes may be anywhere on a blank";
+  EXPECT_EQ(refusalOf(offsets, primary), unknown + "no flutes were ground" + remedy);
+  for (const auto& [why, said] : {std::pair(TeethUnknown::kClamped, "the tool was clamped anew"),
+                                  std::pair(TeethUnknown::kHomed, "the axes were homed after the flutes"),
+                                  std::pair(TeethUnknown::kSet, "the zero point of A was set after the flutes")}) {
+    is(primary.tool_digest, 0b1);
+    EXPECT_EQ(refusalOf(offsets, primary), "");
+    offsets.tool.forget(why);
+    EXPECT_EQ(refusalOf(offsets, primary), unknown + said + remedy);
+    EXPECT_EQ(refusalOf(offsets, basisOf()), "");
+  }
+  is(std::string(64, 'd'), 0b1);
+  EXPECT_EQ(refusalOf(offsets, primary), unknown + "A is as for d6.yaml with flute" + remedy);
+  is(primary.tool_digest, 0);
+  EXPECT_EQ(refusalOf(offsets, primary), "A: operation flute is not ground on this tool");
+  is(primary.tool_digest, 0b1);
+  EXPECT_EQ(refusalOf(offsets, secondary), "A: operation primary relief is not ground on this tool");
+  is(primary.tool_digest, 0b11);
+  EXPECT_EQ(refusalOf(offsets, secondary), "");
+  const std::string twice = " is ground on this tool already; if another blank is clamped, say so: grind reclamped";
+  EXPECT_EQ(refusalOf(offsets, primary), "A: operation primary relief" + twice);
+  EXPECT_EQ(refusalOf(offsets, basisOf()), "A: operation flute" + twice);
+  // A tooth of a tool whose flutes were ground elsewhere.
+  is(primary.tool_digest, 0);
+  offsets.axes[kA] = offsetFor(basisOf(OffsetMethod::kProbe));
+  EXPECT_EQ(refusalOf(offsets, primary), "");
+  EXPECT_EQ(refusalOf(offsets, secondary), "");
 }
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {

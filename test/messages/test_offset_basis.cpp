@@ -68,6 +68,42 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
   EXPECT_NE(wheelDigest(other), digest);
 }
 
+/// What the operator changes between flutes and reliefs, or after dressing, does not make another tool of it.
+TEST(OffsetBasis, TheToolIsKnownByWhatPlacesItsTeeth) {
+  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "flute");
+  const std::string digest = toolDigest(job);
+  for (const int operation : {1, 2}) EXPECT_EQ(toolDigest(job.ofOperation(operation)), digest) << operation;
+  const auto changed = [&](auto change) {
+    GrindJob other = job;
+    change(other);
+    other.operations[0].process = other.process;
+    return toolDigest(other) != digest;
+  };
+  EXPECT_TRUE(changed([](GrindJob& j) { j.tooth_angles[1] += 0.01; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.end_diameter += 1e-4; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.cut = CutDirection::kLeftHand; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process.setup_swivel += 1e-3; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process.depth += 1e-4; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process.feed *= 2; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process.wheel_wear += 1e-5; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.clearance += 0.01; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.rake_tolerance *= 2; }));
+}
+
+TEST(OffsetBasis, WorkOffsetsSurviveTheirMessage) {
+  WorkOffsets offsets;
+  for (WorkOffset& offset : offsets.axes) {
+    offset = {0.001, "anna@grinder", 1.7e9, basisOf(goalFromFile(kJob), OffsetMethod::kProbe), 7};
+  }
+  offsets.wheel = {"a.yaml", std::string(64, 'a'), 0.1, 7};
+  offsets.tool = {"", "d6.yaml", 0b11, TeethUnknown::kHomed};
+  const flute_grinder::WorkOffsets message = toMessage(offsets);
+  EXPECT_TRUE(toMessage(fromMessage(message)) == message);
+  EXPECT_EQ(message.wheel.mounting, 7U);
+  EXPECT_EQ(message.tool.unknown, flute_grinder::ClampedTool::HOMED);
+  EXPECT_EQ(message.basis[kA].tool_digest, toolDigest(readJobFile(kJob)));
+}
+
 TEST(OffsetBasis, SurvivesItsMessageAndAnUnknownMethodIsUnknown) {
   const OffsetBasis basis = basisOf(goalFromFile(kJob), OffsetMethod::kByHand);
   flute_grinder::OffsetBasis message = toMessage(basis);
@@ -80,10 +116,10 @@ TEST(OffsetBasis, SurvivesItsMessageAndAnUnknownMethodIsUnknown) {
 TEST(OffsetBasis, ADeeperCutThanAskedIsAMisfit) {
   flute_grinder::GrindGoal small = goalFromFile(kJob);
   small.cutter.end_diameter = 0.006;
+  const OffsetBasis basis = basisOf(small, OffsetMethod::kTouchOff);
   WorkOffsets offsets;
-  for (WorkOffset& offset : offsets.axes) {
-    offset = {0.001, "anna@grinder", 1.7e9, basisOf(small, OffsetMethod::kTouchOff)};
-  }
+  offsets.wheel = {basis.wheel_name, basis.wheel_digest, basis.wheel_diameter};
+  for (WorkOffset& offset : offsets.axes) offset = {0.001, "anna@grinder", 1.7e9, basis};
   EXPECT_TRUE(mismatches(offsets, small).empty());
   EXPECT_TRUE(offsetWarnings(offsets, small).empty());
   flute_grinder::GrindGoal large = small;

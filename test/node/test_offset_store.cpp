@@ -11,19 +11,32 @@ namespace test_offset_store {
 
 using namespace test_support;
 
-const OffsetBasis kBasis{
-    OffsetMethod::kProbe, "my \"job\".yaml", "a: b.yaml", std::string(64, 'f'), 0.006, 0.1, 0.003, 1.0 / 3, -0.0015};
+const OffsetBasis kBasis{OffsetMethod::kProbe,
+                         "my \"job\".yaml",
+                         "a: b.yaml",
+                         std::string(64, 'f'),
+                         0.006,
+                         0.1,
+                         0.003,
+                         1.0 / 3,
+                         -0.0015,
+                         std::string(64, 'e'),
+                         2};
 const WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
 const WorkOffset kOther{-1000, "", 0};
 
 class OffsetStoreTest : public JournalTest {
  protected:
+  static void set(OffsetStore& store, int axis, const WorkOffset& offset) {
+    store.change([&](WorkOffsets& offsets) { offsets.axes[static_cast<std::size_t>(axis)] = offset; });
+  }
+
   /// The file with two of the offsets set, one of them anew.
   std::string written() {
     OffsetStore store(path_, "/grinder");
-    store.set(kY, {1, "", 1});
-    store.set(kY, kSome);
-    store.set(kA, kOther);
+    set(store, kY, {1, "", 1});
+    set(store, kY, kSome);
+    set(store, kA, kOther);
     return readFile(path_);
   }
 
@@ -66,6 +79,8 @@ TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
   EXPECT_EQ(basis.wheel_width, 0.003);
   EXPECT_EQ(basis.swivel, 1.0 / 3);
   EXPECT_EQ(basis.height, -0.0015);
+  EXPECT_EQ(basis.tool_digest, kBasis.tool_digest);
+  EXPECT_EQ(basis.operation, 2);
   EXPECT_EQ(offsets.axes[kA].basis.method, OffsetMethod::kUnknown);
   EXPECT_FALSE(offsets.axes[kA].basis.hasJob());
   EXPECT_EQ(offsets.axes[kA].value, -1000);
@@ -74,24 +89,39 @@ TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
   EXPECT_TRUE((offsets.values() == Axes(0, 0.1 + 0.2, 0, -1000)).all());
 }
 
-TEST_F(OffsetStoreTest, OfAFileWithoutItIsUnknownForWhatTheyWereSet) {
-  std::string old;
-  for (const char axis : {'x', 'y', 'z', 'a'}) {
-    const std::string joint = std::string("axis_") + axis;
-    old += joint + (axis == 'a' ? "_rad" : "_m") + ": 0.0015\n" + joint + "_set_by: \"anna axis_x_method: probe\"\n" +
-           joint + "_set_at: 1700000000\n";
+TEST_F(OffsetStoreTest, KeepsWheelAndTool) {
+  {
+    OffsetStore store(path_, "/grinder");
+    store.change([](WorkOffsets& offsets) {
+      offsets.axes[kY].mounting = 4;
+      offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 5};
+      offsets.tool = {std::string(64, 'e'), "my job.yaml", 0b101, TeethUnknown::kNeverGround};
+    });
   }
-  EXPECT_EQ(unknownWith(sealed(old)), "");
-  OffsetStore store(path_, "/grinder");
-  for (const WorkOffset& offset : store.offsets().axes) {
-    EXPECT_EQ(offset.value, 0.0015);
-    EXPECT_TRUE(offset.wasSet());
-    EXPECT_EQ(offset.basis.method, OffsetMethod::kUnknown);
-    EXPECT_FALSE(offset.basis.hasJob());
+  const WorkOffsets kept = OffsetStore(path_, "/grinder").offsets();
+  EXPECT_EQ(kept.axes[kY].mounting, 4U);
+  EXPECT_EQ(kept.wheel.name, "a: b.yaml");
+  EXPECT_EQ(kept.wheel.digest, std::string(64, 'f'));
+  EXPECT_EQ(kept.wheel.diameter, 0.1);
+  EXPECT_EQ(kept.wheel.mounting, 5U);
+  EXPECT_EQ(kept.tool.digest, std::string(64, 'e'));
+  EXPECT_EQ(kept.tool.job_name, "my job.yaml");
+  EXPECT_EQ(kept.tool.ground, 0b101U);
+}
+
+TEST_F(OffsetStoreTest, WhatIsInForceAtOnceIsOnTheDiskWithTheNextChange) {
+  {
+    OffsetStore store(path_, "/grinder");
+    store.change([](WorkOffsets& offsets) { offsets.tool.digest = std::string(64, 'e'); });
+    const std::string before = readFile(path_);
+    store.changeAtOnce([](WorkOffsets& offsets) { offsets.tool.forget(TeethUnknown::kHomed); });
+    EXPECT_EQ(store.offsets().tool.digest, "");
+    EXPECT_EQ(readFile(path_), before);
+    set(store, kY, kSome);
   }
-  store.set(kY, kSome);
-  EXPECT_EQ(store.offsets().axes[kX].basis.method, OffsetMethod::kUnknown);
-  EXPECT_EQ(store.offsets().axes[kY].basis.method, OffsetMethod::kProbe);
+  const WorkOffsets kept = OffsetStore(path_, "/grinder").offsets();
+  EXPECT_EQ(kept.tool.digest, "");
+  EXPECT_EQ(kept.tool.unknown, TeethUnknown::kHomed);
 }
 
 TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumMakeThemUnknown) {
@@ -109,6 +139,8 @@ TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumMakeThemUnknown) {
        "axis_y_method = guessed; allowed: unknown, touch_off, probe, by_hand"},
       {"axis_y_height_m", "axis_y_height_m: .nan\n", "axis_y_height_m = nan; allowed: a finite number"},
       {"axis_y_job", "", "axis_y_job is missing"},
+      {"wheel_diameter_m", "wheel_diameter_m: .inf\n", "wheel_diameter_m = inf; allowed: a finite number"},
+      {"tool_unknown", "tool_unknown: lost\n", "tool_unknown = lost; allowed: never_ground, clamped, homed, set"},
   };
   for (const auto& wrong : lines) {
     const std::string unknown = unknownWith(sealed(withLine(body, wrong.key, wrong.line)));
@@ -123,16 +155,16 @@ TEST_F(OffsetStoreTest, AfterDamageEachIsUnknownUntilItIsSet) {
     EXPECT_TRUE(store.offsets().values().isNaN().all());
     EXPECT_EQ(store.unknown(), "unknown work offsets of axis_x, axis_y, axis_z, axis_a: file of work offsets " + path_ +
                                    ": its checksum is missing; set each of them, or touch off");
-    store.set(kX, kSome);
-    store.set(kZ, kOther);
+    set(store, kX, kSome);
+    set(store, kZ, kOther);
     EXPECT_EQ(store.unknown().rfind("unknown work offsets of axis_y, axis_a: ", 0), 0U) << store.unknown();
   }
   OffsetStore next(path_, "/grinder");
   EXPECT_EQ(next.unknown(), "unknown work offsets of axis_y, axis_a; set each of them, or touch off");
   EXPECT_EQ(next.offsets().axes[kX].value, kSome.value);
   EXPECT_TRUE(std::isnan(next.offsets().axes[kY].value));
-  next.set(kY, kSome);
-  next.set(kA, {});
+  set(next, kY, kSome);
+  set(next, kA, {});
   EXPECT_EQ(next.unknown(), "");
 }
 
@@ -140,24 +172,24 @@ TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsReported) {
   std::filesystem::create_directory(path_);
   OffsetStore store(path_, "/grinder");
   EXPECT_NE(store.unknown(), "");
-  EXPECT_THROW(store.set(kX, kSome), AtomicFileError);
+  EXPECT_THROW(set(store, kX, kSome), AtomicFileError);
   EXPECT_TRUE(store.offsets().values().isNaN().all());
   std::filesystem::remove(path_);
-  store.set(kX, kSome);
+  set(store, kX, kSome);
   EXPECT_EQ(store.offsets().axes[kX].value, kSome.value);
 }
 
 TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   const std::string good = written();
   OffsetStore store(path_, "/grinder");
-  EXPECT_THROW(store.set(kY, {1000.1, "", 0}), AtomicFileError);
-  EXPECT_THROW(store.set(kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
+  EXPECT_THROW(set(store, kY, {1000.1, "", 0}), AtomicFileError);
+  EXPECT_THROW(set(store, kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(readFile(path_), good);
   {
     // Written to, but not opened to be synchronized.
     const Forbidden folder(folder_, std::filesystem::perms{0333});
-    EXPECT_THROW(store.set(kY, kOther), AtomicFileError);
+    EXPECT_THROW(set(store, kY, kOther), AtomicFileError);
   }
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(readFile(path_), good) << "a restart would set it";

@@ -206,7 +206,8 @@ class TestZeroPoints(OffsetsTest):
                 self.assertIn(text, warning)
 
     def test_of_another_diameter(self):
-        never = 'X was never set; Y was never set; Z was never set'
+        wheel = 'the wheel on the spindle is not confirmed; this job has D 100 mm; once it is mounted, say so: grind confirm-wheel JOB'
+        never = wheel + '; X was never set; Y was never set; Z was never set'
         self.check_reported(never)
         self.check_rejected(never + '; set them for this job, or start it with --ignore-offset-check')
         self.assertRegex(self.said('status'), r'(?m)^zero point Y    never set$')
@@ -217,6 +218,7 @@ class TestZeroPoints(OffsetsTest):
 
         d6 = gc.job_file(os.path.join(self.folder, 'd6.yaml'), end_diameter_mm=6)
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
+        self.assertEqual(self.said('confirm-wheel', d6), 'the wheel on the spindle is D 100 mm\n')
         self.grind(0, 'offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)
         reported = 'Y was set by hand for D 6 mm, wheel D 100 mm (d6.yaml); this job has D 10 mm; ' \
                "'grind offsets --fit JOB' computes Y"
@@ -235,6 +237,11 @@ class TestZeroPoints(OffsetsTest):
         reported = self.json('status')['zero_points']
         self.assertEqual((reported['a'], reported['y']['method'], reported['y']['job']), (None, 'computed', 'd10.yaml'))
 
+        # Once there is a place on the disk for it, another start without another blank grinds it a second time.
+        self.check_rejected('A: operation flute is ground on this tool already; if another blank is clamped, say so: grind reclamped')
+        self.grind(0, 'reclamped')
+        self.check_reported()
+
         # Of a wheel that has become thinner Y alone could be computed: nothing is.
         other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
         self.assertRegex(self.grind(1, 'offsets', '--fit', other).stderr,
@@ -250,10 +257,83 @@ class TestZeroPoints(OffsetsTest):
 
     def test_computed_ones_fit_their_job(self):
         job = gc.package_file('test/jobs/paper.yaml')
+        self.grind(0, 'confirm-wheel', job)
         self.said('zeros', job, '--stickout', '62', '--flange', '2', '--set')
         self.assertNotIn('warning', self.grind(0, 'run', job, '--dry-run').stderr)
         self.check_reported()
         self.assertEqual(self.json('offsets')['axes']['z']['set_for']['method'], 'computed')
+
+
+class TestToolOfSeveralOperations(OffsetsTest):
+    """Flutes and reliefs of one tool, with two wheels."""
+
+    def setUp(self):
+        super().setUp()
+        self.job = gc.reamer_file(os.path.join(self.folder, 'reamer.yaml'))
+        text = open(self.job).read().replace('feed_mm_min: 700', 'feed_mm_min: 7000').replace('infeed_mm: 0.4', 'infeed_mm: 2')
+        with open(self.job, 'w') as file:
+            file.write(text)
+        self.grind(0, 'confirm-swivel', '13.104')
+
+    def mount(self, operation):
+        self.grind(0, 'confirm-wheel', self.job, '--operation', operation)
+
+    def set_zeros(self, operation):
+        self.grind(0, 'zeros', self.job, '--operation', operation, '--stickout', '62', '--flange', '2', '--set', '--yes')
+
+    def run_operation(self, operation, status=0):
+        return self.grind(status, 'run', self.job, '--operation', operation).stderr
+
+    def check_refused(self, operation, text):
+        self.assertIn(text, self.run_operation(operation, 1))
+        self.assertIn(text, self.grind(0, 'run', self.job, '--operation', operation, '--dry-run').stderr)
+
+    def grind_flutes(self):
+        self.mount('flute')
+        self.set_zeros('flute')
+        self.run_operation('flute')
+        self.assertRegex(self.said('status'), r'(?m)^tool            reamer\.yaml with flute$')
+
+    def test_each_wants_its_wheel_and_its_zero_points(self):
+        self.mount('flute')
+        self.assertIn('the wheel on the spindle is D 100 mm; allowed: for straight_d100_w6.yaml, D 100 mm once it is mounted',
+                      self.grind(1, 'touch-off', 'z', '--job', self.job, '--operation', 'primary').stderr)
+        self.grind_flutes()
+        self.check_refused('primary', 'the wheel on the spindle is D 100 mm; this job has straight_d100_w6.yaml, D 100 mm')
+        self.mount('primary')
+        self.check_refused('primary', 'another wheel has been mounted since; Y was computed for')
+        self.set_zeros('primary')
+        self.check_refused('secondary', 'A: operation primary relief is not ground on this tool')
+        self.run_operation('primary')
+        self.check_refused('primary', 'A: operation primary relief is ground on this tool already')
+        # The wheel is the same, and only the height is another.
+        self.grind(0, 'offsets', '--fit', self.job, '--operation', 'secondary')
+        self.run_operation('secondary')
+        self.assertRegex(self.said('offsets'), r'(?m)^tool in the collet: reamer\.yaml with flute, primary relief, secondary relief$')
+        # It was dressed on another machine.
+        self.mount('secondary')
+        self.assertNotIn('another wheel', self.grind(0, 'run', self.job, '--operation', 'secondary', '--dry-run').stderr)
+        self.grind(0, 'confirm-wheel', self.job, '--operation', 'secondary', '--again')
+        self.check_refused('secondary', 'another wheel has been mounted since; Z was computed for')
+
+    def test_a_relief_wants_the_a_of_its_flutes(self):
+        unknown = 'A: where the teeth of this tool are is not known: %s; probe a tooth: grind probe tooth'
+        self.mount('primary')
+        self.set_zeros('primary')
+        self.check_refused('primary', unknown % 'no flutes were ground')
+        for act, why in ((lambda: self.grind(0, 'touch-off', 'a', '--at', '20'), 'the zero point of A was set after the flutes'),
+                         (lambda: self.grind(0, 'home'), 'the axes were homed after the flutes'),
+                         (lambda: self.grind(0, 'reclamped'), 'the tool was clamped anew')):
+            self.grind_flutes()
+            self.mount('primary')
+            self.set_zeros('primary')
+            self.assertNotIn('A: ', self.grind(0, 'run', self.job, '--operation', 'primary', '--dry-run').stderr)
+            act()
+            self.check_refused('primary', unknown % why)
+        self.restart()
+        self.client.make_ready()
+        self.grind(0, 'confirm-swivel', '13.104')
+        self.check_refused('primary', unknown % 'the tool was clamped anew')
 
 
 class TestCommandLine(OffsetsTest):

@@ -43,13 +43,24 @@ class ProgressTrackerTest : public ::testing::Test {
   }
 
   void begin(const GrindProgram& program, const std::string& digest) {
-    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started);
+    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started, mounting_);
     status_.strokes_ended_at = 0;
     status_.place = {};
   }
   void endStroke(const GrindProgram& program, int pass) {
     status_.strokes_ended_at = strokeOf(program, pass) + 1;
     tracker_.update(status_);
+  }
+  std::string offsetRefusal(const std::string& digest, const Axes& offset) {
+    WorkOffsets offsets;
+    for (std::size_t axis = 0; axis < offsets.axes.size(); ++axis) {
+      offsets.axes[axis].value = offset[static_cast<int>(axis)];
+    }
+    offsets.wheel.mounting = mounting_;
+    const std::string refused = tracker_.offsetRefusal(digest, offsets);
+    const bool continues = digest == onDisk().job_digest && !onDisk().finished && refused.empty();
+    EXPECT_EQ(tracker_.continues(digest, offsets), continues);
+    return refused;
   }
   /// A job that is canceled after so many passes.
   void grind(const GrindProgram& program, const std::string& digest, int passes) {
@@ -63,6 +74,7 @@ class ProgressTrackerTest : public ::testing::Test {
   JournalWriter writer_{folder_.path() / "journal", "/test"};
   ProgressTracker tracker_{writer_};
   LoopStatus status_;
+  std::uint32_t mounting_ = 3;
 };
 
 TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
@@ -99,7 +111,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
-  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1);
+  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1, mounting_);
   tracker_.update(status_);
   const Progress entered = onDisk();
   EXPECT_EQ(entered.job_digest, "short");
@@ -110,7 +122,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
 TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   grind(two_, "left", 1);
   const Progress before = onDisk();
-  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1);
+  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1, mounting_);
   EXPECT_EQ(onDisk().job_digest, "refused");
   tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);
@@ -179,18 +191,21 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
   const GrindProgram shifted = program(2, offset);
   grind(shifted, "job", 1);
   EXPECT_TRUE((onDisk().offset == offset).all());
-  EXPECT_EQ(tracker_.offsetRefusal("job", offset), "");
-  EXPECT_EQ(tracker_.offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
-  EXPECT_EQ(tracker_.offsetRefusal("job", {0.1, 0.03125, 0, 0}),
+  EXPECT_EQ(offsetRefusal("job", offset), "");
+  EXPECT_EQ(offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
+  EXPECT_EQ(offsetRefusal("job", {0.1, 0.03125, 0, 0}),
             "the job is not finished, and it began with other work offsets; that of axis Y was 30 mm and is 31.25 mm; "
             "that of axis A was 28.6478898 deg and is 0 deg; set them as they were, or discard the job");
-  EXPECT_EQ(tracker_.offsetRefusal("job", {0.1 + 0.9e-7, 0.03 - 0.9e-7, 0, 0.5 + 0.9e-6}), "");
+  EXPECT_EQ(offsetRefusal("job", {0.1 + 0.9e-7, 0.03 - 0.9e-7, 0, 0.5 + 0.9e-6}), "");
   for (const Axes& other : {Axes(0.1 + 1.1e-7, 0.03, 0, 0.5), Axes(0.1, 0.03, -1.1e-7, 0.5),
                             Axes(0.1, 0.03, 0, 0.5 - 1.1e-6), Axes(std::nan(""), 0.03, 0, 0.5)}) {
-    EXPECT_NE(tracker_.offsetRefusal("job", other), "") << other.transpose();
+    EXPECT_NE(offsetRefusal("job", other), "") << other.transpose();
   }
+  ++mounting_;
+  EXPECT_EQ(offsetRefusal("job", offset),
+            "the job is not finished, and another wheel has been mounted since it began; discard the job");
   grind(shifted, "job", 2);
-  EXPECT_EQ(tracker_.offsetRefusal("job", Axes::Zero()), "") << "it is finished";
+  EXPECT_EQ(offsetRefusal("job", Axes::Zero()), "") << "it is finished";
   EXPECT_TRUE(onDisk().finished);
 }
 

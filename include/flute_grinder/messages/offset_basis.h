@@ -28,6 +28,8 @@ flute_grinder::OffsetBasis toMessage(const OffsetBasis& basis);
 /// @return an unknown method if the message has an invalid one.
 OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message);
 WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message);
+/// All but its stamp and `error`.
+flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets);
 
 /// The work offsets that do not fit a goal.
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);

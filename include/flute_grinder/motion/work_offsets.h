@@ -4,6 +4,7 @@
 #include "flute_grinder/job/axes.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
 
 namespace grinder {
@@ -37,6 +38,8 @@ struct OffsetBasis {
   double wheel_width = 0;     ///< [m]
   double swivel = 0;          ///< of the job's set-up [rad]
   double height = 0;          ///< of the job's set-up [m]
+  std::string tool_digest;    ///< toolDigest() of the job; empty if it was set for no particular job
+  int operation = 0;          ///< of the job, as GrindJob::operation
 
   bool hasJob() const noexcept { return !wheel_digest.empty(); }
 };
@@ -47,14 +50,55 @@ struct WorkOffset {
   std::string set_by;  ///< for people; empty if it was never set
   double set_at = 0;   ///< since the epoch; 0 if it was never set [s]
   OffsetBasis basis{};
+  std::uint32_t mounting = 0;  ///< MountedWheel::mounting when it was set
 
   bool wasSet() const noexcept { return set_at > 0; }
 };
 
+/// The wheel on the spindle, as an operator has confirmed it.
+struct MountedWheel {
+  std::string name;            ///< the wheel file's; empty if a job has the wheel's figures itself
+  std::string digest;          ///< as OffsetBasis::wheel_digest; empty until one is confirmed
+  double diameter = 0;         ///< nominal [m]
+  std::uint32_t mounting = 0;  ///< grows with every change of the wheel: X, Y and Z count for one mounting alone
+
+  bool isKnown() const noexcept { return !digest.empty(); }
+};
+
+/// Why the place of the teeth is not known.
+enum class TeethUnknown { kNeverGround, kClamped, kHomed, kSet };
+
+struct TeethUnknownRow : EnumRow<TeethUnknown> {
+  const char* reason = "";  ///< a sentence for people
+};
+
+/// With the names used in files and messages.
+inline constexpr TeethUnknownRow kTeethUnknown[]{
+    {{TeethUnknown::kNeverGround, "never_ground"}, "no flutes were ground"},
+    {{TeethUnknown::kClamped, "clamped"}, "the tool was clamped anew"},
+    {{TeethUnknown::kHomed, "homed"}, "the axes were homed after the flutes"},
+    {{TeethUnknown::kSet, "set"}, "the zero point of A was set after the flutes"},
+};
+constexpr auto& rowsOf(TeethUnknown) noexcept { return kTeethUnknown; }
+
+/// The tool in the collet: whose teeth stand where the work offset of A says, and what is ground on it.
+struct ClampedTool {
+  std::string digest;        ///< toolDigest(); empty if the place of its teeth is not known
+  std::string job_name;      ///< of the job that ground or probed them; may be empty
+  std::uint32_t ground = 0;  ///< a bit for each of the tool's operations that is finished, from the lowest
+  TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< why, without a digest
+
+  bool isGround(int operation) const noexcept { return ((ground >> operation) & 1U) != 0; }
+  /// Its teeth are where nobody knows.
+  void forget(TeethUnknown why) { *this = {"", "", 0, why}; }
+};
+
 /// The work offset of every axis. The coordinates of a job are the work's; those of limits, park position, homing and
-/// drive are the machine's.
+/// drive are the machine's. With the offsets goes what they depend on and only an operator or a job knows.
 struct WorkOffsets {
   std::array<WorkOffset, kAxisCount> axes;
+  MountedWheel wheel{};
+  ClampedTool tool{};
 
   /// [m], A [rad]
   Axes values() const noexcept {

@@ -1,6 +1,6 @@
 // Rides random jobs on random machines through the control loop, in simulated time, each from its start to its end:
-// with holds, overrides, retracts, jogs, cancels, stops, faults and restarts at random moments. Every cycle is judged
-// by the second opinion, and the rides that went wrong are reported.
+// with holds, overrides, retracts, jogs whose messages fail to come, cancels, stops, faults and restarts at random
+// moments. Every cycle is judged by the second opinion, and the rides that went wrong are reported.
 
 #include "flute_grinder/control/control_loop.h"
 #include "ride_job.h"
@@ -20,6 +20,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -35,6 +36,7 @@ using S = MachineState;
 constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
 constexpr int kMostBuffered = 50;
+constexpr double kJogTimeout = 0.05;  ///< [s]
 
 /// Axes that reach every command at once, or after some that wait before it, and what can go wrong with them.
 class RideDrive : public Drive {
@@ -140,7 +142,7 @@ LoopConfig configOf(const Machine& machine) {
   config.following_error << 1e-3, 1e-3, 1e-3, 1e-3;
   config.feedback_timeout = 2.5 * machine.period;
   config.enable_timeout = config.homing_timeout = config.spindle_timeout = 0.5;
-  config.jog_timeout = 0.05;
+  config.jog_timeout = kJogTimeout;
   config.jog_velocity << 0.01, 0.01, 0.01, 0.5;
   return config;
 }
@@ -212,9 +214,11 @@ class Ride {
     if (result_.events >= kMostEvents || flip(random_, 1 / recover_every_)) recover();
     keepJogging();
     const bool late = periods_ > 1;
-    const ros::Duration period(job_.machine.period * std::exchange(periods_, 1.0));
+    const double periods = std::exchange(periods_, 1.0);
+    const ros::Duration period(job_.machine.period * periods);
     time_ += period;
     loop_->cycle(time_, period);
+    seeButton(std::min(period.toSec(), 2 * job_.machine.period));
     if (const auto reply = loop_->reply()) last_reply_ = reply->text;
     loop_->jogReply();
     if (const auto reply = loop_->startJobReply()) last_reply_ = reply->text;
@@ -347,6 +351,7 @@ class Ride {
   void post(E event) { loop_->post(event); }
   void stop(E event) {
     loop_->postStop(event);
+    is_stopped_ = true;
     if (loop_->status().jogs_begun != loop_->status().jogs_ended) rest_by_ = result_.cycles + most_braking_;
   }
   /// A jog that was stopped rests, whatever is pressed meanwhile.
@@ -359,17 +364,41 @@ class Ride {
   void setOverride(double fraction) { loop_->setFeedOverride(fraction); }
   void jogStep(int axis) {
     const double distance = axis == kA ? between(random_, -1, 1) : between(random_, -5e-3, 5e-3);
-    loop_->postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
+    postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
+  }
+  void postJog(const JogRequest& jog) {
+    if (loop_->postJog(jog)) jog_posted_ = jog;
   }
   void beginJog(int axis, int cycles) {
     jog_ = {axis, true, 0, between(random_, -1, 1) * (axis == kA ? 10 : 0.1)};
     jog_left_ = cycles;
   }
   void keepJogging() {
+    if (pause_left_ > 0) {
+      --pause_left_;
+      return;
+    }
     if (jog_left_ == 0 || jog_left_-- % 5 != 0) return;
     JogRequest request = jog_;
     if (flip(random_, 0.1)) request.velocity = 0;
-    loop_->postJog(request);
+    postJog(request);
+    if (flip(random_, 0.1)) pause_left_ = static_cast<int>(between(random_, 0, 3) * kJogTimeout / job_.machine.period);
+  }
+  /// Judges what the messages of a continuous jog have done in a cycle. @param period as it counts [s].
+  void seeButton(double period) {
+    const auto jog = std::exchange(jog_posted_, std::nullopt);
+    const bool was_barred = button_.isBarred();
+    button_.wait(period);
+    if (jog && jog->continuous) jog->velocity == 0 ? button_.release() : button_.press(jog->axis);
+    const LoopStatus status = loop_->status();
+    if (status.jogs_begun != jogs_begun_) {
+      jogs_begun_ = status.jogs_begun;
+      continuous_ = jog && jog->continuous;
+      if (continuous_ && button_.isBarred()) throw second_opinion::Violation("a jog begins that was not released");
+    }
+    if (std::exchange(is_stopped_, false)) button_.stop();
+    const bool runs = continuous_ && status.jogs_begun != status.jogs_ended;
+    if (runs && !was_barred && button_.isBarred()) rest_by_ = result_.cycles + most_braking_;
   }
 
   Random random_;
@@ -390,8 +419,14 @@ class Ride {
   ros::Time time_{1000};
   double periods_ = 1;  ///< that the next cycle takes
   std::string last_reply_;
-  JogRequest jog_;
-  int jog_left_ = 0;
+  JogRequest jog_;                        ///< continuous
+  int jog_left_ = 0;                      ///< cycles in which it is repeated
+  int pause_left_ = 0;                    ///< cycles until it is repeated again
+  std::optional<JogRequest> jog_posted_;  ///< for this cycle
+  bool is_stopped_ = false;               ///< in this cycle
+  bool continuous_ = false;               ///< the last jog that began
+  std::uint64_t jogs_begun_ = 0;
+  second_opinion::Button button_{kJogTimeout};
   std::uint64_t rest_by_ = 0;  ///< cycle, of a jog that was stopped
 };
 

@@ -161,7 +161,7 @@ class ControlLoop : public RequestBox {
   bool touched_ = false;            ///< the probe, in the previous cycle
   bool for_client_ = false;         ///< the jog
   DeadMansSwitch dead_man_;
-  DeadMansSwitch client_;  ///< of a series
+  SilenceTimer client_;  ///< of a series
   std::uint32_t keep_alives_seen_ = 0;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;

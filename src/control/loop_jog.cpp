@@ -45,7 +45,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
   if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
-  const bool wheel_turns = spindle_by_hand_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
+  const bool wheel_turns = spindle_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
   if (jog.for_client && wheel_turns) return Refusal::kWheelTurns;
   if (jog.to_touch && sample_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;

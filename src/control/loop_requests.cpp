@@ -14,7 +14,8 @@ std::string degrees(double angle, int digits = 6) { return grinder::text(Quantit
 /// What a drive would do. @param event that not every drive executes.
 const char* offer(MachineEvent event) {
   if (event == MachineEvent::kHome) return "home the axes";
-  return event == MachineEvent::kSpindleOn ? "switch the spindle" : "switch the coolant";
+  const bool spindle = event == MachineEvent::kSpindleOn || event == MachineEvent::kSpindleOff;
+  return spindle ? "switch the spindle" : "switch the coolant";
 }
 
 }  // namespace

@@ -171,6 +171,17 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThe
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
   stage.be("running", panel);
   EXPECT_TRUE(enabled().empty());
+  // With its wheel lifted the tool may be looked at.
+  for (const char* lifted : {"retracted", "jogging_retracted"}) {
+    stage.be(lifted, panel);
+    EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"}));
+    panel.click("spindle_off");
+    WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_off"}));
+    EXPECT_EQ(panel.label("meaning").find("The spindle is off. "), 0U) << panel.label("meaning");
+    panel.click("spindle_on");
+    WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_off"}));
+    EXPECT_EQ(panel.label("meaning").find("is off. "), std::string::npos) << panel.label("meaning");
+  }
   stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 0; });

@@ -37,6 +37,8 @@ constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
 constexpr int kMostBuffered = 50;
 constexpr double kJogTimeout = 0.05;  ///< [s]
+/// Cycles in which the spindle runs up, and in which it is still at speed once it was switched off.
+constexpr int kRunUp = 20, kRunDown = 100;
 
 /// Axes that reach every command at once, or after some that wait before it, and what can go wrong with them.
 class RideDrive : public Drive {
@@ -75,7 +77,10 @@ class RideDrive : public Drive {
     if (homed_for_ == 4) lost_ = false;
     if (fails(Failure::kReference)) lost_ = true;
     status.homed = !lost_ && !status.homing;
-    status.spindle_at_speed = sent_.spindle && !fails(Failure::kSpindle);
+    runs_up_ = sent_.spindle ? std::min(runs_up_ + 1, kRunUp) : 0;
+    const bool at_speed = runs_up_ == kRunUp;
+    runs_down_ = at_speed ? kRunDown : sent_.spindle ? 0 : std::max(runs_down_ - 1, 0);
+    status.spindle_at_speed = runs_down_ > 0 && !fails(Failure::kSpindle);
     status.coolant_on = sent_.coolant && !fails(Failure::kCoolant);
     status.probe_free = !fails(Failure::kProbe);
     double& at = at_[static_cast<std::size_t>(axis_)];
@@ -131,6 +136,7 @@ class RideDrive : public Drive {
   Failure failure_ = Failure::kNone;
   int axis_ = 0, left_ = 0, homed_for_ = 0;
   bool lost_ = false;
+  int runs_up_ = 0, runs_down_ = 0;  ///< cycles: of the first so far, of the other to come
 };
 
 /// Where nothing may move, but homing axes.
@@ -265,6 +271,10 @@ class Ride {
     if (sample_.state == S::kFault && drive_.isCommandedOn()) throw second_opinion::Violation("the power stays on");
     if (row.moves && std::find(std::begin(kAtRest), std::end(kAtRest), sample_.state) != std::end(kAtRest))
       throw second_opinion::Violation("it moves");
+    const bool to_the_work = sample_.state == S::kRunning || sample_.state == S::kResuming;
+    const bool turns = sample_.drive.spindle_at_speed && sample_.spindle_commanded;
+    const bool flows = sample_.drive.coolant_on && sample_.coolant_commanded;
+    if (to_the_work && !(turns && flows)) throw second_opinion::Violation("to the work with a dry or a stopped wheel");
     // No job is planned beyond a limit of its machine: what the loop refuses is the stream's fault, or the jog's.
     if (sample_.fault.kind == FaultKind::kLimit) throw second_opinion::Violation(sample_.fault.text());
     if (row.of_job) ++result_.setpoints;
@@ -296,8 +306,12 @@ class Ride {
       case 12: return jogStep(axis);
       case 13: return beginJog(axis, some);
       case 14: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
-      default: return post(flip(random_, 0.5) ? E::kSpindleOn : E::kCoolantOn);
+      default: return switchByHand();
     }
+  }
+  void switchByHand() {
+    const bool on = flip(random_, 0.5);
+    flip(random_, 0.5) ? post(on ? E::kSpindleOn : E::kSpindleOff) : post(on ? E::kCoolantOn : E::kCoolantOff);
   }
 
   void fail(int axis, int some) {
@@ -326,6 +340,9 @@ class Ride {
       case S::kHeld:
       case S::kRetracted:
         if (flip(random_, 0.5)) return lookAtTheWork(status.state);
+        // Somebody may be hasty.
+        if (!sample_.spindle_commanded && flip(random_, 0.5)) return post(E::kSpindleOn);
+        if (!sample_.coolant_commanded && flip(random_, 0.5)) return post(E::kCoolantOn);
         return status.homed ? post(E::kResume) : stop(E::kCancel);
       case S::kReady:
         if (status.wheel.in_work) return post(E::kLift);
@@ -336,6 +353,7 @@ class Ride {
 
   void lookAtTheWork(S state) {
     if (state == S::kHeld) return post(E::kRetract);
+    if (flip(random_, 0.3)) return switchByHand();
     jogStep(static_cast<int>(fraction(random_) * kAxisCount));
   }
 

@@ -89,7 +89,7 @@ void addSwitches(Commands& commands) {
     const std::string name = row.name;
     const std::string part = name.substr(0, name.find(' '));
     CLI::App*& parent = parents[part];
-    if (!parent) parent = &commands.add(part, "switch the " + part + " by hand, without a job", "on", nullptr);
+    if (!parent) parent = &commands.add(part, "switch the " + part + " by hand", "on", nullptr);
     commands.addTo(*parent, name.substr(part.size() + 1), row.help, "",
                    commands.online([&commands, event = row.value] { return request(commands.node, event); }));
   }

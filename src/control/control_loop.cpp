@@ -123,11 +123,11 @@ void ControlLoop::writeDrive(const DriveCycle& cycle) {
   // Put together here and copied as a whole, like sample and status.
   DriveCommand drive_command = drive_command_;
   drive_command.home = state_ == MachineState::kHoming;
-  // A job takes over what was switched on by hand; a fault, a lost power, homing and a lift switch it off.
-  if (!after(state_, MachineEvent::kSpindleOn)) spindle_by_hand_ = coolant_by_hand_ = false;
-  if (!sample_.drive.probe_free) spindle_by_hand_ = false;
-  sample_.spindle_commanded = drive_command.spindle = stream_ || spindle_by_hand_;
-  sample_.coolant_commanded = drive_command.coolant = stream_ || coolant_by_hand_;
+  // Without a job, a fault, a lost power, homing and a lift switch off what was switched on by hand.
+  if (!stream_ && !after(state_, MachineEvent::kSpindleOn)) spindle_ = coolant_ = false;
+  if (!stream_ && !sample_.drive.probe_free) spindle_ = false;
+  sample_.spindle_commanded = drive_command.spindle = spindle_;
+  sample_.coolant_commanded = drive_command.coolant = coolant_;
   std::copy(command_.data(), command_.data() + kAxisCount, drive_command.position.begin());
   // Before the first positions there is nothing that a command could follow.
   if (has_positions_) callDrive("write()", [&] { drive_.write(cycle, drive_command); });
@@ -275,7 +275,7 @@ bool ControlLoop::advanceAxisMove() {
 }
 
 Interlock ControlLoop::openInterlock() const {
-  const Interlock open = grinder::openInterlock(sample_.drive);
+  const Interlock open = grinder::openInterlock(sample_.drive, spindle_, coolant_);
   if (open != Interlock::kNone || !stream_) return open;
   if (!sample_.swivel.isAt(job_swivel_)) return Interlock::kSwivel;
   const bool entered = in_journal_ || jobInJournal() == next_status_.jobs_started;
@@ -285,7 +285,9 @@ Interlock ControlLoop::openInterlock() const {
 void ControlLoop::checkInterlocks() {
   if (state_ == MachineState::kCanceling) return;
   const Interlock open = openInterlock();
-  if (open != Interlock::kNone && sample_.interlock == Interlock::kNone) {
+  // What an operator switches is not lost; while it is off, the job is not resumed.
+  const bool by_hand = switched_by_hand_ && (open == Interlock::kSpindle || open == Interlock::kCoolant);
+  if (open != Interlock::kNone && !by_hand && sample_.interlock == Interlock::kNone) {
     sample_.interlock = open;
     // A wheel that is being lifted is moving to safety; one that was lifted is already safe.
     if (after(state_, MachineEvent::kHold) && state_ != MachineState::kRetracting) {
@@ -347,6 +349,7 @@ void ControlLoop::comeToRest() {
 
 void ControlLoop::endJob(JobEnd end) {
   stream_ = nullptr;
+  spindle_ = coolant_ = false;
   sample_.job_ended = true;
   sample_.interlock = Interlock::kNone;
   ++next_status_.jobs_ended;

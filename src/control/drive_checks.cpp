@@ -86,10 +86,10 @@ std::optional<LoopFault> DriveChecks::findFeedbackFault(const CycleSample& sampl
   return std::nullopt;
 }
 
-Interlock openInterlock(const DriveStatus& drive) noexcept {
+Interlock openInterlock(const DriveStatus& drive, bool spindle, bool coolant) noexcept {
   if (!drive.homed) return Interlock::kNotHomed;
-  if (!drive.spindle_at_speed) return Interlock::kSpindle;
-  if (!drive.coolant_on) return Interlock::kCoolant;
+  if (!drive.spindle_at_speed || !spindle) return Interlock::kSpindle;
+  if (!drive.coolant_on || !coolant) return Interlock::kCoolant;
   if (!drive.probe_free) return Interlock::kProbe;
   return Interlock::kNone;
 }

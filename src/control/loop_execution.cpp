@@ -57,9 +57,9 @@ Refusal ControlLoop::execute(MachineEvent event) {
     case MachineEvent::kLift: return lift();
     case MachineEvent::kReset: return reset();
     case MachineEvent::kSpindleOn: return spindleOn();
-    case MachineEvent::kSpindleOff: spindle_by_hand_ = false; return Refusal::kNone;
-    case MachineEvent::kCoolantOn: return switchOn(coolant_by_hand_);
-    case MachineEvent::kCoolantOff: coolant_by_hand_ = false; return Refusal::kNone;
+    case MachineEvent::kSpindleOff: return switchByHand(spindle_, false);
+    case MachineEvent::kCoolantOn: return switchByHand(coolant_, true);
+    case MachineEvent::kCoolantOff: return switchByHand(coolant_, false);
     default: return Refusal::kState;
   }
 }
@@ -69,6 +69,9 @@ bool ControlLoop::driveCan(MachineEvent event) const {
     case MachineEvent::kHome: return capabilities_.homing;
     case MachineEvent::kSpindleOn: return capabilities_.spindle;
     case MachineEvent::kCoolantOn: return capabilities_.coolant;
+    // What nobody could switch on again would keep the job from going on.
+    case MachineEvent::kSpindleOff: return capabilities_.spindle || !stream_;
+    case MachineEvent::kCoolantOff: return capabilities_.coolant || !stream_;
     default: return true;
   }
 }
@@ -110,13 +113,14 @@ Refusal ControlLoop::enable() {
 
 Refusal ControlLoop::spindleOn() {
   if (jogging_ && for_client_) return Refusal::kProbing;
-  return sample_.drive.probe_free ? switchOn(spindle_by_hand_) : Refusal::kInterlock;
+  return sample_.drive.probe_free ? switchByHand(spindle_, true) : Refusal::kInterlock;
 }
 
-/// @param commanded by hand. A wheel that starts in the work breaks.
-Refusal ControlLoop::switchOn(bool& commanded) {
-  if (wheel_.wheel().in_work) return Refusal::kInWork;
-  commanded = true;
+/// @param commanded spindle_ or coolant_. A wheel that starts in the work breaks.
+Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
+  if (on && wheel_.wheel().in_work) return Refusal::kInWork;
+  commanded = on;
+  switched_by_hand_ = true;
   return Refusal::kNone;
 }
 
@@ -199,6 +203,8 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   next_status_.strokes_ended_at = 0;
   written_ = JobTrack{};
   written_.job = sample_.job = ++next_status_.jobs_started;
+  spindle_ = coolant_ = true;
+  switched_by_hand_ = false;
   waited_ = 0;
   may_lift_off_ = true;
   apply(MachineEvent::kStart);
@@ -210,6 +216,7 @@ Refusal ControlLoop::resume() {
   const bool starting = state_ == MachineState::kStarting;
   if (!starting && openInterlock() != Interlock::kNone) return Refusal::kInterlock;
   sample_.interlock = Interlock::kNone;
+  switched_by_hand_ = false;
   stream_->resume();
   apply(MachineEvent::kResume);
   return Refusal::kNone;

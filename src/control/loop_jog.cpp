@@ -19,10 +19,7 @@ Answer ControlLoop::executeJog(const JogRequest& jog) {
   Answer answer = answerTo(MachineEvent::kJog, Refusal::kNone);
   answer.axis = jog.axis;
   answer.refusal = jog.continuous ? jogOn(jog, answer) : beginJog(jog, answer);
-  if (jog.continuous && answer.refusal != Refusal::kNone && answer.refusal != Refusal::kJogging) {
-    dead_man_.block();
-    if (jogging_ && continuous_) axis_move_.setSpeed(0);
-  }
+  if (jog.continuous && answer.refusal != Refusal::kNone && answer.refusal != Refusal::kJogging) dead_man_.block();
   return answer;
 }
 
@@ -31,7 +28,9 @@ Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {
     dead_man_.release();
     return Refusal::kNone;
   }
-  if (!dead_man_.press()) return Refusal::kStopped;
+  if (dead_man_.state() == DeadMansSwitch::State::kStopped) return Refusal::kStopped;
+  if (dead_man_.state() == DeadMansSwitch::State::kTimedOut) return Refusal::kTimedOut;
+  if (!dead_man_.press(jog.axis)) return Refusal::kJogging;
   if (!jogging_) return beginJog(jog, answer);
   if (!continuous_ || jog.axis != axis_move_.axis()) return Refusal::kJogging;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
@@ -46,7 +45,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (!after(state_, MachineEvent::kJog)) return Refusal::kState;
   if (jogging_) return Refusal::kJogging;
   if (jog.stops != 0 && jog.stops != next_status_.stops) return Refusal::kStopCameFirst;
-  const bool wheel_turns = spindle_by_hand_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
+  const bool wheel_turns = spindle_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
   if (jog.for_client && wheel_turns) return Refusal::kWheelTurns;
   if (jog.to_touch && sample_.drive.probe_contact) return Refusal::kTouches;
   if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
@@ -117,7 +116,7 @@ void ControlLoop::watchClients() {
   dead_man_.wait(unheard);
   client_.wait(unheard);
   const std::uint32_t keep_alives = keepAlives();
-  if (keep_alives != keep_alives_seen_) client_.press();
+  if (keep_alives != keep_alives_seen_) client_.restart();
   keep_alives_seen_ = keep_alives;
 }
 
@@ -125,7 +124,9 @@ void ControlLoop::advanceJog() {
   stopJogOnContact();
   stopJogWithoutClient();
   // Without the reference the limits mean nothing.
-  if ((continuous_ && dead_man_.released()) || !sample_.drive.homed) axis_move_.setSpeed(0);
+  if (!sample_.drive.homed) dead_man_.block();
+  const bool released = continuous_ && dead_man_.state() != DeadMansSwitch::State::kPressed;
+  if (released || !sample_.drive.homed) axis_move_.setSpeed(0);
   if (!advanceAxisMove()) return;
   endJog();
   // A job that was canceled meanwhile ends by itself.
@@ -144,7 +145,7 @@ void ControlLoop::stopJogOnContact() {
 
 /// As a stop does, so that the series ends too.
 void ControlLoop::stopJogWithoutClient() {
-  if (!for_client_ || !client_.released()) return;
+  if (!for_client_ || !client_.expired()) return;
   for_client_ = false;
   next_status_.client_lost = true;
   ++next_status_.stops;

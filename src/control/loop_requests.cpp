@@ -14,7 +14,8 @@ std::string degrees(double angle, int digits = 6) { return grinder::text(Quantit
 /// What a drive would do. @param event that not every drive executes.
 const char* offer(MachineEvent event) {
   if (event == MachineEvent::kHome) return "home the axes";
-  return event == MachineEvent::kSpindleOn ? "switch the spindle" : "switch the coolant";
+  const bool spindle = event == MachineEvent::kSpindleOn || event == MachineEvent::kSpindleOff;
+  return spindle ? "switch the spindle" : "switch the coolant";
 }
 
 }  // namespace
@@ -74,6 +75,7 @@ RequestReply Answer::reply() const {
     case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
     case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;
     case Refusal::kStopped: text << "it was stopped or refused before; release the button first"; break;
+    case Refusal::kTimedOut: text << "it was not repeated within jog_timeout; release the button first"; break;
     case Refusal::kTouches: text << "the probe touches already; move it off first"; break;
     case Refusal::kWheelTurns: text << "the wheel turns; switch the spindle off first"; break;
     case Refusal::kProbing: text << "a probing cycle is in progress; wait for its end, or cancel it"; break;

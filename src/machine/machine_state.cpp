@@ -110,7 +110,8 @@ constexpr Transition kTransitions[]{
     {S::kJoggingRetracted, E::kAtRest, S::kRetracted},
     {S::kJoggingRetracted, E::kFault, S::kFault},
 
-    // By hand: on with the power, at rest or while an axis is jogged; off in every state without a job.
+    // By hand: at rest or while an axis is jogged, in a job only with the wheel off the workpiece; off also in every
+    // other state without a job.
     {S::kReady, E::kSpindleOn, S::kReady},
     {S::kReady, E::kSpindleOff, S::kReady},
     {S::kReady, E::kCoolantOn, S::kReady},
@@ -119,6 +120,14 @@ constexpr Transition kTransitions[]{
     {S::kJogging, E::kSpindleOff, S::kJogging},
     {S::kJogging, E::kCoolantOn, S::kJogging},
     {S::kJogging, E::kCoolantOff, S::kJogging},
+    {S::kRetracted, E::kSpindleOn, S::kRetracted},
+    {S::kRetracted, E::kSpindleOff, S::kRetracted},
+    {S::kRetracted, E::kCoolantOn, S::kRetracted},
+    {S::kRetracted, E::kCoolantOff, S::kRetracted},
+    {S::kJoggingRetracted, E::kSpindleOn, S::kJoggingRetracted},
+    {S::kJoggingRetracted, E::kSpindleOff, S::kJoggingRetracted},
+    {S::kJoggingRetracted, E::kCoolantOn, S::kJoggingRetracted},
+    {S::kJoggingRetracted, E::kCoolantOff, S::kJoggingRetracted},
     {S::kDisabled, E::kSpindleOff, S::kDisabled},
     {S::kDisabled, E::kCoolantOff, S::kDisabled},
     {S::kHoming, E::kSpindleOff, S::kHoming},

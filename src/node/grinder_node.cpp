@@ -59,7 +59,7 @@ void checkCapabilities(const DriveCapabilities& can, const std::string& drive, c
   if (!text.str().empty()) throw ParameterError(text.str());
 }
 
-flute_grinder::MachineInfo toMessage(const MachineInfo& info, const DriveCapabilities& can) {
+flute_grinder::MachineInfo toMessage(const MachineInfo& info, const DriveCapabilities& can, double jog_timeout) {
   const auto copy = [](const Axes& axes, auto& array) {
     std::copy(axes.data(), axes.data() + kAxisCount, array.begin());
   };
@@ -74,6 +74,7 @@ flute_grinder::MachineInfo toMessage(const MachineInfo& info, const DriveCapabil
   message.swivel = can.swivel;
   message.buffer = can.buffer;
   message.period = info.period;
+  message.jog_timeout = jog_timeout;
   copy(info.max_velocity, message.max_velocity);
   copy(info.max_acceleration, message.max_acceleration);
   copy(info.max_following_error, message.max_following_error);
@@ -108,7 +109,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   checkCapabilities(can, own.drive, parameters.name("control_rate"), config.machine.period);
   const MachineInfo machine = machineInfo(config, own.drive);
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
-  machine_.publish(toMessage(machine, can));
+  machine_.publish(toMessage(machine, can, config.jog_timeout));
   loop_ = std::make_unique<ControlLoop>(*drive_, config, journal.on_disk.wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,

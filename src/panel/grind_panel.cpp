@@ -321,7 +321,7 @@ void GrindPanel::refresh() {
   begun_ = begun;
   for (const auto& [event, button] : buttons_) enable(event);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
-  jog_->refresh(view.state, master == Master::kAnswers);
+  jog_->refresh(view.state, view.machine ? view.machine->jog_timeout : 0, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);

@@ -4,6 +4,7 @@
 #include "flute_grinder/machine/machine_state.h"
 
 #include <QApplication>
+#include <QCursor>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLabel>
@@ -96,6 +97,7 @@ void JogBox::click(const Button& button) {
 void JogBox::press(const Button& button) {
   if (!isContinuous()) return;
   pressed_ = button;
+  since_message_.start();
   repeat_.start(kRepeatInterval);
   repeat();
 }
@@ -105,7 +107,10 @@ void JogBox::repeat() {
   const QPushButton& button = *pressed_->button;
   // A menu or a dialog may take the mouse, so that the button does not see its release.
   const bool covered = QApplication::activePopupWidget() || QApplication::activeModalWidget();
-  const bool goes_on = button.isDown() && button.isEnabled() && button.isVisible() && !covered;
+  const bool pressed = button.isDown() && button.isEnabled() && button.isVisible() && !covered;
+  // It asks the X server and waits for the answer, so that no message goes while the display stands still.
+  if (pressed) QCursor::pos();
+  const bool goes_on = pressed && since_message_.restart() <= timeout_ * 1e3;
   const int axis = pressed_->axis;
   const double velocity = goes_on ? pressed_->direction * speed(axis) : 0;
   if (!goes_on) {
@@ -115,9 +120,10 @@ void JogBox::repeat() {
   Q_EMIT continuousWanted(axis, velocity);
 }
 
-void JogBox::refresh(const std::optional<flute_grinder::GrinderState>& state, bool has_services) {
+void JogBox::refresh(const std::optional<flute_grinder::GrinderState>& state, double timeout, bool has_services) {
+  timeout_ = timeout;
   const bool allowed = state && after(static_cast<MachineState>(state->state), MachineEvent::kJog) && state->homed != 0;
-  const bool reached = has_services || isContinuous();
+  const bool reached = isContinuous() ? timeout > 0 : has_services;
   for (const Button& button : buttons_) {
     const bool raises = button.axis == kY && button.direction > 0;
     const bool safe = state && (!state->wheel_in_work || raises);

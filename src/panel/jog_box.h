@@ -5,6 +5,7 @@
 #include "panel/number_box.h"
 
 #include <QComboBox>
+#include <QElapsedTimer>
 #include <QPushButton>
 #include <QTimer>
 #include <QWidget>
@@ -15,15 +16,17 @@
 namespace grinder {
 
 /// Buttons that jog the axes: by a step with each click, or for as long as a button is pressed. The latter ends when
-/// the button is released, hidden or disabled, or loses the focus.
+/// the button is released, hidden or disabled, or loses the focus, and where this program or the display stands still
+/// for longer than the grinder's jog_timeout, since a release may then be on its way; the button must be pressed anew.
 class JogBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit JogBox(QWidget* parent = nullptr);
 
+  /// @param timeout longest time between the messages of a continuous jog; 0 if it is not known [s].
   /// @param has_services whether requests with an answer can be sent; a continuous jog does without.
-  void refresh(const std::optional<flute_grinder::GrinderState>& state, bool has_services);
+  void refresh(const std::optional<flute_grinder::GrinderState>& state, double timeout, bool has_services);
 
  Q_SIGNALS:
   void stepWanted(int axis, double distance, double speed);  ///< [m], [m/s], of A [rad], [rad/s]
@@ -49,6 +52,8 @@ class JogBox : public QWidget {
   NumberBox* rotary_speed_;  ///< [deg/min]
   std::array<Button, std::size_t{2} * kAxisCount> buttons_{};
   std::optional<Button> pressed_;  ///< of a continuous jog
+  QElapsedTimer since_message_;
+  double timeout_ = 0;  ///< longest time between messages [s]
   QTimer repeat_;
 };
 

@@ -16,6 +16,10 @@ constexpr int kTimeoutCycles = 50;  // of 50.5 ms
 
 JogRequest step(int axis, double distance, double speed = 0.02) { return {axis, false, distance, speed}; }
 JogRequest on(int axis, double velocity) { return {axis, true, 0, velocity}; }
+void release(Rig<FakeDrive>& rig) { EXPECT_TRUE(rig.jog(on(kX, 0)).accepted); }
+
+constexpr const char* kStoppedText = "jog refused: it was stopped or refused before; release the button first";
+constexpr const char* kTimedOutText = "jog refused: it was not repeated within jog_timeout; release the button first";
 
 /// Distance in which the machine of the tests stops an axis: half the speed times the time of a stop, v/a + a/j where
 /// the full deceleration is reached, else 2 sqrt(v/j).
@@ -42,6 +46,18 @@ class JogFrom : public testing::TestWithParam<S> {
         rig_.cycle();
       }
     }
+  }
+  /// Repeats a message every 20th cycle, and expects that each is refused and that nothing moves.
+  void expectRefused(const JogRequest& request, const std::string& text) {
+    const std::size_t begin = rig_.log.size() - 1;
+    for (int i = 0; i < 1000; ++i) {
+      if (i % 20 == 0) {
+        ASSERT_EQ(rig_.jog(request).text, text);
+      }
+      rig_.cycle();
+    }
+    EXPECT_TRUE(atRestFrom(rig_.log, begin));
+    EXPECT_EQ(rig_.last().state, GetParam());
   }
   /// Expects that X, jogged at 0.1 m/s, comes to rest within the distance that it takes.
   void expectStop() {
@@ -144,6 +160,7 @@ TEST_P(JogFrom, WithoutMessagesTheAxisRestsWithinTheBrakingDistance) {
       const double moved = rig_.log[message + i + 1].command[axis] - rig_.log[message + i].command[axis];
       ASSERT_NEAR(moved, velocity * 0.001, 1e-9) << "it stopped before the time-out, in cycle " << i;
     }
+    release(rig_);
   }
   EXPECT_TRUE(smooth(rig_.log));
 }
@@ -156,7 +173,77 @@ TEST_P(JogFrom, VelocityZeroANumberThatIsNoneOrALostReferenceStopsIt) {
     jogFor(on(kX, 0.1), 400);
     stop();
     expectStop();
-    rig_.run(kTimeoutCycles + 1);
+    rig_.drive.status.homed = true;
+    release(rig_);
+  }
+}
+
+TEST_P(JogFrom, AReferenceThatIsLostForACycleEndsItToo) {
+  jogFor(on(kX, 0.1), 400);
+  rig_.drive.status.homed = false;
+  rig_.cycle();
+  rig_.drive.status.homed = true;
+  EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, kStoppedText);
+  expectStop();
+  expectRefused(on(kX, 0.1), kStoppedText);
+}
+
+TEST_P(JogFrom, AfterATimeoutOnlyAReleaseLetsItMoveAgain) {
+  jogFor(on(kX, 0.1), 400);
+  rig_.run(kTimeoutCycles + 1);
+  ASSERT_EQ(rig_.last().state, jogging()) << "it still decelerates";
+  // What is stopped by it is not taken up again, and a longer silence changes nothing.
+  EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, kTimedOutText);
+  expectStop();
+  expectRefused(on(kX, 0.1), kTimedOutText);
+  rig_.run(20 * kTimeoutCycles);
+  expectRefused(on(kZ, 0.01), kTimedOutText);
+  // A step needs no button.
+  ASSERT_TRUE(rig_.jog(step(kZ, 0.001)).accepted);
+  rig_.runUntil(GetParam());
+  expectRefused(on(kX, 0.1), kTimedOutText);
+  release(rig_);
+  jogFor(on(kX, 0.1), 10);
+  EXPECT_EQ(rig_.last().state, jogging());
+}
+
+TEST_P(JogFrom, OneThatRanIntoItsLimitIsTimedOutToo) {
+  for (int i = 0; i < 100 || rig_.last().state == jogging(); ++i) {
+    ASSERT_LT(i, 10000);
+    if (i % 20 == 0) rig_.loop->postJog(on(kZ, 0.1));
+    rig_.cycle();
+    static_cast<void>(rig_.loop->jogReply());
+  }
+  rig_.run(20 * kTimeoutCycles);
+  expectRefused(on(kZ, -0.01), kTimedOutText);
+}
+
+TEST_P(JogFrom, MessagesForAnotherAxisDoNotKeepItMoving) {
+  jogFor(on(kX, 0.1), 400);
+  ASSERT_TRUE(rig_.jog(on(kX, 0.1)).accepted);
+  const std::size_t message = rig_.log.size() - 1;
+  while (rig_.last().state == jogging()) {
+    ASSERT_LT(rig_.log.size() - message, 2000u);
+    const RequestReply answer = rig_.jog(on(kZ, 0.01));
+    ASSERT_EQ(answer.text, rig_.log.size() - 1 - message <= kTimeoutCycles
+                               ? "jog refused: an axis is being jogged; wait until it rests"
+                               : kTimedOutText);
+  }
+  const double way = rig_.last().command[kX] - rig_.log[message].command[kX];
+  EXPECT_LE(way, 0.1 * 0.001 * (kTimeoutCycles + 3) + brakingDistance(kX, 0.1));
+}
+
+TEST_P(JogFrom, AButtonThatWaitsForAnotherAxisMovesNothingAfterAStop) {
+  for (const JogRequest& first : {step(kX, 0.05), on(kX, 0.1)}) {
+    ASSERT_TRUE(rig_.jog(first).accepted);
+    rig_.run(kTimeoutCycles / 2);
+    if (first.continuous) release(rig_);
+    EXPECT_EQ(rig_.jog(on(kZ, 0.01)).text, "jog refused: an axis is being jogged; wait until it rests");
+    ASSERT_TRUE(rig_.ask(E::kHold).accepted);
+    EXPECT_EQ(rig_.jog(on(kZ, 0.01)).text, kStoppedText);
+    rig_.runUntil(GetParam());
+    expectRefused(on(kZ, 0.01), kStoppedText);
+    release(rig_);
   }
 }
 
@@ -181,20 +268,21 @@ TEST_P(JogFrom, AnotherAxisOrStepIsRefusedUntilTheOneRests) {
   rig_.runUntil(GetParam());
   ASSERT_TRUE(rig_.jog(step(kX, 0.01)).accepted);
   EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, "jog refused: an axis is being jogged; wait until it rests");
+  release(rig_);
   rig_.runUntil(GetParam());
   EXPECT_EQ(rig_.last().command[kZ], at_[kZ]);
   jogFor(on(kZ, 0.01), 10);
   EXPECT_EQ(rig_.last().state, jogging());
 }
 
-TEST_P(JogFrom, AfterAHoldAButtonThatStaysPressedMovesNothing) {
+TEST_P(JogFrom, AfterAHoldOnlyAReleaseLetsItMoveAgain) {
   jogFor(on(kX, 0.1), 400);
   ASSERT_TRUE(rig_.ask(E::kHold).accepted);
   const double held = rig_.last().command[kX];
   std::size_t rest = 0;
   for (int i = 0; i < 1000; ++i) {
     if (i % 20 == 0) {
-      EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, "jog refused: it was stopped or refused before; release the button first");
+      EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, kStoppedText);
     }
     rig_.cycle();
     if (rest == 0 && rig_.last().state == GetParam()) rest = rig_.log.size() - 1;
@@ -202,14 +290,10 @@ TEST_P(JogFrom, AfterAHoldAButtonThatStaysPressedMovesNothing) {
   ASSERT_NE(rest, 0u);
   EXPECT_TRUE(atRestFrom(rig_.log, rest));
   EXPECT_LE(rig_.last().command[kX] - held, brakingDistance(kX, 0.1) + 0.1 * 0.003);
-  // Released by a pause, or by a message.
-  rig_.run(kTimeoutCycles + 1);
-  jogFor(on(kX, 0.1), 10);
-  EXPECT_EQ(rig_.last().state, jogging());
-  ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-  EXPECT_FALSE(rig_.jog(on(kX, 0.1)).accepted);
-  EXPECT_TRUE(rig_.jog(on(kX, 0)).accepted);
-  rig_.runUntil(GetParam());
+  // Not by silence.
+  rig_.run(20 * kTimeoutCycles);
+  expectRefused(on(kX, 0.1), kStoppedText);
+  release(rig_);
   jogFor(on(kX, 0.1), 10);
   EXPECT_EQ(rig_.last().state, jogging());
 }
@@ -332,9 +416,9 @@ TEST(Jog, ToALimitItEndsThereWithoutAFault) {
       }
       ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
       EXPECT_EQ(rig.last().command[axis], limit);
-      rig.run(kTimeoutCycles + 1);
+      release(rig);
       EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its travel");
-      rig.run(kTimeoutCycles + 1);
+      release(rig);
     }
   }
   EXPECT_TRUE(smooth(rig.log));
@@ -366,7 +450,7 @@ TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
   for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),
                                 on(kX, 0.01), on(kY, -0.01)}) {
     EXPECT_EQ(rig.jog(jog).text, "jog refused: the wheel is in the work; lift it first");
-    rig.run(kTimeoutCycles + 1);
+    release(rig);
   }
   ASSERT_TRUE(rig.jog(step(kY, 0.001)).accepted);
   rig.runUntil(S::kReady);
@@ -383,7 +467,7 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
   EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y is at 8.23708 mm, the end of its travel");
   EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to 8.23608 mm");
-  rig.run(kTimeoutCycles + 1);
+  release(rig);
   ASSERT_TRUE(rig.jog(step(kY, 0.01)).accepted);
   rig.runUntil(S::kRetracted);
   EXPECT_CONTAINS(rig.jog(step(kY, -0.0101)).text, "; allowed: down to 8.23708 mm");

@@ -1,8 +1,9 @@
-#include "control/rig.h"
+#include "control/paper_job.h"
 
 #include <functional>
 
-// Spindle and coolant by hand: only on request, with the power on and without a job, and never for longer.
+// Spindle and coolant by hand: only on request, with the power on, without a job or with the wheel lifted in one, and
+// never for longer.
 namespace grinder::test_support {
 namespace test_switches {
 
@@ -138,11 +139,128 @@ TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
     SCOPED_TRACE(row.name);
     RigIn rig(row.value);
     const bool job = isInJob(row.value);
-    const bool may_be_on = row.value == S::kReady || row.value == S::kJogging;
+    const bool lifted = row.value == S::kRetracted || row.value == S::kJoggingRetracted;
+    const bool may_be_on = row.value == S::kReady || row.value == S::kJogging || lifted;
     for (const E event : {E::kSpindleOn, E::kCoolantOn}) EXPECT_EQ(rig.ask(event).accepted, may_be_on);
-    for (const E event : {E::kSpindleOff, E::kCoolantOff}) EXPECT_EQ(rig.ask(event).accepted, !job);
+    for (const E event : {E::kSpindleOff, E::kCoolantOff}) EXPECT_EQ(rig.ask(event).accepted, !job || lifted);
     EXPECT_EQ(rig.last().state, row.value);
   }
+}
+
+/// What an operator does to look at the tool: of the wheel, or of the coolant.
+struct Switch {
+  const char* name;
+  E off, on;
+  bool DriveCommand::*command;
+  bool DriveStatus::*reading;
+  const char* resume_refused;
+};
+constexpr Switch kSwitches[]{{"spindle", E::kSpindleOff, E::kSpindleOn, &DriveCommand::spindle,
+                              &DriveStatus::spindle_at_speed, "resume refused: the spindle is not at speed"},
+                             {"coolant", E::kCoolantOff, E::kCoolantOn, &DriveCommand::coolant,
+                              &DriveStatus::coolant_on, "resume refused: no coolant flows"}};
+
+TEST(SwitchesInAJob, WhatIsOffKeepsALiftedWheelFromTheWorkUntilItIsOnAndReady) {
+  for (const Switch& part : kSwitches) {
+    SCOPED_TRACE(part.name);
+    RigIn rig(S::kRetracted);
+    const auto reads = [&](bool value) {
+      rig.drive.on_read = [&part, value](FakeDrive& drive) { drive.status.*part.reading = value; };
+    };
+    const std::size_t lifted = rig.log.size() - 1;
+    reads(true);  // It runs down, or nobody measures it.
+    ASSERT_TRUE(rig.ask(part.off).accepted);
+    EXPECT_FALSE(rig.drive.written_drive.*part.command);
+    EXPECT_NE(rig.drive.written_drive.spindle, rig.drive.written_drive.coolant) << "the other stays on";
+    EXPECT_EQ(rig.ask(E::kResume).text, part.resume_refused);
+    reads(false);
+    rig.run(1000);
+    EXPECT_FALSE(rig.drive.written_drive.*part.command);
+    EXPECT_EQ(rig.ask(E::kResume).text, part.resume_refused);
+    EXPECT_FALSE(rig.drive.written_drive.*part.command) << "a resume switches nothing on";
+    ASSERT_TRUE(rig.ask(part.on).accepted);
+    EXPECT_TRUE(rig.drive.written_drive.*part.command);
+    rig.run(20);
+    EXPECT_EQ(rig.ask(E::kResume).text, part.resume_refused) << "while it runs up";
+    EXPECT_EQ(rig.last().state, S::kRetracted);
+    EXPECT_TRUE(atRestFrom(rig.log, lifted));
+    EXPECT_EQ(rig.last().interlock, Interlock::kNone) << "the loop did not hold the job";
+    rig.drive.on_read = nullptr;
+    rig.run(2);
+    ASSERT_TRUE(rig.ask(E::kResume).accepted);
+    rig.runToEnd();
+    expectCompleted(rig);
+  }
+}
+
+TEST(SwitchesInAJob, TheySwitchWhileAnAxisIsJoggedToo) {
+  RigIn rig(S::kJoggingRetracted);
+  for (const Switch& part : kSwitches) {
+    ASSERT_TRUE(rig.ask(part.off).accepted);
+    EXPECT_FALSE(rig.drive.written_drive.*part.command);
+  }
+  EXPECT_EQ(rig.last().state, S::kJoggingRetracted);
+  rig.runUntil(S::kRetracted);
+  EXPECT_FALSE(rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
+  EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+}
+
+TEST(SwitchesInAJob, WhatIsLostAfterTheResumeTakesTheWheelOffTheWork) {
+  RigIn rig(S::kRetracted);
+  ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
+  ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
+  rig.run(2);
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  rig.run(50);
+  rig.drive.on_read = [](FakeDrive& drive) { drive.status.spindle_at_speed = false; };
+  EXPECT_EQ(rig.cycle().interlock, Interlock::kSpindle);
+  EXPECT_EQ(rig.last().state, S::kHolding);
+}
+
+TEST(SwitchesInAJob, EveryEndOfItLeavesThemOff) {
+  const std::pair<S, std::function<void(Rig<FakeDrive>&)>> ends[]{
+      {S::kReady, [](Rig<FakeDrive>& rig) { EXPECT_TRUE(rig.ask(E::kCancel).accepted); }},
+      {S::kDisabled, [](Rig<FakeDrive>& rig) { EXPECT_TRUE(rig.ask(E::kDisable).accepted); }},
+      {S::kFault, [](Rig<FakeDrive>& rig) { rig.drive.status.emergency_stop = true; }}};
+  for (const auto& [then, end] : ends) {
+    for (const bool on_again : {false, true}) {
+      SCOPED_TRACE(testing::Message() << toString(then) << (on_again ? ", on again" : ""));
+      RigIn rig(S::kRetracted);
+      ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
+      ASSERT_TRUE(rig.ask(E::kCoolantOff).accepted);
+      const std::size_t off = rig.log.size() - 1;
+      if (on_again) {
+        ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
+      }
+      end(rig);
+      if (rig.last().state != then) rig.runUntil(then);
+      rig.run(5);
+      EXPECT_FALSE(rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
+      EXPECT_EQ(rig.jobsEnded(), 1);
+      EXPECT_TRUE(atRestFrom(rig.log, off)) << "the wheel was off the work already";
+      if (then != S::kReady) continue;
+      rig.stream.reset();
+      ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+      EXPECT_TRUE(rig.drive.written_drive.spindle && rig.drive.written_drive.coolant) << "a job switches them on";
+    }
+  }
+}
+
+TEST(SwitchesInAJob, TheSpindleStaysOffWithTheProbeInItsWay) {
+  RigIn rig(S::kRetracted);
+  ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
+  rig.drive.status.probe_free = false;
+  rig.cycle();
+  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the measuring probe is in the way");
+  EXPECT_FALSE(rig.drive.written_drive.spindle);
+}
+
+TEST(SwitchesInAJob, WhatTheDriveCannotSwitchOnAgainIsNotSwitchedOff) {
+  Rig<FakeDrive> without(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
+  ASSERT_NO_FATAL_FAILURE(bringTo(without, S::kRetracted));
+  EXPECT_EQ(without.ask(E::kSpindleOff).text, "spindle off refused: the drive does not switch the spindle");
+  EXPECT_EQ(without.ask(E::kCoolantOff).text, "coolant off refused: the drive does not switch the coolant");
+  ASSERT_TRUE(without.ask(E::kResume).accepted);
 }
 
 TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {

@@ -430,6 +430,8 @@ class Grinder:
     resume = partialmethod(_call, 'resume', Trigger)
     retract = partialmethod(_call, 'retract', Trigger)
     lift = partialmethod(_call, 'lift', Trigger)
+    spindle_on = partialmethod(_call, 'spindle_on', Trigger)
+    spindle_off = partialmethod(_call, 'spindle_off', Trigger)
     reset = partialmethod(_call, 'reset_fault', Trigger)
     set_feed_override = partialmethod(_call, 'set_feed_override', SetFeedOverride)
     confirm_swivel = partialmethod(_call, 'confirm_swivel', ConfirmSwivel)

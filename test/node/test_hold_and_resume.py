@@ -36,6 +36,13 @@ class TestInterference(unittest.TestCase):
             for fields in ({}, {'dry_run': True}):
                 other = g.send(gc.SHORT, **fields).wait()
                 self.assertEqual((other.status, other.code), ('REJECTED', GrindResult.BUSY))
+        self.accept('spindle_off')
+        gc.poll(lambda: not g.fresh_state().spindle_at_speed, 'the wheel at rest')
+        reply = g.resume()
+        self.assertEqual((reply.success, reply.message), (False, 'resume refused: the spindle is not at speed'))
+        self.assertEqual((g.fresh_state().state, g.fresh_state().hold_reason), (GrinderState.RETRACTED, ''))
+        self.accept('spindle_on')
+        gc.poll(lambda: g.fresh_state().spindle_at_speed, 'the wheel at its speed')
         self.accept('resume')
         g.wait_state(GrinderState.RUNNING)
         self.assertTrue(g.plan(gc.goal_of(gc.SHORT)).valid)

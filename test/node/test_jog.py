@@ -65,9 +65,10 @@ class Button:
             self.publisher.publish(self.message)
 
     def let_go(self):
-        """Without a last message that stops."""
         self.released.set()
         self.thread.join()
+        self.message.velocity = 0
+        self.publisher.publish(self.message)
 
 
 class JogTest(unittest.TestCase):
@@ -139,6 +140,16 @@ class TestContinuous(JogTest):
         g.wait_state(GrinderState.READY)
         # To the limit it would take a minute.
         self.assertLess(g.wait_rest()[X], 100 * MM)
+        # What it has not released moves nothing, whoever goes on.
+        refusals = gc.received(self.addCleanup, '/grinder/jog_refusal', String)
+        button = self.press(X, 0.005)
+        gc.poll(lambda: refusals, 'a refusal')
+        self.assertEqual(refusals, [String('jog refused: it was not repeated within jog_timeout; release the button first')])
+        self.assertEqual(g.fresh_state().state, GrinderState.READY)
+        button.let_go()
+        g.positions_over(0.5)
+        self.press(X, 0.005)
+        g.wait_state(GrinderState.JOGGING)
 
     def test_a_refusal_is_published_once_until_the_button_is_released(self):
         g = grinder()
@@ -149,7 +160,7 @@ class TestContinuous(JogTest):
         g.positions_over(0.5)  # the button stays pressed
         self.assertEqual(len(refusals), 1)
         button.let_go()
-        g.positions_over(1.5)  # longer than jog_timeout
+        g.positions_over(0.5)
         self.press(X, 1.0)
         gc.poll(lambda: len(refusals) > 1, 'another refusal')
         self.assertRegex(refusals[1].data, '^jog refused: speed of axis X = 60000 mm/min; allowed: ')

@@ -40,6 +40,7 @@ class Stage {
     machine_ = nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
     flute_grinder::MachineInfo able;
     able.homing = able.spindle = able.coolant = 1;
+    able.jog_timeout = kPatience * 1e-3;
     publishMachine(able);
     state_topic_ = nh_.advertise<flute_grinder::GrinderState>("state", 10, true);
     feedback_ = nh_.advertise<flute_grinder::GrindActionFeedback>("grind/feedback", 10);

@@ -6,9 +6,17 @@
 #include <QDateTime>
 #include <QTabWidget>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <cmath>
+#include <csignal>
 #include <functional>
 #include <map>
+#include <optional>
+#include <thread>
 
 namespace grinder::test_panel_jog {
 
@@ -163,6 +171,17 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThe
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 1; });
   stage.be("running", panel);
   EXPECT_TRUE(enabled().empty());
+  // With its wheel lifted the tool may be looked at.
+  for (const char* lifted : {"retracted", "jogging_retracted"}) {
+    stage.be(lifted, panel);
+    EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"}));
+    panel.click("spindle_off");
+    WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_off"}));
+    EXPECT_EQ(panel.label("meaning").find("The spindle is off. "), 0U) << panel.label("meaning");
+    panel.click("spindle_on");
+    WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_off"}));
+    EXPECT_EQ(panel.label("meaning").find("is off. "), std::string::npos) << panel.label("meaning");
+  }
   stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";
   stage.change([&] { stage.state.spindle_commanded = stage.state.coolant_commanded = 0; });
@@ -219,6 +238,71 @@ TEST_F(Jogging, EndsWhenTheButtonIsHiddenDisabledOrWithoutFocus) {
     ASSERT_NO_FATAL_FAILURE(expectStopped());
     QTest::mouseRelease(&button, Qt::LeftButton, Qt::NoModifier, QPoint(-100, -100));
   }
+}
+
+TEST_F(Jogging, AMessageThatWouldComeTooLateStopsAndTheButtonMustBePressedAnew) {
+  WAIT_FOR(panel.enabled("jog_x_plus"));
+  choose("while pressed");
+  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
+  flute_grinder::MachineInfo machine;
+  machine.jog_timeout = 0.001;  // shorter than the panel's pause between two messages
+  stage.publishMachine(machine);
+  ASSERT_NO_FATAL_FAILURE(expectStopped());
+  EXPECT_TRUE(panel.the<QPushButton>("jog_x_plus").isDown());
+  const std::vector<flute_grinder::Jog> sent = jogs();
+  EXPECT_NE(sent[sent.size() - 2].velocity, 0) << "it is stopped once";
+  machine.jog_timeout = kPatience * 1e-3;
+  stage.publishMachine(machine);
+  ASSERT_NO_FATAL_FAILURE(expectStopped());
+  QTest::mouseRelease(&panel.the<QPushButton>("jog_x_plus"), Qt::LeftButton);
+  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
+  EXPECT_GT(jogs().back().velocity, 0);
+  QTest::mouseRelease(&panel.the<QPushButton>("jog_x_plus"), Qt::LeftButton);
+  expectStopped();
+}
+
+/// The process id of the X server; nothing if it is on another computer.
+std::optional<pid_t> xServer() {
+  const std::string display = qgetenv("DISPLAY").toStdString();
+  if (display.empty() || display[0] != ':') return std::nullopt;
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string path = "/tmp/.X11-unix/X" + display.substr(1, display.find('.') - 1);
+  path.copy(address.sun_path, sizeof address.sun_path - 1);
+  const int socket_to_it = socket(AF_UNIX, SOCK_STREAM, 0);
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  const bool known = connect(socket_to_it, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+                     getsockopt(socket_to_it, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0;
+  close(socket_to_it);
+  return known ? std::optional<pid_t>(peer.pid) : std::nullopt;
+}
+
+TEST_F(Jogging, NothingIsSentWhileTheDisplayStandsStill) {
+  const std::optional<pid_t> server = xServer();
+  if (!server) GTEST_SKIP() << "the X server is none of this computer";
+  WAIT_FOR(panel.enabled("jog_x_plus"));
+  choose("while pressed");
+  ASSERT_NO_FATAL_FAILURE(hold("jog_x_plus"));
+  panel.widget().setUpdatesEnabled(false);  // What is drawn may wait for the X server, too.
+  std::size_t at_first = 0, in_the_end = 0;
+  std::atomic<bool> over{false};
+  std::thread stopper([&] {
+    kill(*server, SIGSTOP);
+    ros::WallDuration(0.5).sleep();  // What was on its way has come.
+    at_first = jogs().size();
+    ros::WallDuration(1).sleep();
+    in_the_end = jogs().size();
+    kill(*server, SIGCONT);
+    over = true;
+  });
+  const bool came_back = QTest::qWaitFor([&] { return over.load(); }, kPatience);
+  stopper.join();
+  ASSERT_TRUE(came_back);
+  EXPECT_EQ(in_the_end, at_first);
+  WAIT_FOR(jogs().size() > in_the_end);
+  QTest::mouseRelease(&panel.the<QPushButton>("jog_x_plus"), Qt::LeftButton);
+  expectStopped();
 }
 
 }  // namespace grinder::test_panel_jog

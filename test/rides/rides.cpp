@@ -1,6 +1,6 @@
 // Rides random jobs on random machines through the control loop, in simulated time, each from its start to its end:
-// with holds, overrides, retracts, jogs, cancels, stops, faults and restarts at random moments. Every cycle is judged
-// by the second opinion, and the rides that went wrong are reported.
+// with holds, overrides, retracts, jogs whose messages fail to come, cancels, stops, faults and restarts at random
+// moments. Every cycle is judged by the second opinion, and the rides that went wrong are reported.
 
 #include "flute_grinder/control/control_loop.h"
 #include "ride_job.h"
@@ -20,6 +20,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -35,6 +36,9 @@ using S = MachineState;
 constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
 constexpr int kMostBuffered = 50;
+constexpr double kJogTimeout = 0.05;  ///< [s]
+/// Cycles in which the spindle runs up, and in which it is still at speed once it was switched off.
+constexpr int kRunUp = 20, kRunDown = 100;
 
 /// Axes that reach every command at once, or after some that wait before it, and what can go wrong with them.
 class RideDrive : public Drive {
@@ -73,7 +77,10 @@ class RideDrive : public Drive {
     if (homed_for_ == 4) lost_ = false;
     if (fails(Failure::kReference)) lost_ = true;
     status.homed = !lost_ && !status.homing;
-    status.spindle_at_speed = sent_.spindle && !fails(Failure::kSpindle);
+    runs_up_ = sent_.spindle ? std::min(runs_up_ + 1, kRunUp) : 0;
+    const bool at_speed = runs_up_ == kRunUp;
+    runs_down_ = at_speed ? kRunDown : sent_.spindle ? 0 : std::max(runs_down_ - 1, 0);
+    status.spindle_at_speed = runs_down_ > 0 && !fails(Failure::kSpindle);
     status.coolant_on = sent_.coolant && !fails(Failure::kCoolant);
     status.probe_free = !fails(Failure::kProbe);
     double& at = at_[static_cast<std::size_t>(axis_)];
@@ -129,6 +136,7 @@ class RideDrive : public Drive {
   Failure failure_ = Failure::kNone;
   int axis_ = 0, left_ = 0, homed_for_ = 0;
   bool lost_ = false;
+  int runs_up_ = 0, runs_down_ = 0;  ///< cycles: of the first so far, of the other to come
 };
 
 /// Where nothing may move, but homing axes.
@@ -140,7 +148,7 @@ LoopConfig configOf(const Machine& machine) {
   config.following_error << 1e-3, 1e-3, 1e-3, 1e-3;
   config.feedback_timeout = 2.5 * machine.period;
   config.enable_timeout = config.homing_timeout = config.spindle_timeout = 0.5;
-  config.jog_timeout = 0.05;
+  config.jog_timeout = kJogTimeout;
   config.jog_velocity << 0.01, 0.01, 0.01, 0.5;
   return config;
 }
@@ -212,9 +220,11 @@ class Ride {
     if (result_.events >= kMostEvents || flip(random_, 1 / recover_every_)) recover();
     keepJogging();
     const bool late = periods_ > 1;
-    const ros::Duration period(job_.machine.period * std::exchange(periods_, 1.0));
+    const double periods = std::exchange(periods_, 1.0);
+    const ros::Duration period(job_.machine.period * periods);
     time_ += period;
     loop_->cycle(time_, period);
+    seeButton(std::min(period.toSec(), 2 * job_.machine.period));
     if (const auto reply = loop_->reply()) last_reply_ = reply->text;
     loop_->jogReply();
     if (const auto reply = loop_->startJobReply()) last_reply_ = reply->text;
@@ -261,6 +271,10 @@ class Ride {
     if (sample_.state == S::kFault && drive_.isCommandedOn()) throw second_opinion::Violation("the power stays on");
     if (row.moves && std::find(std::begin(kAtRest), std::end(kAtRest), sample_.state) != std::end(kAtRest))
       throw second_opinion::Violation("it moves");
+    const bool to_the_work = sample_.state == S::kRunning || sample_.state == S::kResuming;
+    const bool turns = sample_.drive.spindle_at_speed && sample_.spindle_commanded;
+    const bool flows = sample_.drive.coolant_on && sample_.coolant_commanded;
+    if (to_the_work && !(turns && flows)) throw second_opinion::Violation("to the work with a dry or a stopped wheel");
     // No job is planned beyond a limit of its machine: what the loop refuses is the stream's fault, or the jog's.
     if (sample_.fault.kind == FaultKind::kLimit) throw second_opinion::Violation(sample_.fault.text());
     if (row.of_job) ++result_.setpoints;
@@ -292,8 +306,12 @@ class Ride {
       case 12: return jogStep(axis);
       case 13: return beginJog(axis, some);
       case 14: return post(flip(random_, 0.5) ? E::kLift : E::kHome);
-      default: return post(flip(random_, 0.5) ? E::kSpindleOn : E::kCoolantOn);
+      default: return switchByHand();
     }
+  }
+  void switchByHand() {
+    const bool on = flip(random_, 0.5);
+    flip(random_, 0.5) ? post(on ? E::kSpindleOn : E::kSpindleOff) : post(on ? E::kCoolantOn : E::kCoolantOff);
   }
 
   void fail(int axis, int some) {
@@ -322,6 +340,9 @@ class Ride {
       case S::kHeld:
       case S::kRetracted:
         if (flip(random_, 0.5)) return lookAtTheWork(status.state);
+        // Somebody may be hasty.
+        if (!sample_.spindle_commanded && flip(random_, 0.5)) return post(E::kSpindleOn);
+        if (!sample_.coolant_commanded && flip(random_, 0.5)) return post(E::kCoolantOn);
         return status.homed ? post(E::kResume) : stop(E::kCancel);
       case S::kReady:
         if (status.wheel.in_work) return post(E::kLift);
@@ -332,6 +353,7 @@ class Ride {
 
   void lookAtTheWork(S state) {
     if (state == S::kHeld) return post(E::kRetract);
+    if (flip(random_, 0.3)) return switchByHand();
     jogStep(static_cast<int>(fraction(random_) * kAxisCount));
   }
 
@@ -347,6 +369,7 @@ class Ride {
   void post(E event) { loop_->post(event); }
   void stop(E event) {
     loop_->postStop(event);
+    is_stopped_ = true;
     if (loop_->status().jogs_begun != loop_->status().jogs_ended) rest_by_ = result_.cycles + most_braking_;
   }
   /// A jog that was stopped rests, whatever is pressed meanwhile.
@@ -359,17 +382,41 @@ class Ride {
   void setOverride(double fraction) { loop_->setFeedOverride(fraction); }
   void jogStep(int axis) {
     const double distance = axis == kA ? between(random_, -1, 1) : between(random_, -5e-3, 5e-3);
-    loop_->postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
+    postJog({axis, false, distance, axis == kA ? 1.0 : 0.02});
+  }
+  void postJog(const JogRequest& jog) {
+    if (loop_->postJog(jog)) jog_posted_ = jog;
   }
   void beginJog(int axis, int cycles) {
     jog_ = {axis, true, 0, between(random_, -1, 1) * (axis == kA ? 10 : 0.1)};
     jog_left_ = cycles;
   }
   void keepJogging() {
+    if (pause_left_ > 0) {
+      --pause_left_;
+      return;
+    }
     if (jog_left_ == 0 || jog_left_-- % 5 != 0) return;
     JogRequest request = jog_;
     if (flip(random_, 0.1)) request.velocity = 0;
-    loop_->postJog(request);
+    postJog(request);
+    if (flip(random_, 0.1)) pause_left_ = static_cast<int>(between(random_, 0, 3) * kJogTimeout / job_.machine.period);
+  }
+  /// Judges what the messages of a continuous jog have done in a cycle. @param period as it counts [s].
+  void seeButton(double period) {
+    const auto jog = std::exchange(jog_posted_, std::nullopt);
+    const bool was_barred = button_.isBarred();
+    button_.wait(period);
+    if (jog && jog->continuous) jog->velocity == 0 ? button_.release() : button_.press(jog->axis);
+    const LoopStatus status = loop_->status();
+    if (status.jogs_begun != jogs_begun_) {
+      jogs_begun_ = status.jogs_begun;
+      continuous_ = jog && jog->continuous;
+      if (continuous_ && button_.isBarred()) throw second_opinion::Violation("a jog begins that was not released");
+    }
+    if (std::exchange(is_stopped_, false)) button_.stop();
+    const bool runs = continuous_ && status.jogs_begun != status.jogs_ended;
+    if (runs && !was_barred && button_.isBarred()) rest_by_ = result_.cycles + most_braking_;
   }
 
   Random random_;
@@ -390,8 +437,14 @@ class Ride {
   ros::Time time_{1000};
   double periods_ = 1;  ///< that the next cycle takes
   std::string last_reply_;
-  JogRequest jog_;
-  int jog_left_ = 0;
+  JogRequest jog_;                        ///< continuous
+  int jog_left_ = 0;                      ///< cycles in which it is repeated
+  int pause_left_ = 0;                    ///< cycles until it is repeated again
+  std::optional<JogRequest> jog_posted_;  ///< for this cycle
+  bool is_stopped_ = false;               ///< in this cycle
+  bool continuous_ = false;               ///< the last jog that began
+  std::uint64_t jogs_begun_ = 0;
+  second_opinion::Button button_{kJogTimeout};
   std::uint64_t rest_by_ = 0;  ///< cycle, of a jog that was stopped
 };
 

@@ -248,4 +248,16 @@ void Watch::checkFeed(const Row& row, const Tooth& tooth) {
   if (!(pair <= most * (1 + 1e-9L) + noise)) throw Violation(text("feed: way", 0, pair, most));
 }
 
+void Button::wait(Real period) {
+  age_ += period;
+  barred_ = barred_ || (pressed_ && age_ > timeout_);
+}
+
+void Button::press(int axis) {
+  if (pressed_ && axis != axis_) return;
+  pressed_ = true;
+  axis_ = axis;
+  age_ = 0;
+}
+
 }  // namespace second_opinion

@@ -113,4 +113,26 @@ class Watch {
   int broken_ = 0;               ///< pairs over which acceleration and jerk mean nothing, since the axes stood still
 };
 
+/// Watches the button of a continuous jog, whose message is repeated while it is pressed. Once the messages have failed
+/// to come in time, or the jog was stopped, nothing moves by it before a message has said that it is released.
+class Button {
+ public:
+  /// @param timeout longest time between the messages [s].
+  explicit Button(Real timeout) : timeout_(timeout) {}
+
+  /// @param period as it counts [s].
+  void wait(Real period);
+  /// A message has come for an axis. Those for another one than it was pressed for do not count.
+  void press(int axis);
+  void release() { pressed_ = barred_ = false; }
+  void stop() { barred_ = barred_ || pressed_; }
+  bool isBarred() const { return barred_; }
+
+ private:
+  Real timeout_;
+  Real age_ = 0;  ///< of the last message [s]
+  int axis_ = 0;
+  bool pressed_ = false, barred_ = false;
+};
+
 }  // namespace second_opinion

@@ -111,7 +111,7 @@ class ControlLoop : public RequestBox {
   double liftTarget() const;
   Refusal setSwivel(double angle);
   Refusal spindleOn();
-  Refusal switchOn(bool& commanded);
+  Refusal switchByHand(bool& commanded, bool on);
   Axes distanceToGo() const;
   Interlock openInterlock() const;
   Answer executeJog(const JogRequest& jog);
@@ -161,7 +161,7 @@ class ControlLoop : public RequestBox {
   bool touched_ = false;            ///< the probe, in the previous cycle
   bool for_client_ = false;         ///< the jog
   DeadMansSwitch dead_man_;
-  DeadMansSwitch client_;  ///< of a series
+  SilenceTimer client_;  ///< of a series
   std::uint32_t keep_alives_seen_ = 0;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
@@ -178,9 +178,10 @@ class ControlLoop : public RequestBox {
   bool power_off_next_ = false;     ///< once the axes are at rest
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
-  bool spindle_by_hand_ = false;  ///< commanded without a job
-  bool coolant_by_hand_ = false;
-  double waited_ = 0;  ///< for power, the reference, or the interlocks of a job [s]
+  bool spindle_ = false;           ///< commanded, by a job or by hand
+  bool coolant_ = false;           ///< the same
+  bool switched_by_hand_ = false;  ///< either of them, since the job began or was resumed
+  double waited_ = 0;              ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
   bool homing_seen_ = false;
   CycleSample sample_;

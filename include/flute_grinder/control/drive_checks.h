@@ -48,7 +48,9 @@ class DriveChecks {
   double slow_ = 0;  ///< average time of a cycle in the second before, if that was too long; 0 if not [s]
 };
 
-/// The first open interlock; kNone if grinding is allowed. Real-time safe.
-Interlock openInterlock(const DriveStatus& drive) noexcept;
+/// The first open interlock; kNone if grinding is allowed. What is not commanded counts as missing, though the wheel
+/// may still be at speed. Real-time safe.
+/// @param spindle, coolant commanded.
+Interlock openInterlock(const DriveStatus& drive, bool spindle, bool coolant) noexcept;
 
 }  // namespace grinder

@@ -46,6 +46,7 @@ enum class Refusal : std::uint8_t {
   kJogging,         ///< another jog is not over
   kJobOver,         ///< a jog in a job that was held at the very end of its path
   kStopped,         ///< a continuous jog that was stopped or refused, and not released since
+  kTimedOut,        ///< a continuous jog whose messages had failed to come in time, and not released since
   kTouches,         ///< a jog to touch, while the probe touches already
   kWheelTurns,      ///< a jog of a probing cycle, while the spindle is commanded or at speed
   kProbing,         ///< the spindle, while the probe is being moved

@@ -79,7 +79,8 @@ class RequestBox {
   /// Requests a jog, and waits for the answer, not for the motion. For one thread at a time.
   ///
   /// A step moves its axis by its distance, or is refused if that would lead beyond a limit. A continuous jog moves its
-  /// axis toward its limit, and must be requested again and again: without a request for jog_timeout the axis stops.
+  /// axis toward its limit, and must be requested again and again: without a request for jog_timeout the axis stops,
+  /// and only a request for velocity 0 lets it be jogged on.
   /// In the middle of a job only a retracted wheel is jogged, and never down to the workpiece.
   RequestReply jog(const JogRequest& jog);
   /// The same without waiting: the next cycle answers it.

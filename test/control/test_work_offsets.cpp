@@ -232,6 +232,9 @@ TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
     ASSERT_EQ(rig.last().state, S::kRetracted);
     ASSERT_EQ(rig.last().command[axis], limit);
     ASSERT_FALSE(rig.last().wheel_in_work);
+    if (!step) {
+      ASSERT_TRUE(rig.jog({axis, true, 0, 0}).accepted);
+    }
     rig.run(100);
   }
   rig.keepLast();

@@ -7,6 +7,7 @@
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel/click_guard.h"
+#include "panel/panel_button.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -66,25 +67,28 @@ std::string diameterDoubt(const GrindJob& job, double diameter) {
 }
 
 /// One for the process, however many panels there are.
-std::shared_ptr<MasterWatch> masterWatch() {
-  static std::weak_ptr<MasterWatch> the;
-  auto watch = the.lock();
-  if (!watch) the = watch = std::make_shared<MasterWatch>();
-  return watch;
+template <typename Shared>
+std::shared_ptr<Shared> theOnly() {
+  static std::weak_ptr<Shared> the;
+  auto shared = the.lock();
+  if (!shared) the = shared = std::make_shared<Shared>();
+  return shared;
 }
 
 }  // namespace
 
 GrindPanel::GrindPanel(QWidget* parent)
     : rviz::Panel(parent),
-      master_watch_(masterWatch()),
+      master_watch_(theOnly<MasterWatch>()),
+      hold_key_(theOnly<HoldKey>()),
       state_(new StateBox),
       job_(new JobBox),
       section_(new SectionView),
       jog_(new JogBox),
       touch_off_(new TouchOffBox),
       legend_(new LegendBox),
-      look_(new QPushButton("Look at the tool")),
+      look_(new PanelButton("look_at_tool", "Look at the tool",
+                            "Turn rviz's view back to the tool; it does so by itself when another tool is shown")),
       tabs_(new QTabWidget),
       override_(new OverrideBox),
       progress_(new ProgressBox),
@@ -102,6 +106,7 @@ GrindPanel::GrindPanel(QWidget* parent)
     if (isStop(event)) stops.insert(button);
   }
   guardFromDoubleClicks(*this, stops);
+  hold_key_->add(*buttons_.at(MachineEvent::kHold));
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
@@ -202,8 +207,6 @@ QLayout* GrindPanel::layOutSwitches() {
 }
 
 QWidget* GrindPanel::viewTab() {
-  look_->setObjectName("look_at_tool");
-  look_->setToolTip("Turn rviz's view back to the tool; it does so by itself when another tool is shown");
   auto* node = new QHBoxLayout;
   node->addWidget(new QLabel("Node"));
   node->addWidget(node_edit_, 1);
@@ -218,15 +221,9 @@ QWidget* GrindPanel::viewTab() {
 }
 
 QPushButton* GrindPanel::addButton(const EventRow& request, bool large) {
-  auto* button = new QPushButton(capitalized(request.name));
-  button->setObjectName(QString(request.name).replace(' ', '_'));
-  button->setToolTip(capitalized(request.help));
+  auto* button =
+      new PanelButton(QString(request.name).replace(' ', '_'), capitalized(request.name), capitalized(request.help));
   button->setEnabled(false);
-  button->setMinimumWidth(10);
-  // Space must not press what the focus has only come to.
-  for (const MachineEvent kept : {MachineEvent::kStart, MachineEvent::kCancel, MachineEvent::kDisable}) {
-    if (request.value == kept) button->setFocusPolicy(Qt::NoFocus);
-  }
   if (large) {
     QFont bold = font();
     bold.setBold(true);
@@ -252,14 +249,6 @@ void GrindPanel::save(rviz::Config config) const {
   rviz::Panel::save(config);
   config.mapSetValue("Node", node_);
   config.mapSetValue("Job", job_->file());
-}
-
-bool GrindPanel::focusNextPrevChild(bool next) {
-  const QWidget* from = window()->focusWidget();
-  if (!from || (from->isEnabled() && from->isVisible())) return rviz::Panel::focusNextPrevChild(next);
-  QPushButton* hold = buttons_.at(MachineEvent::kHold);
-  (hold->isEnabled() ? hold : static_cast<QWidget*>(this))->setFocus();
-  return true;
 }
 
 void GrindPanel::setNode(const QString& node) {
@@ -309,17 +298,12 @@ void GrindPanel::refresh() {
   const bool job_runs = state && isInJob(*state);
   const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
   showOtherJob(view, job_runs);
-  // Hold before the others are disabled, of which one may have the focus.
-  const auto enable = [&](MachineEvent event) { buttons_.at(event)->setEnabled(allowed(event, view)); };
-  enable(MachineEvent::kHold);
   const bool begun = job_runs || (state && sent_ && !sent_->goal.dry_run);
-  if (begun && !begun_) {
-    buttons_.at(MachineEvent::kHold)->setFocus();
-    const double feed_override = view.state->override;
-    if (feed_override != 1) showMessage(format("the job begins at a feed override of %.0f %%", feed_override * 100));
+  if (begun && !begun_ && view.state->override != 1) {
+    showMessage(format("the job begins at a feed override of %.0f %%", view.state->override * 100));
   }
   begun_ = begun;
-  for (const auto& [event, button] : buttons_) enable(event);
+  for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, view.machine ? view.machine->jog_timeout : 0, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);

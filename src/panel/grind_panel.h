@@ -2,6 +2,7 @@
 
 #include "flute_grinder/network/master_watch.h"
 #include "panel/grinder_link.h"
+#include "panel/hold_key.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"
 #include "panel/legend_box.h"
@@ -26,10 +27,10 @@
 namespace grinder {
 
 /// The operator's panel in rviz: chooses, plans and runs a job, and shows what the grinder does. A button is enabled
-/// if the state table allows its request and it would change something; Hold wherever it is allowed, since it keeps the
-/// focus, and Start only with a plan without violations. No key starts, cancels or disables. No window is ever modal.
-/// Without messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the
-/// grinder or the master, and both are found again when they come back.
+/// if the state table allows its request and it would change something; Hold wherever it is allowed, and Start only
+/// with a plan without violations. Space is Hold; no key starts, cancels or disables. No window is ever modal. Without
+/// messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the grinder
+/// or the master, and both are found again when they come back.
 ///
 /// Configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {
@@ -41,11 +42,6 @@ class GrindPanel : public rviz::Panel {
   void onInitialize() override;
   void load(const rviz::Config& config) override;
   void save(rviz::Config config) const override;
-
- protected:
-  /// Qt passes the focus of what is disabled or hidden on to the next widget, where Space would press a button that
-  /// the operator has not chosen. It goes to Hold instead, or to none.
-  bool focusNextPrevChild(bool next) override;
 
  private:
   /// A goal sent by this panel that has not ended.
@@ -93,6 +89,7 @@ class GrindPanel : public rviz::Panel {
   GrinderLink::OnAnswer reply(const std::string& done);
 
   const std::shared_ptr<MasterWatch> master_watch_;
+  const std::shared_ptr<HoldKey> hold_key_;
   QString node_;                       ///< as entered
   std::string name_;                   ///< resolved; empty if invalid
   QString titled_;                     ///< the name that the window's title has from here
@@ -101,7 +98,7 @@ class GrindPanel : public rviz::Panel {
   std::optional<Sent> sent_;
   std::optional<Passing> passing_;  ///< of the last request
   std::string last_sent_;           ///< id of the last goal from here
-  bool begun_ = false;              ///< a job runs or was sent, whoever sent it: the focus has gone to Hold
+  bool begun_ = false;              ///< a job runs or was sent, whoever sent it
 
   StateBox* state_;
   JobBox* job_;

@@ -12,6 +12,7 @@
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "panel/beside.h"
+#include "panel/panel_button.h"
 #include "panel/plain_words.h"
 #include "panel/setup_dialog.h"
 #include "panel/text_view.h"
@@ -58,26 +59,19 @@ bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swive
   return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
 }
 
-QPushButton* button(const char* name, const QString& text, const QString& hint) {
-  auto* made = new QPushButton(text);
-  made->setObjectName(name);
-  made->setToolTip(hint);
-  return made;
-}
-
 }  // namespace
 
 JobBox::JobBox(QWidget* parent)
     : QWidget(parent),
       name_(new QLabel),
       operation_(new OperationChoice),
-      choose_(button("choose", "Open...", "Choose a job file")),
-      setup_(button("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
+      choose_(new PanelButton("choose", "Open...", "Choose a job file")),
+      setup_(new PanelButton("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
       continue_(new QCheckBox(kContinue)),
       zeros_(new QLabel),
-      plan_(button("plan", "Plan", "Generate and check every setpoint; nothing moves")),
-      dry_run_(
-          button("dry_run", "Dry run", "Send the job as it would be ground; the grinder checks it, nothing moves")),
+      plan_(new PanelButton("plan", "Plan", "Generate and check every setpoint; nothing moves")),
+      dry_run_(new PanelButton("dry_run", "Dry run",
+                               "Send the job as it would be ground; the grinder checks it, nothing moves")),
       verdict_(textView("verdict", kAnswerLines)),
       other_job_(textView("other_job", kAnswerLines)),
       answer_(new QStackedWidget),

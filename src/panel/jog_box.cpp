@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/machine/machine_state.h"
+#include "panel/panel_button.h"
 
 #include <QApplication>
 #include <QCursor>
@@ -75,10 +76,11 @@ JogBox::JogBox(QWidget* parent)
 QPushButton* JogBox::addButton(int axis, int direction) {
   const QChar name = "XYZA"[axis];
   const bool up = direction > 0;
-  auto* button = new QPushButton(QString("%1 %2").arg(name).arg(up ? "+" : QString::fromUtf8("\xe2\x88\x92")));
-  button->setObjectName(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"));
-  button->setToolTip(QString("Jog axis %1").arg(name));
-  button->setMinimumWidth(10);
+  auto* button = new PanelButton(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"),
+                                 QString("%1 %2").arg(name).arg(up ? "+" : QString::fromUtf8("\xe2\x88\x92")),
+                                 QString("Jog axis %1").arg(name));
+  // It ends the jog when it loses the focus, say to another window.
+  button->setFocusPolicy(Qt::ClickFocus);
   button->setMinimumHeight(3 * fontMetrics().height() / 2);
   button->setEnabled(false);
   return button;

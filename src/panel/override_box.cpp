@@ -3,6 +3,7 @@
 #include "flute_grinder/motion/feed_schedule.h"
 
 #include <QHBoxLayout>
+#include <QKeyEvent>
 #include <QSignalBlocker>
 
 #include <cmath>
@@ -11,13 +12,23 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRest = 300;    ///< after which a slider moved by keys or the mouse wheel counts as at rest [ms]
+constexpr int kRest = 300;    ///< after which a slider moved by the mouse wheel counts as at rest [ms]
 constexpr int kSettle = 200;  ///< several state messages arrive within this [ms]
 const int kMaxPercent = static_cast<int>(std::lround(kMaxFeedOverride * 100));
 
+/// A slider that no key moves: one that is pressed by accident would start the axes at an override of 0.
+class MouseSlider : public QSlider {
+ public:
+  using QSlider::QSlider;
+
+ protected:
+  void keyPressEvent(QKeyEvent* event) override { event->ignore(); }
+};
+
 }  // namespace
 
-OverrideBox::OverrideBox(QWidget* parent) : QWidget(parent), slider_(new QSlider(Qt::Horizontal)), value_(new QLabel) {
+OverrideBox::OverrideBox(QWidget* parent)
+    : QWidget(parent), slider_(new MouseSlider(Qt::Horizontal)), value_(new QLabel) {
   slider_->setObjectName("override");
   slider_->setRange(0, kMaxPercent);
   slider_->setPageStep(10);

@@ -1,5 +1,6 @@
 #include "panel/question.h"
 
+#include "panel/panel_button.h"
 #include "panel/text_view.h"
 
 #include <QGridLayout>
@@ -19,24 +20,16 @@ Question::Question(const QString& name, int lines)
   layout_->addWidget(text_, 0, 0, 1, 2);
   layout_->setRowStretch(0, 1);
   for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);
-  auto* decline = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1, [] {});
-  decline->setFocusPolicy(Qt::StrongFocus);
+  addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1, [] {});
   appearing_.setSingleShot(true);
   appearing_.setInterval(kAppearing);
-  connect(&appearing_, &QTimer::timeout, this, [this, decline] {
-    enableAnswers(true);
-    decline->setFocus();
-  });
+  connect(&appearing_, &QTimer::timeout, this, [this] { enableAnswers(true); });
 }
 
 QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
                                  const std::function<void()>& act) {
-  auto* button = new QPushButton(text);
-  button->setObjectName(name);
-  button->setToolTip(hint);
+  auto* button = new PanelButton(name, text, hint);
   button->setEnabled(false);
-  button->setFocusPolicy(Qt::NoFocus);
-  button->setMinimumWidth(10);  // so that the columns are alike
   // One that is not offered must not move the others.
   QSizePolicy policy = button->sizePolicy();
   policy.setRetainSizeWhenHidden(true);

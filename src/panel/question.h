@@ -13,8 +13,7 @@ namespace grinder {
 
 /// Asks before something is done that the operator may not want: a text, and the answers below it in two columns, with
 /// *Not yet*, which does nothing, in the same place in each. For a second after it has appeared it takes no answer,
-/// since the click may be meant for what was there before; then *Not yet* has the focus, and no key gives another
-/// answer.
+/// since the click may be meant for what was there before. No key gives one.
 class Question : public QWidget {
   Q_OBJECT
 

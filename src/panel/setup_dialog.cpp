@@ -6,6 +6,7 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/network/ros_api.h"
+#include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
 
@@ -38,7 +39,8 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
       flange_(ros::names::append(grinder, "geometry/flange")),
       sheet_(textView("setup_sheet", kSheetLines)),
       keep_(new QComboBox),
-      write_(new QPushButton("Write into the file")) {
+      write_(new PanelButton("write_setup", "Write into the file",
+                             "Write the set-up into the job file; all else in it stays as it is")) {
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
@@ -46,11 +48,9 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   keep_->setToolTip("Leave this figure as it is in the job file");
   keep_->addItem("nothing");
   for (const auto& figure : kSetupFigures) keep_->addItem(figure.name);
-  write_->setObjectName("write_setup");
-  write_->setToolTip("Write the set-up into the job file; all else in it stays as it is");
   write_->setEnabled(false);
-  auto* close = new QPushButton("Close");
-  close->setObjectName("close_setup");
+  auto* close = new PanelButton("close_setup", "Close", "Close the sheet");
+  close->setDefault(true);
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(new QLabel("Keep"));
   buttons->addWidget(keep_);

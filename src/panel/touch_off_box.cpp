@@ -1,6 +1,7 @@
 #include "panel/touch_off_box.h"
 
 #include "flute_grinder/job/quantity.h"
+#include "panel/panel_button.h"
 
 #include <QDateTime>
 #include <QGridLayout>
@@ -31,14 +32,13 @@ TouchOffBox::TouchOffBox(QWidget* parent)
     : QWidget(parent),
       axis_(new QComboBox),
       at_(new NumberBox("touch_at", kDecimals)),
-      touch_(new QPushButton("Touch off")),
+      touch_(
+          new PanelButton("touch_off", "Touch off", "Set the axis' work offset from where it is now; nothing moves")),
       offset_(new QLabel),
       question_(new Question("touch", 2)),
       pages_(new QStackedLayout(this)) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
-  touch_->setObjectName("touch_off");
-  touch_->setToolTip("Set the axis' work offset from where it is now; nothing moves");
   offset_->setObjectName("work_offset");
   offset_->setWordWrap(true);
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);

@@ -3,6 +3,7 @@
 #include "stage.h"
 
 #include <QAbstractButton>
+#include <QAbstractItemView>
 #include <QAbstractSlider>
 #include <QAbstractSpinBox>
 #include <QApplication>
@@ -11,10 +12,16 @@
 #include <QLocale>
 #include <QScreen>
 #include <QScrollBar>
+#include <QShortcut>
+#include <QToolButton>
+#include <QVBoxLayout>
 #include <QWheelEvent>
 #include <QWindow>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace grinder::test_panel_input {
@@ -25,26 +32,11 @@ void activate(Panel& panel) {
   ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
 }
 
-std::string focused() {
-  return QApplication::focusWidget() ? QApplication::focusWidget()->objectName().toStdString() : "";
-}
+/// The keys that press a button, somewhere.
+constexpr std::array kPressing{Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter};
 
-/// What has the focus while Tab is pressed more often than there are widgets.
-Names tabbedThrough() {
-  Names passed;
-  for (int i = 0; i < 60 && QApplication::focusWidget(); ++i) {
-    QTest::keyClick(QApplication::focusWidget(), Qt::Key_Tab);
-    passed.insert(focused());
-  }
-  EXPECT_TRUE(QApplication::focusWidget());
-  return passed;
-}
-
-/// Presses the keys that could press a button, wherever they go.
-void pressKeys(Panel& panel) {
-  for (const Qt::Key key : {Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter}) {
-    QTest::keyClick(QApplication::focusWidget() ? QApplication::focusWidget() : &panel.widget(), key);
-  }
+void pressKeys(QWidget& widget) {
+  for (const Qt::Key key : kPressing) QTest::keyClick(&widget, key);
 }
 
 /// As the operator's hand does it: what blocks the window blocks the click.
@@ -127,6 +119,8 @@ TEST_P(InALanguage, WhatIsNoNumberInRangeStaysAsItWasTyped) {
                              "500000", "-20000", "1.23456"}) {
       SCOPED_TRACE(text);
       for (const auto enter : {typed, pasted}) {
+        // Space is Hold, and not typed.
+        if (enter == typed && std::strchr(text, ' ')) continue;
         enter(box, text);
         QFocusEvent left(QEvent::FocusOut, Qt::TabFocusReason);
         QApplication::sendEvent(&box, &left);
@@ -286,26 +280,6 @@ TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
   for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
 }
 
-TEST_F(Asked, NoKeyStartsAnything) {
-  const std::vector<std::pair<const char*, std::string>> ways{
-      {"discard", "unfinished"}, {"ignore_offset_check", "offsets"}, {"confirm_swivel", "swivel"}};
-  for (std::size_t asked = 0; asked < ways.size(); ++asked) {
-    SCOPED_TRACE(ways[asked].second);
-    for (std::size_t before = 0; before < asked; ++before) panel.press(ways[before].first);
-    pressKeys(panel);
-    const std::string decline = "decline_" + ways[asked].second;
-    WAIT_FOR(panel.the<QWidget>(decline.c_str()).hasFocus());
-    const Names passed = tabbedThrough();
-    EXPECT_FALSE(passed.count(ways[asked].first) || passed.count("start"));
-    panel.the<QWidget>(decline.c_str()).setFocus();
-    pressKeys(panel);
-    EXPECT_FALSE(shown(ways[asked].second)) << "Space answers Not yet";
-    panel.click("start");
-  }
-  EXPECT_EQ(goals().size(), 0U);
-  EXPECT_TRUE(swivels().empty());
-}
-
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
   for (const char* answer : {"discard", "ignore_offset_check", "confirm_swivel"}) panel.press(answer);
   WAIT_FOR(goals().size() == 1);
@@ -313,10 +287,22 @@ TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
   EXPECT_TRUE(goals().at(0).goal.ignore_offset_check);
   WAIT_FOR(panel.says("messages", "The job begins at a feed override of 50 %"));
   // From the goal on: a job that is still planned begins held.
-  WAIT_FOR(panel.the<QWidget>("hold").hasFocus());
-  stage.be("running", panel);
-  QTest::keyClick(QApplication::focusWidget(), Qt::Key_Space);
+  WAIT_FOR(panel.enabled("hold"));
+  QTest::keyClick(panel.widget().windowHandle(), Qt::Key_Space);
   WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
+}
+
+TEST_F(Asked, NoKeyAnswers) {
+  const std::vector<std::pair<const char*, std::string>> ways{
+      {"discard", "unfinished"}, {"ignore_offset_check", "offsets"}, {"confirm_swivel", "swivel"}};
+  for (const auto& [answer, question] : ways) {
+    SCOPED_TRACE(question);
+    WAIT_FOR(panel.enabled(answer));
+    for (auto* button : panel.widget().findChildren<QAbstractButton*>()) pressKeys(*button);
+    EXPECT_TRUE(shown(question));
+    panel.press(answer);
+  }
+  WAIT_FOR(goals().size() == 1);
 }
 
 TEST_F(OnStage, ADoubleClickPressesAButtonOnce) {
@@ -408,61 +394,165 @@ TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAlone) {
   EXPECT_LT(slider.value(), 100);
 }
 
-class Focus : public OnStage {
+class Keys : public OnStage {
  protected:
   void SetUp() override { activate(panel); }
+  /// Presses a key as the keyboard does: in the active window, wherever the focus is.
+  static void key(Qt::Key key) { QTest::keyClick(QApplication::focusWindow(), key); }
+  /// Space holds with the focus there, or is typed there.
+  void expectHold(QWidget& widget, bool holds) {
+    SCOPED_TRACE(std::string(widget.metaObject()->className()) + " " + widget.objectName().toStdString());
+    WAIT_FOR((widget.activateWindow(), widget.setFocus(), widget.hasFocus()));
+    const std::size_t before = stops().size();
+    key(Qt::Key_Space);
+    // A stop that was sent after all would come before this.
+    panel.click("hold");
+    WAIT_FOR(stops().size() == before + (holds ? 2 : 1));
+    for (const int stop : stops()) EXPECT_EQ(stop, flute_grinder::Stop::HOLD);
+  }
+  /// What has been asked of the grinder, other than a hold.
+  std::size_t asked() {
+    const std::vector<int> stops = this->stops();
+    const auto holds = static_cast<std::size_t>(std::count(stops.begin(), stops.end(), flute_grinder::Stop::HOLD));
+    return stage.get([&] {
+      return stage.goals.size() + stage.steps.size() + stage.jogs.size() + stage.triggers.size() +
+             stage.touches.size() + stage.offsets_set.size() + stage.swivels.size() + stage.overrides.size() +
+             static_cast<std::size_t>(stage.resumes) + stage.state.spindle_commanded + stops.size() - holds;
+    });
+  }
 };
 
-TEST_F(Focus, GoesToHoldAndStaysAndNoKeyCancelsOrResumes) {
+TEST_F(Keys, WhatTabComesToAfterATouchOffThatIsOffIsNotPressed) {
   panel.openTab("Jog");
-  panel.the<QWidget>("jog_speed").setFocus();
-  stage.be("starting");
-  WAIT_FOR(focused() == "hold");  // with the job of somebody else
-  stage.be("running", panel);
-  const Names passed = tabbedThrough();
-  EXPECT_TRUE(passed.count("hold"));
-  EXPECT_FALSE(passed.count("cancel") || passed.count("disable"));
-  clickInWindow(panel, "hold");
-  WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
-  for (const char* state : {"holding", "held"}) {
-    stage.be(state, panel);
-    EXPECT_EQ(focused(), "hold");
-    pressKeys(panel);
-  }
-  // Hold again holds what is held.
-  clickInWindow(panel, "resume");
-  WAIT_FOR(stage.get(&Stage::resumes) == 1);
-  for (const char* state : {"resuming", "running"}) {
-    stage.be(state, panel);
-    EXPECT_EQ(focused(), "hold");
-    pressKeys(panel);
-  }
-  for (const int stop : stops()) EXPECT_EQ(stop, flute_grinder::Stop::HOLD);
-  EXPECT_EQ(stage.get(&Stage::resumes), 1);
+  auto& at = panel.the<QAbstractSpinBox>("touch_at");
+  WAIT_FOR(panel.enabled("spindle_on") && panel.enabled("touch_off"));
+  at.setFocus();
+  at.selectAll();
+  QTest::keyClicks(&at, "99999999");
+  WAIT_FOR(!panel.enabled("touch_off"));
+  key(Qt::Key_Tab);
+  for (const Qt::Key pressed : kPressing) key(pressed);
+  panel.click("coolant_on");
+  WAIT_FOR(stage.get(&Stage::triggers) == Names{"coolant_on"});
+  EXPECT_FALSE(stage.get([&] { return stage.state.spindle_commanded; }));
 }
 
-TEST_F(Focus, DoesNotMoveToAButtonByItself) {
-  WAIT_FOR(panel.enabled("plan"));
-  // Disabled while it plans, which takes the focus from it.
-  stage.change([&] { stage.plan_hangs = true; });
-  clickInWindow(panel, "plan");
-  WAIT_FOR(!panel.enabled("plan"));
-  EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
-  pressKeys(panel);
-  stage.release();
-  WAIT_FOR(panel.enabled("start"));
-  EXPECT_TRUE(stops().empty());
-  clickInWindow(panel, "start");
-  WAIT_FOR(goals().size() == 1);
+TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
+  panel.plan();
+  panel.press("setup");
+  WAIT_FOR(panel.widget().findChild<QDialog*>("setup_dialog"));
+  ASSERT_TRUE(panel.fileDialog());
+  Names pressed;
+  for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
+    stage.be(state, panel);
+    for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+      panel.openTab(tab);
+      for (auto* button : panel.widget().findChildren<QPushButton*>()) {
+        // Qt's own, which choose a file.
+        if (!button->isEnabled() || qobject_cast<QFileDialog*>(button->window())) continue;
+        SCOPED_TRACE(button->objectName().toStdString());
+        ASSERT_FALSE(button->objectName().isEmpty());
+        int clicks = 0;
+        QObject receiver;
+        if (button->objectName() != "hold" && button->objectName() != "close_setup") {
+          QObject::connect(button, &QPushButton::clicked, &receiver, [&] { ++clicks; });
+        }
+        button->setFocus();
+        pressKeys(*button);
+        EXPECT_EQ(clicks, 0);
+        pressed.insert(button->objectName().toStdString());
+      }
+    }
+  }
+  for (const char* name : {"enable", "reset", "home", "resume", "retract", "jog_x_plus", "touch_off", "spindle_on",
+                           "coolant_on", "start", "plan", "cancel", "disable"}) {
+    EXPECT_TRUE(pressed.count(name)) << name;
+  }
+  EXPECT_EQ(asked(), 0U);
+}
+
+TEST_F(Keys, SpaceHoldsWhateverHasTheFocus) {
   stage.be("running", panel);
-  EXPECT_EQ(focused(), "hold") << "Space stops what Start has begun";
-  flute_grinder::GrindResult canceled;
-  canceled.error_code = flute_grinder::GrindResult::CANCELED;
-  canceled.error_string = "canceled";
-  stage.end(goals().at(0).goal_id.id, canceled);
-  WAIT_FOR(panel.says("messages", "The job has ended: canceled"));
-  stage.be("ready", panel);
-  EXPECT_FALSE(qobject_cast<QPushButton*>(QApplication::focusWidget())) << focused();
+  int widgets = 0;
+  for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+    panel.openTab(tab);
+    for (auto* widget : panel.widget().findChildren<QWidget*>()) {
+      if (!widget->isVisible() || !widget->isEnabled() || widget->focusPolicy() == Qt::NoFocus) continue;
+      if (widget->objectName() == "node") continue;
+      ASSERT_NO_FATAL_FAILURE(expectHold(*widget, true));
+      ++widgets;
+    }
+  }
+  EXPECT_GE(widgets, 10);
+  EXPECT_EQ(asked(), 0U);
+}
+
+TEST_F(Keys, SpaceHoldsInEveryWindowButIsTypedInATextBox) {
+  QFileDialog* dialog = panel.fileDialog();
+  ASSERT_TRUE(dialog);
+  stage.be("running", panel);
+  dialog->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(dialog, kPatience));
+  auto* name = dialog->findChild<QLineEdit*>("fileNameEdit");
+  name->setText("my");
+  ASSERT_NO_FATAL_FAILURE(expectHold(*name, false));
+  EXPECT_EQ(name->text(), "my ");
+  for (auto* button : dialog->findChildren<QPushButton*>()) ASSERT_NO_FATAL_FAILURE(expectHold(*button, true));
+  ASSERT_NO_FATAL_FAILURE(expectHold(*dialog->findChild<QAbstractItemView*>("treeView"), true));
+  // As there are others in rviz.
+  QWidget other;
+  QVBoxLayout layout(&other);
+  QToolButton reset;
+  QShortcut of_a_tool(Qt::Key_Space, &other);
+  reset.setFocusPolicy(Qt::TabFocus);
+  QDoubleSpinBox number;
+  QComboBox choice, topic;
+  topic.setEditable(true);
+  QPlainTextEdit text;
+  for (QWidget* widget : std::initializer_list<QWidget*>{&reset, &number, &choice, &topic, &text}) {
+    layout.addWidget(widget);
+  }
+  bool is_reset = false;
+  QObject::connect(&reset, &QToolButton::clicked, [&] { is_reset = true; });
+  QObject::connect(&of_a_tool, &QShortcut::activated, [&] { is_reset = true; });
+  other.show();
+  other.activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(&other, kPatience));
+  for (QWidget* widget : std::initializer_list<QWidget*>{&reset, &number, &choice}) {
+    ASSERT_NO_FATAL_FAILURE(expectHold(*widget, true));
+  }
+  for (QWidget* widget : std::initializer_list<QWidget*>{&topic, &text}) {
+    ASSERT_NO_FATAL_FAILURE(expectHold(*widget, false));
+  }
+  EXPECT_FALSE(is_reset);
+}
+
+TEST_F(Keys, SpaceHeldDownHoldsOnceInEveryPanel) {
+  Panel second("cell/stage");
+  stage.be("running", panel);
+  WAIT_FOR(second.enabled("hold"));
+  QTest::keyPress(panel.widget().windowHandle(), Qt::Key_Space);
+  for (int i = 0; i < 3; ++i) {
+    QKeyEvent repeated(QEvent::KeyPress, Qt::Key_Space, Qt::NoModifier, " ", true);
+    QApplication::sendEvent(&panel.the<QWidget>("override"), &repeated);
+  }
+  QTest::keyRelease(panel.widget().windowHandle(), Qt::Key_Space);
+  WAIT_FOR(stops().size() == 2);
+  panel.click("cancel");
+  WAIT_FOR(stops().size() == 3);
+  EXPECT_EQ(stops().back(), flute_grinder::Stop::CANCEL);
+}
+
+TEST_F(Keys, DoNotChangeTheFeedOverride) {
+  stage.be("running");
+  stage.change([&] { stage.state.override = 0; });
+  WAIT_FOR(panel.label("override_value") == "0 %");
+  auto& slider = panel.the<QAbstractSlider>("override");
+  slider.setFocus();
+  for (const Qt::Key pressed : {Qt::Key_Right, Qt::Key_Up, Qt::Key_PageUp, Qt::Key_End}) {
+    QTest::keyClick(&slider, pressed);
+    EXPECT_EQ(slider.value(), 0);
+  }
 }
 
 }  // namespace grinder::test_panel_input

@@ -84,40 +84,50 @@ std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, con
   const WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
   const OffsetBasis& was = offset.basis;
   const std::string name = nameOf(axis);
-  const auto refused = [&](const std::string& reason) { return OffsetMismatch{name, name + reason, axis, {}}; };
+  OffsetMismatch found{name, basisText(axis, offset), figures(axis, job, nullptr), "", axis, {}};
+  const auto refused = [&](const std::string& reason) {
+    found.reason = name + reason;
+    return found;
+  };
   if (std::isnan(offset.value)) return refused(" cannot be read");
-  if (!offset.wasSet()) return refused(" was never set");
-  const std::string set = " was " + basisText(axis, offset);
-  if (was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) return refused(set);
-  if (offset.mounting != offsets.wheel.mounting) return refused(set + "; another wheel has been mounted since");
+  const std::string set = " was " + found.set;
+  if (!offset.wasSet() || was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) return refused(set);
+  if (offset.mounting != offsets.wheel.mounting) {
+    found.set += "; another wheel has been mounted since";
+    return refused(" was " + found.set);
+  }
   const std::string differs = was.hasJob() ? figures(axis, job, &was) : "";
   if (differs.empty()) return std::nullopt;
-  OffsetMismatch found = refused(set + "; this job has " + differs);
+  found.asked = differs;
   found.change = changeFor(axis, was, job);
-  return found;
+  return refused(set + "; this job has " + differs);
 }
 
 const char* wordsOf(int operation) { return rowOf(static_cast<OperationKind>(operation)).words; }
 
 /// Why A does not fit what is ground behind the flutes, or what is to be ground is there already.
 std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const OffsetBasis& job) {
-  const auto refused = [](const std::string& reason) { return OffsetMismatch{"A", "A: " + reason, kA, {}}; };
+  const auto refused = [](const std::string& set, const std::string& asked, const std::string& reason) {
+    return OffsetMismatch{"A", set, asked, "A: " + reason, kA, {}};
+  };
   const ClampedTool& tool = offsets.tool;
   const bool same = !job.tool_digest.empty() && tool.digest == job.tool_digest;
   if (same && tool.isGround(job.operation)) {
-    return refused(std::string("operation ") + wordsOf(job.operation) +
-                   " is ground on this tool already; if another blank is clamped, say so: grind reclamped");
+    const std::string ground = std::string("operation ") + wordsOf(job.operation) + " is ground on this tool already";
+    return refused(ground, "another blank", ground + "; if another blank is clamped, say so: grind reclamped");
   }
   if (job.operation == 0) return std::nullopt;
-  const std::string remedy = "; probe a tooth: grind probe tooth";
-  const std::string where = "where the teeth of this tool are is not known: ";
-  if (!same && tool.digest.empty()) return refused(where + rowOf(tool.unknown).reason + remedy);
-  if (!same) return refused(where + "A is as for " + toolText(tool) + remedy);
+  if (!same) {
+    const std::string is = tool.digest.empty() ? toolText(tool) : "A is as for " + toolText(tool);
+    return refused(is, "A as the flutes were ground, or probed on a tooth",
+                   "where the teeth of this tool are is not known: " + is + "; probe a tooth: grind probe tooth");
+  }
   // On a tooth that was probed, nobody knows what was ground elsewhere.
   const int before = job.operation - 1;
   const bool probed = offsets.axes[kA].basis.method == OffsetMethod::kProbe;
   if (tool.isGround(before) || probed) return std::nullopt;
-  return refused(std::string("operation ") + wordsOf(before) + " is not ground on this tool");
+  const std::string missing = std::string("operation ") + wordsOf(before) + " is not ground on this tool";
+  return refused(missing, "that it is", missing);
 }
 
 }  // namespace
@@ -145,8 +155,11 @@ std::string toolText(const ClampedTool& tool) {
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job) {
   std::vector<OffsetMismatch> found;
   if (!isMounted(offsets.wheel, job)) {
+    const std::string is = mountedText(offsets.wheel), asked = wheelText(job);
     found.push_back({"wheel",
-                     "the wheel on the spindle is " + mountedText(offsets.wheel) + "; this job has " + wheelText(job) +
+                     is,
+                     asked,
+                     "the wheel on the spindle is " + is + "; this job has " + asked +
                          "; once it is mounted, say so: grind confirm-wheel JOB",
                      0,
                      {}});

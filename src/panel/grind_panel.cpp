@@ -19,6 +19,7 @@
 #include <pluginlib/class_list_macros.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <set>
 #include <stdexcept>
@@ -34,6 +35,7 @@ constexpr int kSpacing = 4;            ///< between the panel's parts, which are
 constexpr int kApart = 14;             ///< between the last column of buttons and the others [px]
 constexpr double kLargerGauge = 1e-3;  ///< than blank and shank, with which Y may well be touched off [m]
 constexpr int kDiameterDigits = 5;
+constexpr int kOffsetDigits = 7;
 
 QString capitalized(const std::string& text) {
   QString words = QString::fromStdString(text);
@@ -64,6 +66,16 @@ std::string diameterDoubt(const GrindJob& job, double diameter) {
   const auto shown = [](double d) { return "D " + text(Quantity{d, Unit::kMetre}, kDiameterDigits); };
   return shown(diameter) + " was entered. The largest blank of this job has " + shown(blank) + ", its shank " +
          shown(cutter.shank_diameter) + ".";
+}
+
+/// A work offset as it is and as it would be.
+Comparison change(int axis, const WorkOffset& before, double after) {
+  const auto shown = [axis](double value) {
+    return QString::fromStdString(text(Quantity{value, unitOf(axis, 0)}, kOffsetDigits));
+  };
+  const bool known = before.wasSet() && std::isfinite(before.value);
+  const QString was = known ? shown(before.value) : "never set", by = known ? shown(after - before.value) : "";
+  return {{"now", "then", "difference"}, {{QString("%1").arg("XYZA"[axis]), was, shown(after), by}}};
 }
 
 /// One for the process, however many panels there are.
@@ -119,11 +131,10 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(touch_off_, &TouchOffBox::wanted, this, [this](int axis, double at) {
-    const std::string doubt = axis == kY && job_->job() ? diameterDoubt(*job_->job(), at) : "";
-    if (doubt.empty()) return touchOff(axis, at, false);
-    touch_off_->ask(QString::fromStdString(doubt), [=] { touchOff(axis, at, false); });
-  });
+  connect(job_, &JobBox::wheelConfirmed, this, &GrindPanel::confirmWheel);
+  connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::askToTouchOff);
+  connect(touch_off_, &TouchOffBox::backWanted, this, &GrindPanel::askToTakeBack);
+  connect(touch_off_, &TouchOffBox::reclampedWanted, this, &GrindPanel::askReclamped);
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
     if (node_edit_->text() == node_) return;
@@ -458,18 +469,65 @@ void GrindPanel::jogStep(int axis, double distance, double speed) {
   link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis) + " by " + way));
 }
 
-void GrindPanel::touchOff(int axis, double at, bool large_change_ok) {
+void GrindPanel::askToTouchOff(int axis, double at) {
   try {
     const OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
-    const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is set");
-    link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
-      answered(refusal);
-      if (large_change) touch_off_->ask(capitalized(refusal), [=] { touchOff(axis, at, true); });
-    });
+    const GrinderView view = link_->view();
+    if (!view.state || !view.offsets) throw std::invalid_argument("no position comes from the grinder");
+    const auto i = static_cast<std::size_t>(axis);
+    const WorkOffset before = fromMessage(*view.offsets).axes[i];
+    std::string text = axis == kY && job_->job() ? diameterDoubt(*job_->job(), at) + "\n" : "";
+    if (basis.hasJob()) text += "For " + basis.job_name + ", wheel " + wheelText(basis) + ".";
+    touch_off_->ask(QString::fromStdString(text).trimmed(), change(axis, before, view.state->position[i] - position),
+                    [=] {
+                      touched_ = Touched{axis, before};
+                      touchOff(axis, position, basis, false);
+                    });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());
   }
+}
+
+void GrindPanel::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok) {
+  const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is set");
+  link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
+    answered(refusal);
+    if (refusal.empty() && touched_ && touched_->before.wasSet()) touch_off_->offerBack(axis);
+    if (large_change) touch_off_->ask(capitalized(refusal), {}, [=] { touchOff(axis, position, basis, true); });
+  });
+}
+
+/// One step back: to the offset before the last touch-off, with what it was set for.
+void GrindPanel::askToTakeBack() {
+  const auto message = link_->view().offsets;
+  if (!message || !touched_) return;
+  const auto [axis, before] = *touched_;
+  const WorkOffset now = fromMessage(*message).axes[static_cast<std::size_t>(axis)];
+  touch_off_->ask("Set it back?", change(axis, now, before.value), [this, axis = axis, before = before] {
+    const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is what it was");
+    link_->setOffset(axis, before.value, before.basis, [=](const std::string& refusal) {
+      answered(refusal);
+      if (refusal.empty()) touch_off_->offerBack(kAxisCount);
+    });
+  });
+}
+
+void GrindPanel::askReclamped() {
+  const auto offsets = link_->view().offsets;
+  if (!offsets) return;
+  const std::string tool = toolText(fromMessage(*offsets).tool);
+  touch_off_->ask("Was a tool clamped? Where its teeth are is then not known.",
+                  {{"now", "then"}, {{"tool", QString::fromStdString(tool), "a blank, or to be probed"}}},
+                  [this] { link_->sayReclamped(reply("reclamped: where the teeth are is not known")); });
+}
+
+void GrindPanel::confirmWheel(const flute_grinder::GrindGoal& goal) {
+  const OffsetBasis job = basisOf(goal, OffsetMethod::kUnknown);
+  link_->confirmWheel(job, [this, job](const std::string& refusal) {
+    showMessage(refusal.empty() ? "confirm-wheel: the wheel on the spindle is " + wheelText(job) : refusal);
+    if (refusal.empty()) job_->planAnew();
+  });
 }
 
 /// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be said.

@@ -50,6 +50,12 @@ class GrindPanel : public rviz::Panel {
     flute_grinder::GrindGoal goal;
   };
 
+  /// A work offset that was touched off from here.
+  struct Touched {
+    int axis;
+    WorkOffset before;
+  };
+
   /// The state to which a request leads.
   struct Passing {
     MachineState state;
@@ -77,7 +83,11 @@ class GrindPanel : public rviz::Panel {
   void onResult(const std::string& id, const flute_grinder::GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
-  void touchOff(int axis, double at, bool large_change_ok);
+  void askToTouchOff(int axis, double at);
+  void touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok);
+  void askToTakeBack();
+  void askReclamped();
+  void confirmWheel(const flute_grinder::GrindGoal& goal);
   OffsetBasis touchedFor(int axis) const;
   void fitOffsets(const flute_grinder::GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
@@ -97,6 +107,7 @@ class GrindPanel : public rviz::Panel {
   bool planning_ = false;
   std::optional<Sent> sent_;
   std::optional<Passing> passing_;  ///< of the last request
+  std::optional<Touched> touched_;  ///< that can be taken back
   std::string last_sent_;           ///< id of the last goal from here
   bool begun_ = false;              ///< a job runs or was sent, whoever sent it
 

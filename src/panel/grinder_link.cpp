@@ -1,8 +1,10 @@
 #include "panel/grinder_link.h"
 
 #include "flute_grinder/ConfirmSwivel.h"
+#include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
+#include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/Stop.h"
@@ -202,6 +204,19 @@ void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
   flute_grinder::ConfirmSwivel::Request request;
   request.swivel = angle;
   ask<flute_grinder::ConfirmSwivel>("confirm_swivel", request, "confirm-swivel", "", on_answer);
+}
+
+void GrinderLink::confirmWheel(const OffsetBasis& job, const OnAnswer& on_answer) {
+  flute_grinder::ConfirmWheel::Request request;
+  request.job = toMessage(job);
+  request.set_by = userAtHost();
+  ask<flute_grinder::ConfirmWheel>("confirm_wheel", request, "confirm-wheel", "confirm-wheel: ", on_answer);
+}
+
+void GrinderLink::sayReclamped(const OnAnswer& on_answer) {
+  flute_grinder::Reclamped::Request request;
+  request.set_by = userAtHost();
+  ask<flute_grinder::Reclamped>("reclamped", request, "reclamped", "reclamped: ", on_answer);
 }
 
 void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,

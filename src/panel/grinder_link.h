@@ -78,6 +78,10 @@ class GrinderLink {
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
   /// Confirms the swivel angle set by hand. @param angle [rad].
   void confirmSwivel(double angle, const OnAnswer& on_answer);
+  /// Confirms that the wheel of a job is on the spindle.
+  void confirmWheel(const OffsetBasis& job, const OnAnswer& on_answer);
+  /// Says that a tool was clamped.
+  void sayReclamped(const OnAnswer& on_answer);
   /// Sets an axis' work offset from where it stands. @param position in work coordinates [m], A [rad].
   /// @param basis what it is set for. @param large_change_ok it may change by any amount.
   /// @param on_answer as OnAnswer, and whether it was refused because it would change by much.

@@ -23,6 +23,7 @@
 #include <QStringList>
 #include <QVBoxLayout>
 
+#include <cmath>
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -34,10 +35,8 @@ namespace {
 constexpr const char* kContinue = "Continue where it was left";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
-constexpr int kAnswerLines = 3;       ///< that have room with a choice of the operation; one more without
-constexpr double kReasonLines = 2.4;  ///< of text for each axis, which takes three, since lines end with a word
-constexpr int kTextMargins = 30;      ///< beside the lines of a question, its scroll bar among them [px]
-constexpr int kAngleDigits = 10;      ///< so that the angle appears as in the job file
+constexpr int kAnswerLines = 3;   ///< that have room with a choice of the operation; one more without
+constexpr int kAngleDigits = 10;  ///< so that the angle appears as in the job file
 
 bool isUnfinished(const flute_grinder::JobProgress& progress) {
   return !progress.job_digest.empty() && !progress.finished;
@@ -59,6 +58,20 @@ bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swive
   return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
 }
 
+/// What a job asks for, beside what is set.
+Comparison comparisonOf(const std::vector<OffsetMismatch>& mismatches) {
+  Comparison all{{"asked", "set", "difference"}, {}};
+  for (const OffsetMismatch& mismatch : mismatches) {
+    const std::string difference = mismatch.change ? text(Quantity{*mismatch.change, Unit::kMetre}) : "";
+    QStringList row;
+    for (const std::string& cell : {mismatch.what, mismatch.asked, mismatch.set, difference}) {
+      row << QString::fromStdString(cell);
+    }
+    all.rows.push_back(row);
+  }
+  return all;
+}
+
 }  // namespace
 
 JobBox::JobBox(QWidget* parent)
@@ -77,6 +90,7 @@ JobBox::JobBox(QWidget* parent)
       answer_(new QStackedWidget),
       form_(new QWidget),
       discard_question_(new Question("unfinished", kQuestionLines)),
+      wheel_question_(new Question("wheel", kQuestionLines)),
       offset_question_(new Question("offsets", kQuestionLines)),
       swivel_question_(new Question("swivel", kQuestionLines)),
       pages_(new QStackedWidget) {
@@ -127,8 +141,8 @@ void JobBox::layOut() {
 }
 
 void JobBox::makeQuestions() {
-  discard_question_->addAnswer("discard", "Discard and start", "Start this job; the other cannot be continued any more",
-                               0, 0, [this] { askForOffsets(true); });
+  discard_question_->addDanger("discard", "Discard that job", "Start this job; the other cannot be continued any more",
+                               0, 0, [this] { askForWheel(true); });
   keep_ = discard_question_->addAnswer("keep", "Continue it", "Plan the job from where it was left", 0, 1, [this] {
     if (!where_left_) return;
     continue_->setChecked(true);
@@ -140,7 +154,11 @@ void JobBox::makeQuestions() {
                                      0, 1, [this] {
                                        if (planned_) Q_EMIT offsetFitWanted(*planned_);
                                      });
-  offset_question_->addAnswer("ignore_offset_check", "Start with these",
+  wheel_question_->addAnswer("confirm_wheel", "It is mounted",
+                             "The wheel of the job is on the spindle. Plans the job again", 0, 1, [this] {
+                               if (planned_) Q_EMIT wheelConfirmed(*planned_);
+                             });
+  offset_question_->addDanger("ignore_offset_check", "Ignore and grind",
                               "Start the job with the work offsets as they are", 1, 0, [this] {
                                 ignore_offset_check_ = true;
                                 askForSwivel();
@@ -149,7 +167,7 @@ void JobBox::makeQuestions() {
                               1, [this] {
                                 if (planned_) Q_EMIT swivelConfirmed(planned_->process.setup_swivel);
                               });
-  for (Question* question : {discard_question_, offset_question_, swivel_question_}) {
+  for (Question* question : {discard_question_, wheel_question_, offset_question_, swivel_question_}) {
     pages_->addWidget(question);
     connect(question, &Question::answered, this, &JobBox::closeQuestion);
   }
@@ -285,55 +303,73 @@ void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::
 
 void JobBox::start() {
   if (!planned_) return;
-  if (!discardsSomething()) return askForOffsets(false);
+  if (!discardsSomething()) return askForWheel(false);
   keep_->setVisible(where_left_.has_value());
   const std::string lost =
       journal_damaged_ ? journal_error_ + ". What job it kept is not known" : "Not finished: " + describe(progress_);
-  ask(discard_question_, QString::fromStdString(lost + ". Once this job starts it cannot be continued."));
+  ask(discard_question_,
+      QString::fromStdString(lost + ". It cannot be continued once this one starts:") + "\n" + plannedJob());
 }
 
 bool JobBox::discardsSomething() const { return journal_damaged_ || discardsUnfinished(*planned_, progress_); }
 
-void JobBox::ask(Question* question, const QString& text) {
-  question->ask(text);
+/// What is about to be ground, in full.
+QString JobBox::plannedJob() const {
+  const std::string wheel = wheelText(basisOf(*planned_, OffsetMethod::kUnknown));
+  return QString::fromStdString(describe(*planned_) + ", wheel " + wheel);
+}
+
+void JobBox::ask(Question* question, const QString& text, const Comparison& figures) {
+  question->ask(text, figures);
   pages_->setCurrentWidget(question);
   Q_EMIT startDelayed();
 }
 
-void JobBox::askForOffsets(bool discard) {
+void JobBox::askForWheel(bool discard) {
   discard_ = discard;
   ignore_offset_check_ = false;
-  const auto mismatches = offsetsToAskFor();
-  if (mismatches.empty()) return askForSwivel();
-  QStringList reasons;
-  for (const OffsetMismatch& mismatch : mismatches) reasons << QString::fromStdString(mismatch.reason) + ".";
-  // So that each axis' is seen, however long they are.
-  const int room = static_cast<int>(kReasonLines * (pages_->width() - kTextMargins));
-  QString text = "Start with these zero points?";
-  for (const QString& reason : reasons) text += "\n" + fontMetrics().elidedText(reason, Qt::ElideRight, room);
-  offset_question_->setToolTip(reasons.join("\n"));
-  const QString axes = QString::fromStdString(computable(mismatches));
-  fit_->setText("Fit " + axes);
-  fit_->setVisible(!axes.isEmpty());
-  ask(offset_question_, text);
+  const auto wheels = toAskFor(true);
+  if (wheels.empty()) return askForOffsets();
+  ask(wheel_question_, plannedJob() + "\nIs its wheel on the spindle?", comparisonOf(wheels));
 }
 
-/// Those that do not fit the chosen job.
+void JobBox::askForOffsets() {
+  if (!planned_) return;
+  const auto offsets = toAskFor(false);
+  if (offsets.empty()) return askForSwivel();
+  const QString axes = QString::fromStdString(computable(offsets));
+  fit_->setText("Fit " + axes);
+  fit_->setVisible(!axes.isEmpty());
+  ask(offset_question_, plannedJob() + "\nThese zero points are not of this job:", comparisonOf(offsets));
+}
+
+/// What of the offsets, the wheel and the tool does not fit the chosen job.
 std::vector<OffsetMismatch> JobBox::offsetMismatches() const {
   if (!job_ || !offsets_) return {};
   return mismatches(*offsets_, goal_);
 }
 
-/// A job that is continued needs those with which it began, which the grinder knows.
-std::vector<OffsetMismatch> JobBox::offsetsToAskFor() const {
-  return continue_->isChecked() ? std::vector<OffsetMismatch>{} : offsetMismatches();
+/// A job that is continued needs what it began with, which the grinder knows. @param wheel the wheel, or all else.
+std::vector<OffsetMismatch> JobBox::toAskFor(bool wheel) const {
+  std::vector<OffsetMismatch> asked;
+  if (continue_->isChecked()) return asked;
+  for (OffsetMismatch& mismatch : offsetMismatches()) {
+    if ((mismatch.what == "wheel") == wheel) asked.push_back(std::move(mismatch));
+  }
+  return asked;
 }
 
 void JobBox::askForSwivel() {
   if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
-  const Quantity angle{planned_->process.setup_swivel, Unit::kRadian};
-  ask(swivel_question_,
-      QString::fromStdString("Set the swivel to " + text(angle, kAngleDigits) + ". Is it set and clamped?"));
+  const double asked = planned_->process.setup_swivel;
+  const bool known = std::isfinite(swivel_.angle);
+  const auto shown = [](double angle) {
+    return QString::fromStdString(text(Quantity{angle, Unit::kRadian}, kAngleDigits));
+  };
+  const QString set = known ? shown(swivel_.angle) : "not confirmed";
+  const QString difference = known ? shown(asked - swivel_.angle) : "";
+  ask(swivel_question_, plannedJob() + "\nIs the swivel set to " + shown(asked) + " and clamped?",
+      {{"asked", "set", "difference"}, {{"swivel", shown(asked), set, difference}}});
 }
 
 void JobBox::startConfirmed() {
@@ -386,7 +422,8 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
 /// Whether the question shown, if there is one, still has to be answered.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
-  if (pages_->currentWidget() == offset_question_) return !offsetsToAskFor().empty();
+  if (pages_->currentWidget() == wheel_question_) return !toAskFor(true).empty();
+  if (pages_->currentWidget() == offset_question_) return !toAskFor(false).empty();
   if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
   return discardsSomething();
 }
@@ -403,8 +440,10 @@ void JobBox::showZeroPoints() {
     text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
-      hint += (hint.isEmpty() ? "" : "\n") + QString("XYZA"[axis]) + ": " + QString::fromStdString(basis);
+      hint += QString("XYZA"[axis]) + ": " + QString::fromStdString(basis) + "\n";
     }
+    hint += "Wheel: " + QString::fromStdString(mountedText(offsets_->wheel)) + "\n";
+    hint += "Tool: " + QString::fromStdString(toolText(offsets_->tool));
   }
   if (text == zeros_->text() && hint == zeros_->toolTip()) return;
   zeros_->setText(text);

@@ -28,7 +28,8 @@ namespace grinder {
 struct GrindJob;
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
-/// without violations, and asks before an unfinished job is discarded, and for the swivel unless it is known to be set.
+/// without violations, and asks before an unfinished job is discarded, where wheel or zero points do not fit, and for
+/// the swivel unless it is known to be set. A question shows what the job asks for beside what is set.
 class JobBox : public QWidget {
   Q_OBJECT
 
@@ -84,6 +85,8 @@ class JobBox : public QWidget {
   void startWanted(const flute_grinder::GrindGoal& goal);
   /// The operator has set the swivel for the job to be started. @param angle [rad].
   void swivelConfirmed(double angle);
+  /// The operator has mounted the wheel of a goal, which is then to be planned anew.
+  void wheelConfirmed(const flute_grinder::GrindGoal& goal);
   /// The work offsets that can be computed are to be fitted to a goal.
   void offsetFitWanted(const flute_grinder::GrindGoal& goal);
 
@@ -96,12 +99,14 @@ class JobBox : public QWidget {
   std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();
   void makeQuestions();
-  void ask(Question* question, const QString& text);
+  void ask(Question* question, const QString& text, const Comparison& figures = {});
+  QString plannedJob() const;
   void closeQuestion() { pages_->setCurrentWidget(form_); }
-  void askForOffsets(bool discard);
+  void askForWheel(bool discard);
+  void askForOffsets();
   void askForSwivel();
   std::vector<OffsetMismatch> offsetMismatches() const;
-  std::vector<OffsetMismatch> offsetsToAskFor() const;
+  std::vector<OffsetMismatch> toAskFor(bool wheel) const;
   void showZeroPoints();
   bool asksWithReason() const;
   bool discardsSomething() const;
@@ -145,6 +150,7 @@ class JobBox : public QWidget {
   QWidget* form_;           ///< all of the above
   Question* discard_question_;
   QPushButton* keep_;
+  Question* wheel_question_;
   Question* offset_question_;
   QPushButton* fit_;
   Question* swivel_question_;

@@ -1,7 +1,6 @@
 #include "panel/question.h"
 
 #include "panel/panel_button.h"
-#include "panel/text_view.h"
 
 #include <QGridLayout>
 
@@ -10,11 +9,16 @@ namespace grinder {
 namespace {
 
 constexpr int kAppearing = 1000;  ///< [ms]
+constexpr int kSmaller = 2;       ///< by which the text of a dangerous answer is smaller [pt]
 
 }  // namespace
 
-Question::Question(const QString& name, int lines)
-    : text_(textView((name + "_question").toLatin1(), lines)), layout_(new QGridLayout(this)) {
+Question::Question(const QString& name, int lines) : text_(new QTextEdit), layout_(new QGridLayout(this)) {
+  text_->setObjectName(name + "_question");
+  text_->setReadOnly(true);
+  text_->setTabChangesFocus(true);
+  text_->setWordWrapMode(QTextOption::WrapAtWordBoundaryOrAnywhere);
+  text_->setMinimumHeight(lines * text_->fontMetrics().lineSpacing() + 12);
   layout_->setContentsMargins(0, 0, 0, 0);
   layout_->setVerticalSpacing(2);
   layout_->addWidget(text_, 0, 0, 1, 2);
@@ -42,8 +46,19 @@ QPushButton* Question::addAnswer(const char* name, const QString& text, const QS
   return button;
 }
 
-void Question::ask(const QString& text) {
-  showText(*text_, text, true);
+QPushButton* Question::addDanger(const char* name, const QString& text, const QString& hint, int row, int column,
+                                 const std::function<void()>& act) {
+  QPushButton* button = addAnswer(name, text, hint, row, column, act);
+  QFont font = button->font();
+  font.setPointSize(font.pointSize() - kSmaller);
+  button->setFont(font);
+  layout_->setAlignment(button, Qt::AlignLeft);
+  return button;
+}
+
+void Question::ask(const QString& text, const Comparison& figures) {
+  const QString paragraphs = text.toHtmlEscaped().replace("\n", "<br/>");
+  text_->setHtml("<p>" + paragraphs + "</p>" + figures.html());
   enableAnswers(false);
   appearing_.start();
 }

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <QPlainTextEdit>
+#include "panel/comparison.h"
+
 #include <QPushButton>
+#include <QTextEdit>
 #include <QTimer>
 #include <QWidget>
 
@@ -26,7 +28,12 @@ class Question : public QWidget {
   QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
                          const std::function<void()>& act);
 
-  void ask(const QString& text);
+  /// The same for an answer that costs a wheel or a tool if it is given by mistake, in a smaller button.
+  QPushButton* addDanger(const char* name, const QString& text, const QString& hint, int row, int column,
+                         const std::function<void()>& act);
+
+  /// @param figures between which the answer decides, below the text.
+  void ask(const QString& text, const Comparison& figures = {});
 
  Q_SIGNALS:
   /// By any answer, *Not yet* among them: the question is to go.
@@ -38,7 +45,7 @@ class Question : public QWidget {
  private:
   void enableAnswers(bool enabled);
 
-  QPlainTextEdit* text_;
+  QTextEdit* text_;
   QGridLayout* layout_;
   QTimer appearing_;
 };

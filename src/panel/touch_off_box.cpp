@@ -1,7 +1,10 @@
 #include "panel/touch_off_box.h"
 
 #include "flute_grinder/job/quantity.h"
+#include "flute_grinder/machine/offset_fit.h"
+#include "flute_grinder/messages/offset_basis.h"
 #include "panel/panel_button.h"
+#include "panel/text_view.h"
 
 #include <QDateTime>
 #include <QGridLayout>
@@ -13,8 +16,9 @@ namespace grinder {
 
 namespace {
 
-constexpr double kMoved = 10e-6;    ///< by which an axis at rest does not move [m], A [rad]
-constexpr int kDecimals = 4;        ///< of positions and offsets
+constexpr double kMoved = 10e-6;  ///< by which an axis at rest does not move [m], A [rad]
+constexpr int kDecimals = 4;      ///< of positions and offsets
+constexpr int kQuestionLines = 4;
 constexpr double kFarthest = 9999;  ///< [mm or deg]
 
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
@@ -34,8 +38,11 @@ TouchOffBox::TouchOffBox(QWidget* parent)
       at_(new NumberBox("touch_at", kDecimals)),
       touch_(
           new PanelButton("touch_off", "Touch off", "Set the axis' work offset from where it is now; nothing moves")),
+      back_(new PanelButton("touch_back", "Back", "Set the offset that was touched off last to what it was before")),
+      reclamped_(new PanelButton("reclamped", "New clamping", "Say that a tool was clamped: another one, or anew")),
       offset_(new QLabel),
-      question_(new Question("touch", 2)),
+      tool_(new QLabel),
+      question_(new Question("touch", kQuestionLines)),
       pages_(new QStackedLayout(this)) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
@@ -45,6 +52,8 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   // A long text must not make the panel grow.
   offset_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
   offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
+  tool_->setObjectName("tool");
+  tool_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* form = new QWidget;
   auto* layout = new QGridLayout(form);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -52,25 +61,35 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(axis_, 0, 0);
   layout->addWidget(at_, 0, 1);
   layout->addWidget(touch_, 0, 2);
-  layout->addWidget(offset_, 1, 0, 1, 3);
+  layout->addWidget(offset_, 1, 0, 1, 2);
+  layout->addWidget(back_, 1, 2, Qt::AlignTop);
+  layout->addWidget(tool_, 2, 0, 1, 2);
+  layout->addWidget(reclamped_, 2, 2);
   layout->setColumnStretch(1, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
   connect(touch_, &QPushButton::clicked, this, [this] {
     if (at_->isGood()) Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()));
   });
-  question_->addAnswer("touch_off_anyway", "Set it all the same", "Set the work offset; nothing moves", 1, 0,
-                       [this] { all_the_same_(); });
+  connect(back_, &QPushButton::clicked, this, &TouchOffBox::backWanted);
+  connect(reclamped_, &QPushButton::clicked, this, &TouchOffBox::reclampedWanted);
+  question_->addAnswer("confirm_touch", "It is so", "What is shown then counts; nothing moves", 1, 0,
+                       [this] { done_(); });
   connect(question_, &Question::answered, this, [this] { pages_->setCurrentIndex(0); });
   pages_->addWidget(form);
   pages_->addWidget(question_);
   chooseAxis();
 }
 
-void TouchOffBox::ask(const QString& why_not, std::function<void()> all_the_same) {
-  all_the_same_ = std::move(all_the_same);
+void TouchOffBox::ask(const QString& text, const Comparison& figures, std::function<void()> done) {
+  done_ = std::move(done);
   asked_at_ = position_;
-  question_->ask(why_not);
+  question_->ask(text, figures);
   pages_->setCurrentWidget(question_);
+}
+
+void TouchOffBox::offerBack(int axis) {
+  back_axis_ = axis;
+  back_->setText(axis < kAxisCount ? QString("Back, %1").arg("XYZA"[axis]) : "Back");
 }
 
 void TouchOffBox::chooseAxis() {
@@ -87,7 +106,13 @@ void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
   if (view.state) position_ = view.state->position[static_cast<std::size_t>(axis())];
   if (!view.state || !(std::abs(position_ - asked_at_) <= kMoved)) pages_->setCurrentIndex(0);
   const bool given = at_->isGood() && (axis() != kY || at_->value() > 0);
-  touch_->setEnabled(has_services && given && view.state && mayTouchOff(*view.state));
+  const bool may = has_services && view.state && mayTouchOff(*view.state);
+  touch_->setEnabled(may && given && view.offsets);
+  back_->setEnabled(may && back_axis_ < kAxisCount && view.offsets);
+  reclamped_->setEnabled(has_services && view.state && !isInJob(static_cast<MachineState>(view.state->state)));
+  const QString tool = view.offsets ? QString::fromStdString(toolText(fromMessage(*view.offsets).tool)) : "";
+  tool_->setToolTip(tool);
+  showName(*tool_, "Tool: " + tool);
   const QString text = offsetText(view);
   if (text == offset_->text()) return;
   offset_->setText(text);

@@ -68,7 +68,7 @@ class Panel {
   /// Clicks a button, and once more at the same place. @param pause between them, as the events have it [ms].
   void doubleClick(QAbstractButton& button, int pause);
   std::string label(const char* name) { return the<QLabel>(name).text().toStdString(); }
-  std::string text(const char* name) { return the<QPlainTextEdit>(name).toPlainText().toStdString(); }
+  std::string text(const char* name) { return the<QWidget>(name).property("plainText").toString().toStdString(); }
   /// Whether a text of the panel, or a label of it, has this in it.
   ::testing::AssertionResult says(const char* name, const std::string& part) { return has(text(name), part); }
   ::testing::AssertionResult shows(const char* name, const std::string& part) { return has(label(name), part); }

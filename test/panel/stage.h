@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/ConfirmSwivel.h"
+#include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/GrindActionResult.h"
@@ -10,6 +11,7 @@
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/Stop.h"
@@ -89,6 +91,14 @@ class Stage {
       state.override = request.fraction;
       answer(response, "");
     });
+    serve<flute_grinder::ConfirmWheel>("confirm_wheel", [this](const auto& request, auto& response) {
+      wheels.push_back(request);
+      answer(response, "");
+    });
+    serve<flute_grinder::Reclamped>("reclamped", [this](const auto& /*request*/, auto& response) {
+      ++reclamped;
+      answer(response, "");
+    });
     serve<flute_grinder::ConfirmSwivel>("confirm_swivel", [this](const auto& request, auto& response) {
       swivels.push_back(request.swivel);
       answer(response, swivel_refusal);
@@ -151,6 +161,14 @@ class Stage {
   }
   void publishMachine(const flute_grinder::MachineInfo& machine) { machine_.publish(machine); }
   void publishOffsets(const flute_grinder::WorkOffsets& offsets) { offsets_.publish(offsets); }
+  /// The same with the wheel of a goal on the spindle.
+  void publishOffsets(flute_grinder::WorkOffsets offsets, const flute_grinder::GrindGoal& goal) {
+    const OffsetBasis basis = basisOf(goal, OffsetMethod::kUnknown);
+    offsets.wheel.name = basis.wheel_name;
+    offsets.wheel.digest = basis.wheel_digest;
+    offsets.wheel.diameter = basis.wheel_diameter;
+    publishOffsets(offsets);
+  }
   /// Reports which goal of somebody else starts, and that the progress is its.
   void publishJob(const flute_grinder::GrindGoal& goal) {
     flute_grinder::GrindActionGoal job;
@@ -199,6 +217,8 @@ class Stage {
   std::string touch_refusal;
   bool large_change = false;  ///< the reason of that
   std::vector<flute_grinder::SetOffset::Request> offsets_set;
+  std::vector<flute_grinder::ConfirmWheel::Request> wheels;
+  int reclamped = 0;
   std::string goal_id;  ///< of the progress
   flute_grinder::Plan::Response plan;
 

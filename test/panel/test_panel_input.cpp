@@ -237,7 +237,7 @@ class Asked : public OnStage {
  protected:
   void SetUp() override {
     activate(panel);
-    stage.publishOffsets({});
+    stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
     publish([&] {
       stage.state.swivel = 0;
       stage.state.progress.job_digest = std::string(64, 'a');
@@ -247,9 +247,7 @@ class Asked : public OnStage {
     WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
     startAndBeAsked("discard");
   }
-  bool shown(const std::string& question) {
-    return panel.the<QPlainTextEdit>((question + "_question").c_str()).isVisible();
-  }
+  bool shown(const std::string& question) { return panel.isVisible((question + "_question").c_str()); }
 };
 
 TEST_F(Asked, AQuestionTakesNoClickAtFirst) {

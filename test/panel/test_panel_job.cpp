@@ -32,6 +32,9 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   WAIT_FOR(panel.state() == "Ready");
   panel.picture("planned");
   panel.press("start");
+  panel.press("confirm_wheel");
+  WAIT_FOR(panel.says("messages", "Confirm-wheel: the wheel on the spindle is "));
+  panel.press("start");
   for (const char* answer : {"ignore_offset_check", "confirm_swivel"}) panel.press(answer);
   WAIT_FOR(panel.state() == "Running" && panel.the<QProgressBar>("stroke").value() > 100);
   EXPECT_EQ(panel.label("place"), "slow.yaml, tooth 1, pass 1");

@@ -91,14 +91,17 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
 TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   auto& axes = panel.the<QComboBox>("touch_axis");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");
+  stage.publishOffsets({});
   WAIT_FOR(panel.enabled("touch_off"));
   at.setValue(1.5);
   panel.click("touch_off");
+  panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 1);
   axes.setCurrentText("A");
   EXPECT_EQ(at.value(), 0) << "that was X";
   at.setValue(-30);
   panel.click("touch_off");
+  panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 2);
   EXPECT_EQ(touches()[0].axis, kX);
   EXPECT_DOUBLE_EQ(touches()[0].position, 1.5e-3);
@@ -111,12 +114,60 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
   WAIT_FOR(panel.says("messages", "Touch-off: the work offset of axis A is set"));
   stage.change([&] { stage.touch_refusal = "the axes are not homed"; });
   panel.click("touch_off");
+  panel.press("confirm_touch");
   WAIT_FOR(panel.says("messages", "Touch-off: the axes are not homed"));
+}
+
+TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
+  flute_grinder::WorkOffsets offsets;
+  offsets.values = {-0.002866, 0, 0, 0};
+  offsets.set_at[kX] = ros::Time(1.7e9);
+  offsets.basis[kX].method = flute_grinder::OffsetBasis::TOUCH_OFF;
+  offsets.basis[kX].job_name = "before.yaml";
+  stage.publishOffsets(offsets);
+  stage.change([&] { stage.state.position[kX] = 0.001134; });
+  stage.be("ready", panel);
+  WAIT_FOR(panel.enabled("touch_off"));
+  EXPECT_FALSE(panel.enabled("touch_back")) << "nothing was touched off from here";
+  panel.click("touch_off");
+  for (const char* shown : {"-2.866 mm", "1.134 mm", "4 mm"}) EXPECT_TRUE(panel.says("touch_question", shown)) << shown;
+  WAIT_FOR(panel.enabled("confirm_touch"));
+  panel.picture("touch_off_asked");
+  EXPECT_TRUE(touches().empty());
+  panel.press("confirm_touch");
+  WAIT_FOR(touches().size() == 1);
+  offsets.values[kX] = 0.001134;
+  stage.publishOffsets(offsets);
+  WAIT_FOR(panel.enabled("touch_back") && panel.the<QPushButton>("touch_back").text() == "Back, X");
+  panel.click("touch_back");
+  EXPECT_TRUE(panel.says("touch_question", "-4 mm"));
+  panel.press("confirm_touch");
+  WAIT_FOR(stage.get(&Stage::offsets_set).size() == 1);
+  const auto set = stage.get(&Stage::offsets_set)[0];
+  EXPECT_EQ(set.axis, kX);
+  EXPECT_EQ(set.value, -0.002866);
+  EXPECT_EQ(set.basis.job_name, "before.yaml") << "with what it was set for";
+  WAIT_FOR(!panel.enabled("touch_back"));
+}
+
+TEST_F(Jogging, ANewClampingIsAskedForAndSaid) {
+  flute_grinder::WorkOffsets offsets;
+  offsets.tool.digest = std::string(64, 'a');
+  offsets.tool.job_name = "reamer.yaml";
+  offsets.tool.ground = 0b1;
+  stage.publishOffsets(offsets);
+  WAIT_FOR(panel.shows("tool", "Tool: reamer.yaml with flute"));
+  panel.click("reclamped");
+  EXPECT_TRUE(panel.says("touch_question", "reamer.yaml with flute"));
+  EXPECT_EQ(stage.get(&Stage::reclamped), 0);
+  panel.press("confirm_touch");
+  WAIT_FOR(stage.get(&Stage::reclamped) == 1);
 }
 
 TEST_F(Jogging, TouchOffOfYAndZNeedsTheJob) {
   auto& axes = panel.the<QComboBox>("touch_axis");
   axes.setCurrentText("Y");
+  stage.publishOffsets({});
   WAIT_FOR(panel.enabled("jog_x_plus"));
   EXPECT_FALSE(panel.enabled("touch_off")) << "without a diameter";
   panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);

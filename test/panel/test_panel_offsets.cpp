@@ -3,9 +3,6 @@
 #include "flute_grinder/messages/conversions.h"
 #include "stage.h"
 
-#include <QTextBlock>
-#include <QTextCursor>
-
 namespace grinder::test_panel_offsets {
 
 /// With the paper's job, of D 10 mm, planned.
@@ -33,7 +30,7 @@ class ZeroPoints : public OnStage {
       offsets.set_at[i] = ros::Time(1.7e9);
       offsets.basis[i] = toMessage(basisOf(goal, OffsetMethod::kTouchOff));
     }
-    stage.publishOffsets(offsets);
+    stage.publishOffsets(offsets, goalFromFile(kPaper.toStdString()));
   }
   /// Waits until the panel shows which axes do not fit, and starts.
   void startAndBeAskedFor(const std::string& axes) {
@@ -43,29 +40,33 @@ class ZeroPoints : public OnStage {
   std::vector<flute_grinder::SetOffset::Request> offsetsSet() { return stage.get(&Stage::offsets_set); }
 };
 
-TEST_F(ZeroPoints, OfEveryAxisAreSeenWithoutScrolling) {
-  flute_grinder::GrindGoal other =
-      goalFromFile((QString(kPaper).replace("test/jobs/paper", "jobs/roughing_d10_t4")).toStdString());
-  other.cutter.end_diameter = 0.006123;
-  other.job_name = "a_roughing_cutter_of_last_week.yaml";
-  other.process.wheel_diameter = 0.0751234;
-  other.process.wheel_width = 0.0041234;
-  setFor(other);
-  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
-  const auto& text = panel.the<QPlainTextEdit>("offsets_question");
-  std::string shown;
-  for (QTextBlock line = text.document()->begin(); line.isValid(); line = line.next()) {
-    QTextCursor end(line);
-    end.movePosition(QTextCursor::EndOfBlock);
-    EXPECT_TRUE(text.viewport()->rect().contains(text.cursorRect(end))) << line.text().toStdString();
-    shown += line.text()[0].toLatin1();
+TEST_F(ZeroPoints, AreAskedForBesideWhatTheJobHas) {
+  setFor(0.006);
+  ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("Y"));
+  for (const char* shown : {"paper.yaml (D 10 mm, ", "touched off for D 6 mm, wheel D 100 mm (other.yaml)", "2 mm"}) {
+    EXPECT_TRUE(panel.says("offsets_question", shown)) << shown;
   }
-  EXPECT_EQ(shown, "SXYZ");
-  const std::string whole = text.parentWidget()->toolTip().toStdString();
-  EXPECT_NE(whole.find("(a_roughing_cutter_of_last_week.yaml); this job has height 2.788 mm, swivel 31.769 deg"),
-            std::string::npos)
-      << whole;
-  panel.picture("offset_question_long");
+  panel.picture("offset_question");
+}
+
+TEST_F(ZeroPoints, OfAnotherWheelAreAskedForOnceTheWheelIsConfirmed) {
+  flute_grinder::GrindGoal other = goalFromFile(kPaper.toStdString());
+  other.wheel_name = "other.yaml";
+  stage.publishOffsets({}, other);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: wheel, X, Y, Z");
+  startAndBeAsked("confirm_wheel");
+  for (const char* shown : {"paper.yaml (D 10 mm, ", "other.yaml, D 100 mm"}) {
+    EXPECT_TRUE(panel.says("wheel_question", shown)) << shown;
+  }
+  panel.picture("wheel_question");
+  panel.press("confirm_wheel");
+  WAIT_FOR(stage.get(&Stage::wheels).size() == 1);
+  EXPECT_EQ(stage.get(&Stage::wheels)[0].job.wheel_name, "");
+  EXPECT_FALSE(stage.get(&Stage::wheels)[0].again);
+  WAIT_FOR(stage.get(&Stage::plans).size() == 2);
+  EXPECT_TRUE(goals().empty()) << "only planned";
+  setFor(0.006);
+  startAndBeAskedFor("Y");
 }
 
 TEST_F(ZeroPoints, OfTheJobAreNotAskedFor) {
@@ -90,7 +91,7 @@ TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
   setFor(0.01);
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began");
   panel.widget().resize(1, panel.widget().height());
-  stage.publishOffsets({});
+  stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: X, Y, Z");
   const QSize text = zeros.fontMetrics().size(0, zeros.text());
   EXPECT_EQ(zeros.size().expandedTo(text), zeros.size()) << "it is clipped where the panel is narrow";
@@ -120,46 +121,47 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndShownWithWhatTheyWereBesideANewPlan) {
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
-  stage.publishOffsets({});
+  stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   EXPECT_FALSE(panel.isVisible("fit_offsets"));
-  EXPECT_TRUE(panel.says("offsets_question", "Y was never set"));
+  EXPECT_TRUE(panel.says("offsets_question", "never set"));
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!panel.isVisible("ignore_offset_check"));
 }
 
 TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
-  const auto large = [&](bool is) {
-    stage.change([&] { stage.touch_refusal = is ? "it would change by much" : "", stage.large_change = is; });
-  };
-  const auto asks = [&] { return panel.isVisible("touch_off_anyway"); };
+  const auto asks = [&] { return panel.isVisible("confirm_touch"); };
+  stage.publishOffsets({});
   panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
   WAIT_FOR(panel.enabled("touch_off"));
-  large(true);
+  stage.change([&] { stage.touch_refusal = "it would change by much", stage.large_change = true; });
   panel.click("touch_off");
   WAIT_FOR(asks());
-  EXPECT_EQ(panel.text("touch_question"), "Touch-off: it would change by much");
-  EXPECT_EQ(touches().at(0).basis.job_name, "paper.yaml");
-  EXPECT_NEAR(touches().at(0).basis.height, 0.002788, 1e-12);
+  EXPECT_TRUE(panel.says("touch_question", "For paper.yaml, wheel D 100 mm."));
   panel.press("decline_touch");
+  EXPECT_TRUE(touches().empty());
   panel.click("touch_off");
   WAIT_FOR(asks());
-  panel.picture("touch_off_question");
   stage.change([&] { stage.state.position[kZ] += 0.001; });
   WAIT_FOR(!asks());
   panel.click("touch_off");
-  WAIT_FOR(panel.enabled("touch_off_anyway"));
-  for (const flute_grinder::TouchOff::Request& touch : touches()) EXPECT_FALSE(touch.large_change_ok);
-  large(false);
-  panel.press("touch_off_anyway");
-  WAIT_FOR(touches().size() == 4);
-  EXPECT_TRUE(touches()[3].large_change_ok);
+  panel.press("confirm_touch");
+  WAIT_FOR(panel.says("touch_question", "Touch-off: it would change by much"));
+  EXPECT_EQ(touches().at(0).basis.job_name, "paper.yaml");
+  EXPECT_NEAR(touches().at(0).basis.height, 0.002788, 1e-12);
+  EXPECT_FALSE(touches().at(0).large_change_ok);
+  panel.picture("touch_off_question");
+  stage.change([&] { stage.touch_refusal = "", stage.large_change = false; });
+  panel.press("confirm_touch");
+  WAIT_FOR(touches().size() == 2);
+  EXPECT_TRUE(touches()[1].large_change_ok);
   EXPECT_FALSE(asks());
 }
 
 TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
+  stage.publishOffsets({});
   panel.openTab("Jog");
   panel.the<QComboBox>("touch_axis").setCurrentText("Y");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");
@@ -170,18 +172,19 @@ TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
   publish([&] { stage.state.work_position[kZ] = -0.002788; });
   // The cone ends with D 15.249 mm; the shank has D 16 mm.
   panel.press("touch_off");
+  panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 1);
   EXPECT_EQ(touches()[0].axis, kY);
   EXPECT_NEAR(touches()[0].position, 0.00345, 1e-12);
   at.setValue(110);
   panel.click("touch_off");
-  WAIT_FOR(panel.isVisible("touch_off_anyway"));
-  EXPECT_EQ(panel.text("touch_question"),
-            "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm.");
+  WAIT_FOR(panel.isVisible("confirm_touch"));
+  EXPECT_TRUE(panel.says("touch_question",
+                         "D 110 mm was entered. The largest blank of this job has D 15.249 mm, its shank D 16 mm."));
   panel.picture("touch_off_diameter");
   panel.press("decline_touch");
   panel.click("touch_off");
-  panel.press("touch_off_anyway");
+  panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 2);
   EXPECT_NEAR(touches()[1].position, 0.05, 1e-12);
   EXPECT_FALSE(touches()[1].large_change_ok) << "the limit of a change is another question";

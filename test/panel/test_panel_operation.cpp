@@ -110,6 +110,7 @@ TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {
   panel.chooseOperation("3 secondary relief");
   panel.openTab("Jog");
   panel.click("touch_off");
+  panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 1);
   EXPECT_NEAR(touches().at(0).basis.height, -3.548e-3, 1e-12);
 }

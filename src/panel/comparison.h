@@ -1,0 +1,28 @@
+#pragma once
+
+#include <QString>
+#include <QStringList>
+
+#include <vector>
+
+namespace grinder {
+
+/// A small table for people: figures side by side, with a word in front of each line.
+struct Comparison {
+  QStringList columns;            ///< their heads, but the first, which has none
+  std::vector<QStringList> rows;  ///< of one cell more than there are heads
+
+  QString html() const {
+    const auto cells = [](const QStringList& texts, const QString& tag) {
+      QString line;
+      for (const QString& text : texts) line += "<" + tag + " align='left'>" + text.toHtmlEscaped() + "</" + tag + ">";
+      return "<tr>" + line + "</tr>";
+    };
+    if (rows.empty()) return "";
+    QString all = cells(QStringList("") + columns, "th");
+    for (const QStringList& row : rows) all += cells(row, "td");
+    return "<table border='1' cellspacing='0' cellpadding='2' width='100%'>" + all + "</table>";
+  }
+};
+
+}  // namespace grinder

@@ -94,10 +94,10 @@ GrindPanel::GrindPanel(QWidget* parent)
       progress_(new ProgressBox),
       position_(new PositionBox),
       messages_(textView("messages", 2)),
-      node_edit_(new QLineEdit) {
+      choose_node_(new PanelButton("choose_node", "Grinder...", "Choose which grinder this panel shows")),
+      node_dialog_(new NodeDialog(*this)),
+      window_lock_(new WindowLock(*this)) {
   messages_->setPlaceholderText("Replies from the grinder");
-  node_edit_->setObjectName("node");
-  node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
   guardFromWheel(*this);
   // A stop is a stop, however often it is pressed.
@@ -125,9 +125,10 @@ GrindPanel::GrindPanel(QWidget* parent)
     touch_off_->ask(QString::fromStdString(doubt), [=] { touchOff(axis, at, false); });
   });
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
-  connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
-    if (node_edit_->text() == node_) return;
-    setNode(node_edit_->text());
+  connect(choose_node_, &QPushButton::clicked, this, [this] { node_dialog_->ask(node_); });
+  connect(node_dialog_, &NodeDialog::chosen, this, [this](const QString& node) {
+    if (node == node_) return;
+    setNode(node);
     Q_EMIT configChanged();
   });
   connect(&refresh_timer_, &QTimer::timeout, this, &GrindPanel::refresh);
@@ -207,16 +208,16 @@ QLayout* GrindPanel::layOutSwitches() {
 }
 
 QWidget* GrindPanel::viewTab() {
-  auto* node = new QHBoxLayout;
-  node->addWidget(new QLabel("Node"));
-  node->addWidget(node_edit_, 1);
-  node->addWidget(look_);
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(look_);
+  buttons->addStretch(1);
+  buttons->addWidget(choose_node_);
   auto* tab = new QWidget;
   auto* layout = new QVBoxLayout(tab);
   layout->setContentsMargins(6, 6, 6, 6);
   layout->addWidget(legend_);
   layout->addStretch(1);
-  layout->addLayout(node);
+  layout->addLayout(buttons);
   return tab;
 }
 
@@ -253,7 +254,7 @@ void GrindPanel::save(rviz::Config config) const {
 
 void GrindPanel::setNode(const QString& node) {
   node_ = node;
-  node_edit_->setText(node);
+  moves_.clear();
   planning_ = false;
   sent_.reset();
   job_->discardPlan();  // it is for another machine
@@ -293,6 +294,7 @@ void GrindPanel::refresh() {
     job_->discardPlan();
   }
   dropPassedReply(state);
+  keepWhileItMoves(view);
   nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -314,6 +316,27 @@ void GrindPanel::refresh() {
   section_->refresh(view, job_->job());
   showLegend(view.legend);
   if (rviz_) rviz_->keepPace(state && rowOf(*state).moves);
+}
+
+/// What moves or is about to, for people; empty if nothing does.
+QString GrindPanel::whatMoves(const GrinderView& view) const {
+  const auto state = static_cast<MachineState>(view.state->state);
+  const QString name = QString::fromStdString(name_);
+  if (isInJob(state)) {
+    const QString job = view.job ? QString::fromStdString(describe(view.job->goal)) : "a job";
+    return name + " grinds " + job + ".";
+  }
+  if (view.planned || sent_) return name + " is about to start a job.";
+  if (rowOf(state).moves) return name + " moves an axis.";
+  return view.state->spindle_commanded ? "The spindle of " + name + " is on." : QString();
+}
+
+void GrindPanel::keepWhileItMoves(const GrinderView& view) {
+  // One whose messages do not arrive may still be moving, as long as it can be stopped from here.
+  if (view.state || !link_ || !link_->stopsConnected()) moves_ = view.state ? whatMoves(view) : QString();
+  choose_node_->setEnabled(moves_.isEmpty());
+  if (!moves_.isEmpty()) node_dialog_->hide();
+  window_lock_->keep(moves_);
 }
 
 /// With two grinders a window must say whose it is. rviz itself sets the title when it reads or writes a file.

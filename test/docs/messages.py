@@ -66,7 +66,7 @@ MESSAGES = {
     'src/panel/grind_panel.cpp': ('the job begins at a feed override of', 'Replies from the grinder', 'is set',
                                   'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
                                   'touch-off: the work offset of', '. It was not started in this panel.',
-                                  "Name of the grinder's node; relative to rviz's namespace without a slash in front",
+                                  'Choose which grinder this panel shows',
                                   'Look at the tool',
                                   "Turn rviz's view back to the tool; it does so by itself when another tool is shown"),
     'src/panel/grinder_link.cpp': (),
@@ -75,6 +75,7 @@ MESSAGES = {
                                   'reset: the fault is cleared; the power is commanded off', ': the wheel is being lifted',
                                   'resume: the job continues', 'the spindle is on; keep clear of the wheel',
                                   'the spindle is off; the wheel runs down', 'the coolant is on', 'the coolant is off', 'was sent'),
+    'src/panel/window_lock.cpp': ('End rviz', 'The grinder goes on, without its panel'),
     'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 %',
                               'Position in work coordinates.\\nMachine:', '\\nWork offset:', 'To go', 'Distance to go to the end of the running move in'),
 }

@@ -167,6 +167,7 @@ void Panel::tick(const char* name) {
 
 void Panel::enterNode(const QString& name) {
   openTab("View");
+  click("choose_node");
   auto& node = the<QLineEdit>("node");
   node.clear();
   QTest::keyClicks(&node, name);

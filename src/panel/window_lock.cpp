@@ -1,0 +1,115 @@
+#include "panel/window_lock.h"
+
+#include "panel/beside.h"
+
+#include <rviz/panel_dock_widget.h>
+#include <QAction>
+#include <QEvent>
+#include <QMenu>
+#include <QMenuBar>
+#include <QToolButton>
+#include <QVBoxLayout>
+
+namespace grinder {
+
+namespace {
+
+constexpr int kQuestionLines = 5, kQuestionWidth = 360;
+constexpr const char* kQuit = "Quit";  ///< in rviz's menu *File*
+
+bool isQuit(const QAction& action) { return action.text().remove('&') == kQuit; }
+
+}  // namespace
+
+WindowLock::WindowLock(QWidget& panel)
+    : QObject(&panel),
+      panel_(panel),
+      dialog_(new QDialog(&panel)),
+      question_(new Question("end_rviz", kQuestionLines)) {
+  dialog_->setObjectName("end_rviz_dialog");
+  dialog_->setWindowTitle("End rviz?");
+  auto* layout = new QVBoxLayout(dialog_);
+  layout->addWidget(question_);
+  dialog_->resize(kQuestionWidth, dialog_->sizeHint().height());
+  question_->addDanger("end_rviz", "End rviz", "The grinder goes on, without its panel", [this] {
+    ends_ = true;
+    window_->close();
+    ends_ = false;
+  });
+  connect(question_, &Question::answered, dialog_, &QDialog::hide);
+}
+
+void WindowLock::keep(const QString& why) {
+  why_ = why;
+  if (!window_) watch();
+  if (!window_ || !dock_) return;
+  if (why.isEmpty()) return unlock();
+  lock();
+}
+
+void WindowLock::watch() {
+  dock_ = qobject_cast<rviz::PanelDockWidget*>(panel_.parentWidget());
+  // A dock that floats still has the window as its parent.
+  window_ = dock_ ? qobject_cast<QMainWindow*>(dock_->parentWidget()) : nullptr;
+  if (!window_) return;
+  dock_->installEventFilter(this);
+  window_->installEventFilter(this);
+}
+
+void WindowLock::lock() {
+  // First, since this disables the dock's own action, and the other way round.
+  dock_->setFeatures(dock_->features() & ~QDockWidget::DockWidgetClosable);
+  for (auto* box : dock_->titleBarWidget()->findChildren<QToolButton*>()) switchOff(box);
+  for (auto* fold : window_->centralWidget()->findChildren<QToolButton*>(QString(), Qt::FindDirectChildrenOnly)) {
+    switchOff(fold);
+  }
+  for (const QAction* title : window_->menuBar()->actions()) {
+    for (QAction* action : title->menu() ? title->menu()->actions() : QList<QAction*>()) {
+      if (!isQuit(*action)) switchOff(action);
+    }
+  }
+  showPanel();
+}
+
+void WindowLock::switchOff(QObject* item) {
+  if (!item->property("enabled").toBool()) return;
+  item->setProperty("enabled", false);
+  off_.emplace_back(item);
+}
+
+/// Also one that was away when the motion began.
+void WindowLock::showPanel() {
+  if (!dock_->isHidden()) return;
+  dock_->overrideVisibility(false);
+  dock_->setCollapsed(false);
+  dock_->show();
+  dock_->raise();
+}
+
+void WindowLock::unlock() {
+  dialog_->hide();
+  if (off_.empty()) return;
+  dock_->setFeatures(dock_->features() | QDockWidget::DockWidgetClosable);
+  for (const auto& item : off_) {
+    if (item) item->setProperty("enabled", true);
+  }
+  off_.clear();
+}
+
+bool WindowLock::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() != QEvent::Close || why_.isEmpty() || ends_) return false;
+  event->ignore();
+  if (watched == window_) ask();
+  return true;
+}
+
+void WindowLock::ask() {
+  if (dialog_->isVisible()) return dialog_->raise();
+  question_->ask(why_ +
+                 " It goes on without this panel, and then only a terminal ('grind hold', 'grind cancel') and the "
+                 "emergency stop stop it. End rviz all the same?");
+  moveBeside(*dialog_, panel_);
+  dialog_->show();
+}
+
+}  // namespace grinder

@@ -5,14 +5,15 @@
 #include "panel/hold_key.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"
+#include "panel/lamp_box.h"
 #include "panel/legend_box.h"
 #include "panel/node_dialog.h"
 #include "panel/override_box.h"
 #include "panel/readout.h"
 #include "panel/rviz_view.h"
+#include "panel/rviz_window.h"
 #include "panel/section_view.h"
 #include "panel/touch_off_box.h"
-#include "panel/window_lock.h"
 
 #include <rviz/panel.h>
 #include <QPlainTextEdit>
@@ -105,6 +106,7 @@ class GrindPanel : public rviz::Panel {
   bool begun_ = false;              ///< a job runs or was sent, whoever sent it
 
   StateBox* state_;
+  LampBox* lamps_;
   JobBox* job_;
   SectionView* section_;
   JogBox* jog_;
@@ -121,8 +123,8 @@ class GrindPanel : public rviz::Panel {
   QPlainTextEdit* messages_;
   QPushButton* choose_node_;
   NodeDialog* node_dialog_;
-  WindowLock* window_lock_;
-  QString moves_;  ///< what moves, for people, as last known; empty if nothing does
+  RvizWindow* rviz_window_;  ///< around this panel
+  QString moves_;            ///< what moves, for people, as last known; empty if nothing does
   QTimer refresh_timer_;
 };
 

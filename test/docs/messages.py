@@ -75,7 +75,7 @@ MESSAGES = {
                                   'reset: the fault is cleared; the power is commanded off', ': the wheel is being lifted',
                                   'resume: the job continues', 'the spindle is on; keep clear of the wheel',
                                   'the spindle is off; the wheel runs down', 'the coolant is on', 'the coolant is off', 'was sent'),
-    'src/panel/window_lock.cpp': ('End rviz', 'The grinder goes on, without its panel'),
+    'src/panel/rviz_window.cpp': ('End rviz', 'The grinder goes on, without its panel'),
     'src/panel/readout.cpp': ('; color: white; padding: 4px; border-radius: 4px;', 'No job runs', 'A job is planned', 'left at 100 %',
                               'Position in work coordinates.\\nMachine:', '\\nWork offset:', 'To go', 'Distance to go to the end of the running move in'),
 }

@@ -65,14 +65,15 @@ void writeStatus(rviz::Property& property, const std::string& path, std::ostream
   for (int i = 0; i < property.numChildren(); ++i) writeStatus(*property.childAt(i), name, text);
 }
 
-/// A line "dialog name" for each dialog that is seen, and a line "button name enabled x y width height" for each button
-/// of which all is seen.
+/// A line "dialog name" for each dialog that is seen, and a line "button name enabled x y width height" for each
+/// button, and for the panel's replies, of which all is seen.
 void writeWhatIsSeen(std::ostream& text) {
   for (const QWidget* widget : QApplication::allWidgets()) {
     if (!widget->isVisible() || widget->objectName().isEmpty()) continue;
     const std::string name = widget->objectName().toStdString();
     if (qobject_cast<const QDialog*>(widget)) text << "dialog " << name << "\n";
-    if (!qobject_cast<const QAbstractButton*>(widget) || widget->visibleRegion() != QRegion(widget->rect())) continue;
+    const bool counts = qobject_cast<const QAbstractButton*>(widget) || name == "messages";
+    if (!counts || widget->visibleRegion().boundingRect() != widget->rect()) continue;
     writeRectangle(("button " + name + (widget->isEnabled() ? " 1" : " 0")).c_str(),
                    QRect(widget->mapToGlobal(QPoint(0, 0)), widget->size()), text);
   }

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Shows that nothing in rviz takes the panel from the screen while the grinder moves, and that rviz asks before it ends."""
+"""Shows that rviz with the shipped configuration fits a small screen with the panel's stops and replies, that nothing in it takes the
+panel from the screen while the grinder moves, and that it asks before it ends."""
 
 import os
 import sys
@@ -37,6 +38,20 @@ class TestWindow(unittest.TestCase):
         self.assertTrue(grinder().set_feed_override(0).success)
         self.expect_stops()
         return run
+
+    def test_0_stops_are_on_a_small_screen_from_the_start(self):
+        _, _, right, bottom = self.rviz.numbers('screen')
+        self.assertEqual((right, bottom), (1024, 768))
+        left, top, width, height = self.rviz.numbers('window')
+        self.assertTrue(left >= 0 and top >= 0 and left + width <= right and top + height <= bottom)
+        places = []
+        for tab in ['Job', 'Section', 'Jog', 'View']:
+            self.rviz.operate('tab ' + tab)
+            seen = self.rviz.buttons()
+            places.append([seen[name] for name in sorted(STOPS | {'messages'})])
+            for _, left, top, width, height in places[-1]:
+                self.assertTrue(left >= 0 and top >= 0 and left + width <= right and top + height <= bottom)
+        self.assertEqual(places, places[:1] * 4)
 
     def test_1_panel_stays_while_a_job_runs(self):
         run = self.start()

@@ -1,4 +1,4 @@
-#include "panel/window_lock.h"
+#include "panel/rviz_window.h"
 
 #include "panel/beside.h"
 
@@ -9,6 +9,8 @@
 #include <QMenuBar>
 #include <QToolButton>
 #include <QVBoxLayout>
+
+#include <algorithm>
 
 namespace grinder {
 
@@ -21,7 +23,7 @@ bool isQuit(const QAction& action) { return action.text().remove('&') == kQuit; 
 
 }  // namespace
 
-WindowLock::WindowLock(QWidget& panel)
+RvizWindow::RvizWindow(QWidget& panel)
     : QObject(&panel),
       panel_(panel),
       dialog_(new QDialog(&panel)),
@@ -39,15 +41,16 @@ WindowLock::WindowLock(QWidget& panel)
   connect(question_, &Question::answered, dialog_, &QDialog::hide);
 }
 
-void WindowLock::keep(const QString& why) {
+void RvizWindow::keepPanel(const QString& why) {
   why_ = why;
   if (!window_) watch();
   if (!window_ || !dock_) return;
+  if (!fits_ && window_->isVisible()) fitScreen();
   if (why.isEmpty()) return unlock();
   lock();
 }
 
-void WindowLock::watch() {
+void RvizWindow::watch() {
   dock_ = qobject_cast<rviz::PanelDockWidget*>(panel_.parentWidget());
   // A dock that floats still has the window as its parent.
   window_ = dock_ ? qobject_cast<QMainWindow*>(dock_->parentWidget()) : nullptr;
@@ -56,7 +59,18 @@ void WindowLock::watch() {
   window_->installEventFilter(this);
 }
 
-void WindowLock::lock() {
+/// rviz gives its window the size that the configuration has, whatever the screen's is.
+void RvizWindow::fitScreen() {
+  fits_ = true;
+  const QRect screen = window_->windowHandle()->screen()->availableGeometry();
+  const QRect frame = window_->frameGeometry();
+  window_->resize(window_->size().boundedTo(screen.size() - frame.size() + window_->size()));
+  const QPoint last = screen.bottomRight() - window_->frameGeometry().bottomRight() + frame.topLeft();
+  window_->move(std::clamp(frame.x(), screen.x(), std::max(screen.x(), last.x())),
+                std::clamp(frame.y(), screen.y(), std::max(screen.y(), last.y())));
+}
+
+void RvizWindow::lock() {
   // First, since this disables the dock's own action, and the other way round.
   dock_->setFeatures(dock_->features() & ~QDockWidget::DockWidgetClosable);
   for (auto* box : dock_->titleBarWidget()->findChildren<QToolButton*>()) switchOff(box);
@@ -71,14 +85,14 @@ void WindowLock::lock() {
   showPanel();
 }
 
-void WindowLock::switchOff(QObject* item) {
+void RvizWindow::switchOff(QObject* item) {
   if (!item->property("enabled").toBool()) return;
   item->setProperty("enabled", false);
   off_.emplace_back(item);
 }
 
 /// Also one that was away when the motion began.
-void WindowLock::showPanel() {
+void RvizWindow::showPanel() {
   if (!dock_->isHidden()) return;
   dock_->overrideVisibility(false);
   dock_->setCollapsed(false);
@@ -86,7 +100,7 @@ void WindowLock::showPanel() {
   dock_->raise();
 }
 
-void WindowLock::unlock() {
+void RvizWindow::unlock() {
   dialog_->hide();
   if (off_.empty()) return;
   dock_->setFeatures(dock_->features() | QDockWidget::DockWidgetClosable);
@@ -96,14 +110,14 @@ void WindowLock::unlock() {
   off_.clear();
 }
 
-bool WindowLock::eventFilter(QObject* watched, QEvent* event) {
+bool RvizWindow::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() != QEvent::Close || why_.isEmpty() || ends_) return false;
   event->ignore();
   if (watched == window_) ask();
   return true;
 }
 
-void WindowLock::ask() {
+void RvizWindow::ask() {
   if (dialog_->isVisible()) return dialog_->raise();
   question_->ask(why_ +
                  " It goes on without this panel, and then only a terminal ('grind hold', 'grind cancel') and the "

@@ -16,22 +16,24 @@ class PanelDockWidget;
 
 namespace grinder {
 
-/// Keeps a panel on the screen while its grinder moves: rviz's menus but for *Quit*, the box that closes the panel and
-/// the arrows that fold it away are off, and rviz asks before it ends. Without rviz it does nothing.
-class WindowLock : public QObject {
+/// rviz's window around a panel. It takes no more than the screen, and keeps the panel on it while the grinder moves:
+/// then rviz's menus but for *Quit*, the box that closes the panel and the arrows that fold it away are off, and rviz
+/// asks before it ends. Without rviz it does nothing.
+class RvizWindow : public QObject {
   Q_OBJECT
 
  public:
-  explicit WindowLock(QWidget& panel);
+  explicit RvizWindow(QWidget& panel);
 
   /// To be called often, since rviz enables its menus anew. @param why what moves, for people; empty if nothing does.
-  void keep(const QString& why);
+  void keepPanel(const QString& why);
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
   void watch();
+  void fitScreen();
   void lock();
   void unlock();
   void switchOff(QObject* item);
@@ -43,6 +45,7 @@ class WindowLock : public QObject {
   QPointer<QMainWindow> window_;
   QString why_;
   std::vector<QPointer<QObject>> off_;  ///< actions and buttons that are enabled otherwise
+  bool fits_ = false;                   ///< it has been made to, once
   bool ends_ = false;                   ///< the operator has said so
   QDialog* dialog_;                     ///< with the question
   Question* question_;

@@ -156,8 +156,9 @@ void GrindPanel::layOut() {
   hand_layout->setContentsMargins(6, 4, 6, 4);
   hand_layout->setSpacing(2);
   hand_layout->addWidget(jog_);
-  hand_layout->addWidget(touch_off_);
+  // What switches off is on a low screen, too.
   hand_layout->addLayout(layOutSwitches());
+  hand_layout->addWidget(touch_off_);
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
   for (const auto& [page, title] : std::initializer_list<std::pair<QWidget*, const char*>>{

@@ -16,7 +16,7 @@ namespace grinder {
 
 namespace {
 
-constexpr int kQuestionLines = 5, kQuestionWidth = 360;
+constexpr int kQuestionLines = 6, kQuestionWidth = 360;
 constexpr const char* kQuit = "Quit";  ///< in rviz's menu *File*
 
 bool isQuit(const QAction& action) { return action.text().remove('&') == kQuit; }
@@ -32,12 +32,13 @@ RvizWindow::RvizWindow(QWidget& panel)
   dialog_->setWindowTitle("End rviz?");
   auto* layout = new QVBoxLayout(dialog_);
   layout->addWidget(question_);
-  dialog_->resize(kQuestionWidth, dialog_->sizeHint().height());
+  dialog_->setFixedWidth(kQuestionWidth);
   question_->addDanger("end_rviz", "End rviz", "The grinder goes on, without its panel", [this] {
     ends_ = true;
     window_->close();
     ends_ = false;
   });
+  question_->setFixedHeight(question_->minimumSizeHint().height());
   connect(question_, &Question::answered, dialog_, &QDialog::hide);
 }
 

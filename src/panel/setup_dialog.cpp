@@ -29,9 +29,10 @@ namespace grinder {
 
 namespace {
 
-constexpr int kPollInterval = 50;  ///< [ms]
-constexpr int kSheetLines = 28, kSheetColumns = 105;
-constexpr int kWriteLines = 4;
+constexpr int kPollInterval = 50;                     ///< [ms]
+constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< with the buttons below the sheet
+constexpr int kFewestLines = 12;                      ///< beside the question
+constexpr int kWriteLines = 6;
 
 /// Of every operation of a job file.
 std::vector<std::string> digestsOf(const std::string& file) {
@@ -51,13 +52,13 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
       operation_(operation),
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
       flange_(ros::names::append(grinder, "geometry/flange")),
-      sheet_(textView("setup_sheet", kSheetLines)),
+      sheet_(textView("setup_sheet", kFewestLines)),
       keep_(new QComboBox),
       write_(new PanelButton("write_setup", "Write into the file",
                              "Write the set-up into the job file; all else in it stays as it is")),
       why_not_(new QLabel),
       question_(new Question("write", kWriteLines)),
-      foot_(new QStackedWidget) {
+      buttons_(makeButtons()) {
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
@@ -65,16 +66,18 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   keep_->setToolTip("Leave this figure as it is in the job file");
   keep_->addItem("nothing");
   for (const auto& figure : kSetupFigures) keep_->addItem(figure.name);
-  foot_->addWidget(makeButtons());
-  foot_->addWidget(question_);
   question_->addDanger("write_over", "Write it", "The old file is kept beside it", [this] { beginToWrite(); });
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
-  layout->addWidget(foot_);
-  resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'), sizeHint().height());
+  layout->addWidget(buttons_);
+  layout->addWidget(question_);
+  question_->setFixedHeight(question_->minimumSizeHint().height());
+  showQuestion(false);
+  resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'),
+         kSheetLines * sheet_->fontMetrics().lineSpacing());
   connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
   connect(write_, &QPushButton::clicked, this, &SetupDialog::ask);
-  connect(question_, &Question::answered, this, [this] { foot_->setCurrentIndex(0); });
+  connect(question_, &Question::answered, this, [this] { showQuestion(false); });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
   guardFromWheel(*this);
   beginToSolve();
@@ -111,7 +114,7 @@ void SetupDialog::refresh(const flute_grinder::JobProgress& last, bool runs) {
   const bool in_use = runs && isOfLastJob();
   why_not_->setText(in_use ? "This job runs: its file is not written." : "");
   write_->setEnabled(solved_.setup && !working_.valid() && !in_use);
-  if (in_use) foot_->setCurrentIndex(0);
+  if (in_use) showQuestion(false);
 }
 
 void SetupDialog::ask() {
@@ -122,7 +125,12 @@ void SetupDialog::ask() {
     text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
   }
   question_->ask(text);
-  foot_->setCurrentWidget(question_);
+  showQuestion(true);
+}
+
+void SetupDialog::showQuestion(bool asks) {
+  buttons_->setVisible(!asks);
+  question_->setVisible(asks);
 }
 
 void SetupDialog::beginToWrite() {

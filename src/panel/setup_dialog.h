@@ -9,7 +9,6 @@
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QPushButton>
-#include <QStackedWidget>
 #include <QTimer>
 
 #include <atomic>
@@ -59,6 +58,7 @@ class SetupDialog : public QDialog {
   QWidget* makeButtons();
   void beginToSolve();
   void ask();
+  void showQuestion(bool asks);
   void beginToWrite();
   bool isOfLastJob() const;
   Done solve(std::optional<SetupFigure> keep) const;
@@ -76,7 +76,7 @@ class SetupDialog : public QDialog {
   QPushButton* write_;
   QLabel* why_not_;  ///< the file is not written now
   Question* question_;
-  QStackedWidget* foot_;  ///< buttons or the question
+  QWidget* buttons_;  ///< or the question
   QTimer poll_timer_;
   std::atomic<bool> stop_{false};
   std::future<Done> working_;  ///< last member: its thread uses the others

@@ -42,6 +42,16 @@ QPushButton* Question::addAnswer(const char* name, const QString& text, const QS
   return button;
 }
 
+QPushButton* Question::addDanger(const char* name, const QString& text, const QString& hint,
+                                 const std::function<void()>& act) {
+  auto* button = addAnswer(name, text, hint, 0, 0, act);
+  QFont small = button->font();
+  small.setPointSize(small.pointSize() - 2);
+  button->setFont(small);
+  layout_->setAlignment(button, Qt::AlignLeft);
+  return button;
+}
+
 void Question::ask(const QString& text) {
   showText(*text_, text, true);
   enableAnswers(false);

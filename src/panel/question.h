@@ -26,6 +26,9 @@ class Question : public QWidget {
   QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
                          const std::function<void()>& act);
 
+  /// The same for an answer that does harm if it is given by mistake, in a smaller button, first.
+  QPushButton* addDanger(const char* name, const QString& text, const QString& hint, const std::function<void()>& act);
+
   void ask(const QString& text);
 
  Q_SIGNALS:

@@ -151,6 +151,14 @@ class Stage {
   }
   void publishMachine(const flute_grinder::MachineInfo& machine) { machine_.publish(machine); }
   void publishOffsets(const flute_grinder::WorkOffsets& offsets) { offsets_.publish(offsets); }
+  /// The same with the wheel of a goal on the spindle.
+  void publishOffsets(flute_grinder::WorkOffsets offsets, const flute_grinder::GrindGoal& goal) {
+    const OffsetBasis basis = basisOf(goal, OffsetMethod::kUnknown);
+    offsets.wheel.name = basis.wheel_name;
+    offsets.wheel.digest = basis.wheel_digest;
+    offsets.wheel.diameter = basis.wheel_diameter;
+    publishOffsets(offsets);
+  }
   /// Reports which goal of somebody else starts, and that the progress is its.
   void publishJob(const flute_grinder::GrindGoal& goal) {
     flute_grinder::GrindActionGoal job;

@@ -238,7 +238,7 @@ class Asked : public OnStage {
  protected:
   void SetUp() override {
     activate(panel);
-    stage.publishOffsets({});
+    stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
     publish([&] {
       stage.state.swivel = 0;
       stage.state.progress.job_digest = std::string(64, 'a');

@@ -33,7 +33,7 @@ class ZeroPoints : public OnStage {
       offsets.set_at[i] = ros::Time(1.7e9);
       offsets.basis[i] = toMessage(basisOf(goal, OffsetMethod::kTouchOff));
     }
-    stage.publishOffsets(offsets);
+    stage.publishOffsets(offsets, goalFromFile(kPaper.toStdString()));
   }
   /// Waits until the panel shows which axes do not fit, and starts.
   void startAndBeAskedFor(const std::string& axes) {
@@ -90,7 +90,7 @@ TEST_F(ZeroPoints, OfAJobThatIsContinuedAreThoseWithWhichItBegan) {
   setFor(0.01);
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began");
   panel.widget().resize(1, panel.widget().height());
-  stage.publishOffsets({});
+  stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
   WAIT_FOR(panel.label("zero_points") == "Zero points: as when the job began;\nnot of this job: X, Y, Z");
   const QSize text = zeros.fontMetrics().size(0, zeros.text());
   EXPECT_EQ(zeros.size().expandedTo(text), zeros.size()) << "it is clipped where the panel is narrow";
@@ -120,7 +120,7 @@ TEST_F(ZeroPoints, AreFittedByOneKeyAndShownWithWhatTheyWereBesideANewPlan) {
 }
 
 TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
-  stage.publishOffsets({});
+  stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   EXPECT_FALSE(panel.isVisible("fit_offsets"));
   EXPECT_TRUE(panel.says("offsets_question", "Y was never set"));

@@ -21,6 +21,12 @@ std::string shown(const XmlRpc::XmlRpcValue& value) {
 
 }  // namespace
 
+std::optional<double> numberOf(XmlRpc::XmlRpcValue value) {
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) return static_cast<int>(value);
+  if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) return static_cast<double>(value);
+  return std::nullopt;
+}
+
 ParameterReader::ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns)
     : parameters_(parameters), ns_(std::move(ns)) {}
 
@@ -45,23 +51,19 @@ XmlRpc::XmlRpcValue ParameterReader::require(const std::string& path, const std:
 }
 
 double ParameterReader::number(const std::string& path, double min, double max) const {
-  XmlRpc::XmlRpcValue value = require(path, "a number");
+  const XmlRpc::XmlRpcValue value = require(path, "a number");
+  const std::optional<double> result = numberOf(value);
   std::ostringstream text;
   text << "parameter " << name(path) << " = ";
-  double result;
-  if (value.getType() == XmlRpc::XmlRpcValue::TypeInt) {
-    result = static_cast<int>(value);
-  } else if (value.getType() == XmlRpc::XmlRpcValue::TypeDouble) {
-    result = static_cast<double>(value);
-  } else {
+  if (!result) {
     text << shown(value) << "; allowed: a number";
     throw ParameterError(text.str());
   }
-  if (!(result >= min && result <= max)) {
-    text << result << "; allowed: " << min << " to " << max;
+  if (!(*result >= min && *result <= max)) {
+    text << *result << "; allowed: " << min << " to " << max;
     throw ParameterError(text.str());
   }
-  return result;
+  return *result;
 }
 
 int ParameterReader::whole(const std::string& path, int min, int max) const {

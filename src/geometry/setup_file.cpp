@@ -2,6 +2,7 @@
 
 #include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <system_error>
@@ -25,12 +26,29 @@ std::string byHand(const std::vector<JobEdit>& edits) {
 
 }  // namespace
 
+std::string changesText(const std::string& path, const JobSetup& setup) {
+  FlatFile file(readTextFile(path), path, "job", "");
+  std::string text;
+  for (const JobEdit& edit : setup.edits) {
+    double before = 0;
+    const bool is_there = file.has(edit.key) && file.take(edit.key, "", before);
+    const double change = std::stod(edit.value) - before;
+    text += format("  %-30s", edit.key.c_str());
+    text += is_there ? format("%.8g in the file, %s solved", before, edit.value.c_str())
+                     : "not in the file, " + edit.value + " solved";
+    text += !is_there ? "\n" : change == 0 ? ": the same\n" : format(": %+.5f\n", change);
+  }
+  return text;
+}
+
 void writeSetup(const std::string& path, const JobSetup& setup) {
   try {
-    const std::string text = editJob(readTextFile(path), path, setup.edits);
+    const std::string before = readTextFile(path);
+    const std::string text = editJob(before, path, setup.edits);
     // The operations behind this one may still be without a set-up.
     const GrindJob written = parseJob(text, path, unsolvedFields({}), toString(setup.job.process.kind));
     if (!sameNumbers(written, setup.job)) throw JobFileError(path + ": has changed since it was read");
+    writeFile(path + ".before", before);
     replaceFile(path, text);
   } catch (const std::system_error& error) {
     throw JobFileError(path + ": cannot be written: " + error.code().message() + byHand(setup.edits));

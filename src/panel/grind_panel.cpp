@@ -14,6 +14,7 @@
 
 #include <rviz/panel_dock_widget.h>
 #include <QGridLayout>
+#include <QScrollArea>
 #include <QTime>
 #include <QVBoxLayout>
 #include <pluginlib/class_list_macros.hpp>
@@ -31,7 +32,8 @@ namespace {
 constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
 constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
 constexpr int kButtonColumns = 4;
-constexpr int kSpacing = 4;            ///< between the panel's parts, which are to fit a window of 1280 x 800 [px]
+constexpr int kSpacing = 3;            ///< between the panel's parts, which are to fit a screen of 1024 x 768 [px]
+constexpr int kLowestTab = 120;        ///< height of the part of a tab that is always seen [px]
 constexpr int kApart = 14;             ///< between the last column of buttons and the others [px]
 constexpr double kLargerGauge = 1e-3;  ///< than blank and shank, with which Y may well be touched off [m]
 constexpr int kDiameterDigits = 5;
@@ -56,6 +58,17 @@ bool isDone(MachineState state, MachineEvent event) {
 /// Whether two cutters fill a view alike.
 bool isSameSize(const flute_grinder::Cutter& a, const flute_grinder::Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
+}
+
+/// A page of a tab, which scrolls where the screen is low, so that what is always needed stays on it.
+QScrollArea* scrolling(QWidget* page) {
+  auto* area = new QScrollArea;
+  area->setWidget(page);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setMinimumHeight(kLowestTab);
+  return area;
 }
 
 /// Why Y is hardly touched off at a diameter for a job; empty if it may well be.
@@ -94,6 +107,7 @@ GrindPanel::GrindPanel(QWidget* parent)
       master_watch_(theOnly<MasterWatch>()),
       hold_key_(theOnly<HoldKey>()),
       state_(new StateBox),
+      lamps_(new LampBox),
       job_(new JobBox),
       section_(new SectionView),
       jog_(new JogBox),
@@ -106,10 +120,10 @@ GrindPanel::GrindPanel(QWidget* parent)
       progress_(new ProgressBox),
       position_(new PositionBox),
       messages_(textView("messages", 2)),
-      node_edit_(new QLineEdit) {
+      choose_node_(new PanelButton("choose_node", "Grinder...", "Choose which grinder this panel shows")),
+      node_dialog_(new NodeDialog(*this)),
+      rviz_window_(new RvizWindow(*this)) {
   messages_->setPlaceholderText("Replies from the grinder");
-  node_edit_->setObjectName("node");
-  node_edit_->setToolTip("Name of the grinder's node; relative to rviz's namespace without a slash in front");
   layOut();
   guardFromWheel(*this);
   // A stop is a stop, however often it is pressed.
@@ -124,7 +138,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
   connect(job_, &JobBox::swivelConfirmed, this, &GrindPanel::confirmSwivel);
   connect(job_, &JobBox::offsetFitWanted, this, &GrindPanel::fitOffsets);
-  connect(job_, &JobBox::startDelayed, this, [this] { tabs_->setCurrentWidget(job_); });
+  connect(job_, &JobBox::startDelayed, this, [this] { tabs_->setCurrentIndex(0); });
   connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
   connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
   connect(jog_, &JogBox::stepWanted, this, &GrindPanel::jogStep);
@@ -136,9 +150,10 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(touch_off_, &TouchOffBox::backWanted, this, &GrindPanel::askToTakeBack);
   connect(touch_off_, &TouchOffBox::reclampedWanted, this, &GrindPanel::askReclamped);
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
-  connect(node_edit_, &QLineEdit::editingFinished, this, [this] {
-    if (node_edit_->text() == node_) return;
-    setNode(node_edit_->text());
+  connect(choose_node_, &QPushButton::clicked, this, [this] { node_dialog_->ask(node_); });
+  connect(node_dialog_, &NodeDialog::chosen, this, [this](const QString& node) {
+    if (node == node_) return;
+    setNode(node);
     Q_EMIT configChanged();
   });
   connect(&refresh_timer_, &QTimer::timeout, this, &GrindPanel::refresh);
@@ -149,30 +164,32 @@ GrindPanel::GrindPanel(QWidget* parent)
 void GrindPanel::layOut() {
   auto* by_hand = new QWidget;
   auto* hand_layout = new QVBoxLayout(by_hand);
-  // The tallest tab: rviz is to fit a screen of 800 lines.
   hand_layout->setContentsMargins(6, 4, 6, 4);
   hand_layout->setSpacing(2);
   hand_layout->addWidget(jog_);
-  hand_layout->addWidget(touch_off_);
+  // What switches off is on a low screen, too.
   hand_layout->addLayout(layOutSwitches());
+  hand_layout->addWidget(touch_off_);
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
-  tabs_->addTab(job_, "Job");
-  tabs_->addTab(section_, "Section");
-  tabs_->addTab(by_hand, "Jog");
-  tabs_->addTab(viewTab(), "View");
-  // Beyond its minimum it gets what the tabs leave.
-  messages_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Ignored);
+  for (const auto& [page, title] : std::initializer_list<std::pair<QWidget*, const char*>>{
+           {job_, "Job"}, {section_, "Section"}, {by_hand, "Jog"}, {viewTab(), "View"}}) {
+    tabs_->addTab(scrolling(page), title);
+  }
+  messages_->setFixedHeight(messages_->minimumHeight());
 
   auto* layout = new QVBoxLayout(this);
+  layout->setContentsMargins(9, 4, 9, 4);
   layout->setSpacing(kSpacing);
   layout->addWidget(state_);
-  layout->addWidget(tabs_, 5);
+  layout->addWidget(lamps_);
+  // Whatever is below them, the stops stay where they are.
   layout->addLayout(layOutButtons());
+  layout->addWidget(messages_);
   layout->addWidget(override_);
   layout->addWidget(progress_);
   layout->addWidget(position_);
-  layout->addWidget(messages_, 1);
+  layout->addWidget(tabs_, 1);
 }
 
 QLayout* GrindPanel::layOutButtons() {
@@ -218,16 +235,16 @@ QLayout* GrindPanel::layOutSwitches() {
 }
 
 QWidget* GrindPanel::viewTab() {
-  auto* node = new QHBoxLayout;
-  node->addWidget(new QLabel("Node"));
-  node->addWidget(node_edit_, 1);
-  node->addWidget(look_);
+  auto* buttons = new QHBoxLayout;
+  buttons->addWidget(look_);
+  buttons->addStretch(1);
+  buttons->addWidget(choose_node_);
   auto* tab = new QWidget;
   auto* layout = new QVBoxLayout(tab);
   layout->setContentsMargins(6, 6, 6, 6);
   layout->addWidget(legend_);
   layout->addStretch(1);
-  layout->addLayout(node);
+  layout->addLayout(buttons);
   return tab;
 }
 
@@ -264,7 +281,7 @@ void GrindPanel::save(rviz::Config config) const {
 
 void GrindPanel::setNode(const QString& node) {
   node_ = node;
-  node_edit_->setText(node);
+  moves_.clear();
   planning_ = false;
   sent_.reset();
   job_->discardPlan();  // it is for another machine
@@ -304,6 +321,7 @@ void GrindPanel::refresh() {
     job_->discardPlan();
   }
   dropPassedReply(state);
+  keepWhileItMoves(view);
   nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
@@ -315,6 +333,7 @@ void GrindPanel::refresh() {
   }
   begun_ = begun;
   for (const auto& [event, button] : buttons_) button->setEnabled(allowed(event, view));
+  lamps_->show(view);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, view.machine ? view.machine->jog_timeout : 0, master == Master::kAnswers);
   touch_off_->refresh(view, master == Master::kAnswers);
@@ -325,6 +344,27 @@ void GrindPanel::refresh() {
   section_->refresh(view, job_->job());
   showLegend(view.legend);
   if (rviz_) rviz_->keepPace(state && rowOf(*state).moves);
+}
+
+/// What moves or is about to, for people; empty if nothing does.
+QString GrindPanel::whatMoves(const GrinderView& view) const {
+  const auto state = static_cast<MachineState>(view.state->state);
+  const QString name = QString::fromStdString(name_);
+  if (isInJob(state)) {
+    const QString job = view.job ? QString::fromStdString(describe(view.job->goal)) : "a job";
+    return name + " grinds " + job + ".";
+  }
+  if (view.planned || sent_) return name + " is about to start a job.";
+  if (rowOf(state).moves) return name + " moves an axis.";
+  return view.state->spindle_commanded ? "The spindle of " + name + " is on." : QString();
+}
+
+void GrindPanel::keepWhileItMoves(const GrinderView& view) {
+  // One whose messages do not arrive may still be moving, as long as it can be stopped from here.
+  if (view.state || !link_ || !link_->stopsConnected()) moves_ = view.state ? whatMoves(view) : QString();
+  choose_node_->setEnabled(moves_.isEmpty());
+  if (!moves_.isEmpty()) node_dialog_->hide();
+  rviz_window_->keepPanel(moves_);
 }
 
 /// With two grinders a window must say whose it is. rviz itself sets the title when it reads or writes a file.
@@ -474,7 +514,8 @@ void GrindPanel::askToTouchOff(int axis, double at) {
     const OffsetBasis basis = touchedFor(axis);
     const double position = axis == kY ? touchedY(at) : at;
     const GrinderView view = link_->view();
-    if (!view.state || !view.offsets) throw std::invalid_argument("no position comes from the grinder");
+    if (!view.state) throw std::invalid_argument("no position comes from the grinder");
+    if (!view.offsets) throw std::invalid_argument("no work offsets come from the grinder");
     const auto i = static_cast<std::size_t>(axis);
     const WorkOffset before = fromMessage(*view.offsets).axes[i];
     std::string text = axis == kY && job_->job() ? diameterDoubt(*job_->job(), at) + "\n" : "";

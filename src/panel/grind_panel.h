@@ -5,15 +5,17 @@
 #include "panel/hold_key.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"
+#include "panel/lamp_box.h"
 #include "panel/legend_box.h"
+#include "panel/node_dialog.h"
 #include "panel/override_box.h"
 #include "panel/readout.h"
 #include "panel/rviz_view.h"
+#include "panel/rviz_window.h"
 #include "panel/section_view.h"
 #include "panel/touch_off_box.h"
 
 #include <rviz/panel.h>
-#include <QLineEdit>
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QTabWidget>
@@ -30,7 +32,8 @@ namespace grinder {
 /// if the state table allows its request and it would change something; Hold wherever it is allowed, and Start only
 /// with a plan without violations. Space is Hold; no key starts, cancels or disables. No window is ever modal. Without
 /// messages from the grinder, or without a ROS master, only the stops are enabled. Nothing here waits for the grinder
-/// or the master, and both are found again when they come back.
+/// or the master, and both are found again when they come back. While the grinder moves, the panel stays
+/// on the screen and shows no other grinder.
 ///
 /// Configuration: `Node`, the name of the grinder's node, relative to rviz's namespace; `Job`, the job file.
 class GrindPanel : public rviz::Panel {
@@ -70,6 +73,8 @@ class GrindPanel : public rviz::Panel {
   QPushButton* addButton(const EventRow& request, bool large);
   void setNode(const QString& node);
   void refresh();
+  QString whatMoves(const GrinderView& view) const;
+  void keepWhileItMoves(const GrinderView& view);
   void connectLink();
   void nameWindows();
   void showLegend(const std::optional<flute_grinder::Legend>& legend);
@@ -112,6 +117,7 @@ class GrindPanel : public rviz::Panel {
   bool begun_ = false;              ///< a job runs or was sent, whoever sent it
 
   StateBox* state_;
+  LampBox* lamps_;
   JobBox* job_;
   SectionView* section_;
   JogBox* jog_;
@@ -126,7 +132,10 @@ class GrindPanel : public rviz::Panel {
   ProgressBox* progress_;
   PositionBox* position_;
   QPlainTextEdit* messages_;
-  QLineEdit* node_edit_;
+  QPushButton* choose_node_;
+  NodeDialog* node_dialog_;
+  RvizWindow* rviz_window_;  ///< around this panel
+  QString moves_;            ///< what moves, for people, as last known; empty if nothing does
   QTimer refresh_timer_;
 };
 

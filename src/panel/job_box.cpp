@@ -408,6 +408,7 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
   if (offsets) offsets_ = fromMessage(*offsets);
   showFile();
   showZeroPoints();
+  for (auto* dialog : findChildren<SetupDialog*>()) dialog->refresh(progress_, job_runs_);
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
   if (!idle || !asksWithReason()) closeQuestion();

@@ -17,6 +17,9 @@ namespace {
 /// At most half of the shortest jog_timeout [ms].
 constexpr int kRepeatInterval = 25;
 
+/// What a hurried hand hits, and not its neighbour [px].
+constexpr int kButtonHeight = 40, kApart = 8, kOppositesApart = 24;
+
 constexpr double kContinuous = 0;                                 ///< among the steps
 constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< [mm], A [deg]
 
@@ -54,7 +57,11 @@ JogBox::JogBox(QWidget* parent)
   speeds->addWidget(rotary_speed_);
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
+  layout->setHorizontalSpacing(kApart);
   layout->setVerticalSpacing(2);
+  layout->setRowMinimumHeight(2, kApart);
+  layout->setRowMinimumHeight(4, kOppositesApart);
+  layout->setRowMinimumHeight(6, kApart);
   layout->addWidget(new QLabel("Step"), 0, 0);
   layout->addWidget(step_, 0, 1, 1, 3);
   layout->addLayout(speeds, 1, 0, 1, 4);
@@ -62,7 +69,7 @@ JogBox::JogBox(QWidget* parent)
   for (int axis = 0; axis < kAxisCount; ++axis) {
     for (const int direction : {1, -1}) {
       const Button button{addButton(axis, direction), axis, direction};
-      layout->addWidget(button.button, direction > 0 ? 2 : 3, axis);
+      layout->addWidget(button.button, direction > 0 ? 3 : 5, axis);
       connect(button.button, &QPushButton::clicked, this, [this, button] { click(button); });
       connect(button.button, &QPushButton::pressed, this, [this, button] { press(button); });
       connect(button.button, &QPushButton::released, this, &JogBox::repeat);
@@ -81,7 +88,7 @@ QPushButton* JogBox::addButton(int axis, int direction) {
                                  QString("Jog axis %1").arg(name));
   // It ends the jog when it loses the focus, say to another window.
   button->setFocusPolicy(Qt::ClickFocus);
-  button->setMinimumHeight(3 * fontMetrics().height() / 2);
+  button->setMinimumHeight(kButtonHeight);
   button->setEnabled(false);
   return button;
 }

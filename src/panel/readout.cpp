@@ -19,9 +19,7 @@ namespace {
 using namespace units;
 
 constexpr const char* kGrey = "#5f6368";
-constexpr const char* kGreen = "#1e7d34";
 constexpr const char* kBlue = "#1a5fb4";
-constexpr const char* kAmber = "#9a5b00";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const flute_grinder::GrinderState& grinder) {

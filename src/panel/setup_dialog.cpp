@@ -1,11 +1,14 @@
 #include "panel/setup_dialog.h"
 
 #include "flute_grinder/control/swivel_range.h"
+#include "flute_grinder/drive/parameters.h"
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/network/ros_api.h"
+#include "flute_grinder/plan/job_digest.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -17,6 +20,7 @@
 #include <QLabel>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <stdexcept>
@@ -25,8 +29,19 @@ namespace grinder {
 
 namespace {
 
-constexpr int kPollInterval = 50;  ///< [ms]
-constexpr int kSheetLines = 24, kSheetColumns = 105;
+constexpr int kPollInterval = 50;                     ///< [ms]
+constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< with the buttons below the sheet
+constexpr int kFewestLines = 12;                      ///< beside the question
+constexpr int kWriteLines = 6;
+
+/// Of every operation of a job file.
+std::vector<std::string> digestsOf(const std::string& file) {
+  const GrindJob job = readJobFile(file, unsolvedFields(std::nullopt), "1");
+  if (job.operations.size() < 2) return {jobDigest(job)};
+  std::vector<std::string> digests;
+  for (int i = 0; i < static_cast<int>(job.operations.size()); ++i) digests.push_back(jobDigest(job.ofOperation(i)));
+  return digests;
+}
 
 }  // namespace
 
@@ -37,10 +52,13 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
       operation_(operation),
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
       flange_(ros::names::append(grinder, "geometry/flange")),
-      sheet_(textView("setup_sheet", kSheetLines)),
+      sheet_(textView("setup_sheet", kFewestLines)),
       keep_(new QComboBox),
       write_(new PanelButton("write_setup", "Write into the file",
-                             "Write the set-up into the job file; all else in it stays as it is")) {
+                             "Write the set-up into the job file; all else in it stays as it is")),
+      why_not_(new QLabel),
+      question_(new Question("write", kWriteLines)),
+      buttons_(makeButtons()) {
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
@@ -48,26 +66,18 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   keep_->setToolTip("Leave this figure as it is in the job file");
   keep_->addItem("nothing");
   for (const auto& figure : kSetupFigures) keep_->addItem(figure.name);
-  write_->setEnabled(false);
-  auto* close = new PanelButton("close_setup", "Close", "Close the sheet");
-  close->setDefault(true);
-  auto* buttons = new QHBoxLayout;
-  buttons->addWidget(new QLabel("Keep"));
-  buttons->addWidget(keep_);
-  buttons->addStretch(1);
-  buttons->addWidget(write_);
-  buttons->addWidget(close);
+  question_->addDanger("write_over", "Write it", "The old file is kept beside it", 0, 0, [this] { beginToWrite(); });
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
-  layout->addLayout(buttons);
-  resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'), sizeHint().height());
-  connect(close, &QPushButton::clicked, this, &QDialog::close);
+  layout->addWidget(buttons_);
+  layout->addWidget(question_);
+  question_->setFixedHeight(question_->minimumSizeHint().height());
+  showQuestion(false);
+  resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'),
+         kSheetLines * sheet_->fontMetrics().lineSpacing());
   connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
-  connect(write_, &QPushButton::clicked, this, [this] {
-    keep_->setEnabled(false);
-    write_->setEnabled(false);
-    working_ = std::async(std::launch::async, [this, setup = setup_] { return write(*setup); });
-  });
+  connect(write_, &QPushButton::clicked, this, &SetupDialog::ask);
+  connect(question_, &Question::answered, this, [this] { showQuestion(false); });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
   guardFromWheel(*this);
   beginToSolve();
@@ -75,6 +85,59 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
 }
 
 SetupDialog::~SetupDialog() { stop_ = true; }
+
+QWidget* SetupDialog::makeButtons() {
+  why_not_->setObjectName("why_not_written");
+  write_->setEnabled(false);
+  auto* close = new PanelButton("close_setup", "Close", "Close the sheet");
+  close->setDefault(true);
+  connect(close, &QPushButton::clicked, this, &QDialog::close);
+  auto* buttons = new QWidget;
+  auto* layout = new QHBoxLayout(buttons);
+  layout->setContentsMargins(0, 0, 0, 0);
+  layout->addWidget(new QLabel("Keep"));
+  layout->addWidget(keep_);
+  layout->addWidget(why_not_, 1);
+  layout->addWidget(write_);
+  layout->addWidget(close);
+  return buttons;
+}
+
+bool SetupDialog::isOfLastJob() const {
+  const auto& digests = solved_.digests;
+  return std::find(digests.begin(), digests.end(), last_.job_digest) != digests.end();
+}
+
+void SetupDialog::refresh(const flute_grinder::JobProgress& last, bool runs) {
+  last_ = last;
+  runs_ = runs;
+  const bool in_use = runs && isOfLastJob();
+  why_not_->setText(in_use ? "This job runs: its file is not written." : "");
+  write_->setEnabled(solved_.setup && !working_.valid() && !in_use);
+  if (in_use) showQuestion(false);
+}
+
+void SetupDialog::ask() {
+  const QString file = QString::fromStdString(file_);
+  QString text =
+      "Write this set-up into " + file + "? The old file is kept as " + file + ".before.\n" + solved_.changes;
+  if (isOfLastJob() && !last_.finished) {
+    text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
+  }
+  question_->ask(text);
+  showQuestion(true);
+}
+
+void SetupDialog::showQuestion(bool asks) {
+  buttons_->setVisible(!asks);
+  question_->setVisible(asks);
+}
+
+void SetupDialog::beginToWrite() {
+  keep_->setEnabled(false);
+  write_->setEnabled(false);
+  working_ = std::async(std::launch::async, [this, setup = solved_.setup] { return write(*setup); });
+}
 
 void SetupDialog::beginToSolve() {
   keep_->setEnabled(false);
@@ -99,9 +162,12 @@ SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
     if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
     const auto& setup = std::get<JobSetup>(result);
     const std::string refusal = planRefusal(setup);
-    const std::string text = setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
+    const QString changes = QString::fromStdString(changesText(file_, setup));
+    const std::string text =
+        "in the job file\n" + changes.toStdString() + setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
     if (!refusal.empty()) return refused(text + "It is not written.");
-    return {std::make_shared<const JobSetup>(setup), false, QString::fromStdString(text), true};
+    return {
+        std::make_shared<const JobSetup>(setup), false, QString::fromStdString(text), true, digestsOf(file_), changes};
   } catch (const std::exception& error) {
     return refused(error.what());
   }
@@ -109,16 +175,18 @@ SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
 
 std::optional<double> SetupDialog::aboveSwivel(const GrindJob& job) const {
   auto flange = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {flange_}, stop_);
-  if (!flange || flange->getType() != XmlRpc::XmlRpcValue::TypeDouble) return std::nullopt;
+  const auto number = flange ? numberOf(*flange) : std::nullopt;
+  if (!number) return std::nullopt;
   MachineGeometry machine;
-  machine.flange = static_cast<double>(*flange);
+  machine.flange = *number;
   return wheelAboveSwivel(file_, job, machine);
 }
 
 SetupDialog::Done SetupDialog::write(const JobSetup& setup) const {
   try {
     writeSetup(file_, setup);
-    return {nullptr, true, "Written into " + QString::fromStdString(file_) + ".", true};
+    const QString file = QString::fromStdString(file_);
+    return {nullptr, true, "Written into " + file + "; the old file is " + file + ".before.", true};
   } catch (const std::exception& error) {
     return {nullptr, false, error.what(), false};
   }
@@ -133,9 +201,9 @@ void SetupDialog::poll() {
 }
 
 void SetupDialog::take(const Done& done) {
-  setup_ = done.setup;
+  solved_ = done;
   keep_->setEnabled(true);
-  write_->setEnabled(setup_ != nullptr);
+  refresh(last_, runs_);
   if (done.written) {
     sheet_->appendPlainText(done.text);
     Q_EMIT written();

@@ -7,6 +7,8 @@
 namespace grinder {
 
 constexpr const char* kWrong = "#b00020";  ///< colour of what is not as it should be
+constexpr const char* kGreen = "#1e7d34";
+constexpr const char* kAmber = "#9a5b00";
 
 /// A read-only text field that scrolls if there are more lines than fit.
 inline QPlainTextEdit* textView(const char* name, int lines) {

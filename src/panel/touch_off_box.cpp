@@ -107,7 +107,7 @@ void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
   if (!view.state || !(std::abs(position_ - asked_at_) <= kMoved)) pages_->setCurrentIndex(0);
   const bool given = at_->isGood() && (axis() != kY || at_->value() > 0);
   const bool may = has_services && view.state && mayTouchOff(*view.state);
-  touch_->setEnabled(may && given && view.offsets);
+  touch_->setEnabled(may && given);
   back_->setEnabled(may && back_axis_ < kAxisCount && view.offsets);
   reclamped_->setEnabled(has_services && view.state && !isInJob(static_cast<MachineState>(view.state->state)));
   const QString tool = view.offsets ? QString::fromStdString(toolText(fromMessage(*view.offsets).tool)) : "";

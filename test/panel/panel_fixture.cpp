@@ -7,6 +7,8 @@
 #include <QFile>
 #include <QLayout>
 #include <QMouseEvent>
+#include <QScrollArea>
+#include <QScrollBar>
 #include <QTabBar>
 #include <QTabWidget>
 
@@ -36,8 +38,11 @@ std::vector<QWidget*> leaves(QWidget& panel) {
         qobject_cast<QPlainTextEdit*>(widget->parentWidget()) ||
         (widget->parentWidget() && qobject_cast<QPlainTextEdit*>(widget->parentWidget()->parentWidget()));
     const bool edits = qobject_cast<QAbstractSpinBox*>(widget->parentWidget());
-    const bool groups = widget->layout() || qobject_cast<QTabWidget*>(widget);
-    if (widget->isVisible() && !scrolls && !edits && !groups) found.push_back(widget);
+    const bool pages = qobject_cast<QScrollArea*>(widget) || qobject_cast<QScrollArea*>(widget->parentWidget());
+    const bool groups = widget->layout() || qobject_cast<QTabWidget*>(widget) || pages;
+    // What is scrolled away is seen when it is wanted.
+    const bool seen = !widget->visibleRegion().isEmpty();
+    if (seen && !scrolls && !edits && !groups) found.push_back(widget);
   }
   return found;
 }
@@ -67,7 +72,7 @@ std::string wrongs(QWidget& panel) {
   std::vector<QRect> taken;
   for (QWidget* widget : widgets) {
     found += lacksRoom(*widget);
-    const QRect place(widget->mapTo(&panel, QPoint(0, 0)), widget->size());
+    const QRect place = widget->visibleRegion().boundingRect().translated(widget->mapTo(&panel, QPoint(0, 0)));
     if (!panel.rect().contains(place)) found += nameOf(*widget) + " is cut off\n";
     for (const QRect& other : taken) {
       if (place.intersects(other)) found += nameOf(*widget) + " covers another\n";
@@ -119,6 +124,9 @@ void Panel::press(const char* name) {
 
 void Panel::doubleClick(QAbstractButton& button, int pause) {
   constexpr int kDesktopsDoubleClick = 400;
+  for (auto* page : panel_->findChildren<QScrollArea*>()) {
+    if (page->isAncestorOf(&button)) page->ensureWidgetVisible(&button);
+  }
   const QPoint place = button.mapTo(panel_.get(), button.rect().center());
   const int begun = ++QTest::lastMouseTimestamp;
   clickAt(place, QEvent::MouseButtonPress);
@@ -167,6 +175,7 @@ void Panel::tick(const char* name) {
 
 void Panel::enterNode(const QString& name) {
   openTab("View");
+  click("choose_node");
   auto& node = the<QLineEdit>("node");
   node.clear();
   QTest::keyClicks(&node, name);

@@ -4,6 +4,7 @@
 
 #include <QAbstractSlider>
 #include <QApplication>
+#include <QDialog>
 #include <QScrollBar>
 
 #include <cmath>
@@ -681,6 +682,34 @@ TEST_F(Staged, TheNodeCanBeChosen) {
   panel.enterNode("cell/stage");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
+}
+
+TEST_F(OnStage, TheNodeCanBeChosenOnlyWhileNothingMoves) {
+  panel.openTab("View");
+  const auto may_choose = [&] { return panel.enabled("choose_node"); };
+  WAIT_FOR(may_choose());
+  panel.click("choose_node");
+  EXPECT_TRUE(panel.isVisible("node_dialog"));
+  EXPECT_FALSE(panel.the<QDialog>("node_dialog").isModal());
+  EXPECT_EQ(panel.the<QLineEdit>("node").text(), "cell/stage");
+  for (const StateRow& row : kMachineStates) {
+    SCOPED_TRACE(row.name);
+    stage.be(row.name, panel);
+    EXPECT_EQ(may_choose(), !row.moves && !isInJob(row.value));
+  }
+  EXPECT_FALSE(panel.isVisible("node_dialog")) << "it was open when the job began";
+  stage.be("ready", panel);
+  stage.change([&] { stage.state.spindle_commanded = 1; });
+  WAIT_FOR(!may_choose());
+  stage.change([&] { stage.state.spindle_commanded = 0; });
+  WAIT_FOR(may_choose());
+  // One that is not heard may go on.
+  stage.be("running", panel);
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(panel.state() == "No answer");
+  EXPECT_FALSE(may_choose());
+  stage.stopListening();
+  WAIT_FOR(may_choose());
 }
 
 TEST_F(OnStage, WhatHeldTheJobAndWhatIsNotHomedIsReported) {

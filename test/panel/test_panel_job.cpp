@@ -79,8 +79,15 @@ class SetupSheet : public ::testing::Test {
   }
   void write() {
     panel->press("write_setup");
+    EXPECT_TRUE(panel->says("write_question", "The old file is kept as " + file.toStdString() + ".before."));
+    panel->press("write_over");
     WAIT_FOR(sheet().find("Written into ") != std::string::npos);
     EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U) << panel->text("verdict");
+  }
+  std::string readAll() {
+    QFile job(file);
+    EXPECT_TRUE(job.open(QFile::ReadOnly));
+    return job.readAll().toStdString();
   }
   void closeSheet() {
     panel->click("close_setup");
@@ -108,6 +115,43 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   ASSERT_NO_FATAL_FAILURE(write());
   EXPECT_FALSE(panel->enabled("write_setup"));
   closeSheet();
+}
+
+TEST_F(SetupSheet, ShowsWhatTheFileHasAndIsWrittenOnlyIfTheOperatorSaysSoTwice) {
+  open({}, QString(kJob).replace("paper", "roughing_d10_t4"));
+  EXPECT_TRUE(panel->says("setup_sheet", "swivel_deg      43.32 in the file, 43.2"));
+  const std::string before = goalFromFile(file.toStdString()).job_name + readAll();
+  panel->press("write_setup");
+  panel->press("decline_write");
+  QTest::keyClick(dialog(), Qt::Key_Return);
+  WAIT_FOR(!dialog());
+  EXPECT_EQ(goalFromFile(file.toStdString()).job_name + readAll(), before) << "Enter closes it";
+  ASSERT_NO_FATAL_FAILURE(openSheet());
+  ASSERT_NO_FATAL_FAILURE(write());
+  QFile old(file + ".before");
+  ASSERT_TRUE(old.open(QFile::ReadOnly));
+  EXPECT_EQ("job.yaml" + old.readAll().toStdString(), before);
+  closeSheet();
+}
+
+TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
+  open({{"feed_mm_min: 600", "feed_mm_min: 100"}});
+  WAIT_FOR(panel->enabled("write_setup"));
+  panel->press("enable");
+  WAIT_FOR(panel->state() == "Ready");
+  panel->plan();
+  panel->press("start");
+  for (const char* answer : {"ignore_offset_check", "confirm_swivel"}) panel->press(answer);
+  WAIT_FOR(panel->state() == "Running" && !panel->enabled("write_setup"));
+  EXPECT_EQ(panel->label("why_not_written"), "This job runs: its file is not written.");
+  panel->click("cancel");
+  WAIT_FOR(panel->state() == "Ready");
+  panel->press("write_setup");
+  EXPECT_TRUE(panel->says("write_question", "The job of this file is not finished, and cannot be continued"));
+  panel->press("decline_write");
+  closeSheet();
+  panel->click("disable");
+  WAIT_FOR(panel->state() == "Disabled");
 }
 
 TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
@@ -140,11 +184,23 @@ TEST_F(SetupSheet, IsNotWrittenWithoutASolutionOrIfAPlanWouldRefuseIt) {
 }
 
 TEST_F(SetupSheet, CountsTheWheelsPlaceOnTheSpindle) {
-  open(
-      {{"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
-        "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
-        "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}});
-  EXPECT_TRUE(panel->says("setup_sheet", "with the wheel's middle 0.000 mm above the swivel's centre"));
+  const std::vector<std::pair<QByteArray, QByteArray>> with_a_file{
+      {"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
+       "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
+       "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}};
+  const auto middle = [&] { return figure("with the wheel's middle"); };
+  open(with_a_file);
+  EXPECT_EQ(middle(), 0);
+  double flange = 0;
+  ASSERT_TRUE(ros::param::get("/grinder/geometry/flange", flange));
+  ros::param::set("/grinder/geometry/flange", 0.0);
+  open(with_a_file);
+  const double at_zero = middle();
+  EXPECT_NE(at_zero, 0);
+  ros::param::set("/grinder/geometry/flange", 0);  // as YAML reads it without a decimal point
+  open(with_a_file);
+  EXPECT_EQ(middle(), at_zero);
+  ros::param::set("/grinder/geometry/flange", flange);
 }
 
 TEST_F(SetupSheet, NeedsTheMachinesSwivel) {

@@ -66,6 +66,61 @@ TEST_F(Jogging, AxesMayBeJoggedAndTouchedOffWhereTheStateAllows) {
   EXPECT_FALSE(panel.enabled("touch_off"));
 }
 
+TEST_F(Jogging, ItsButtonsAreLargeAndApart) {
+  stage.be("ready", panel);
+  std::map<std::string, QRect> places;
+  for (const std::string& name : kButtons) {
+    auto& button = panel.the<QPushButton>(name.c_str());
+    places[name] = QRect(button.mapTo(&panel.widget(), QPoint()), button.size());
+    EXPECT_GE(button.height(), 40);
+    EXPECT_GE(button.width(), 60);
+  }
+  for (const auto& [name, place] : places) {
+    for (const auto& [other, its] : places) {
+      const bool opposite = name.substr(0, 5) == other.substr(0, 5);
+      const int apart = opposite ? 20 : 8;
+      if (name == other) continue;
+      EXPECT_FALSE(place.adjusted(-apart, -apart, apart, apart).intersects(its)) << name << other;
+    }
+  }
+}
+
+/// As the operator sees it.
+using Lamps = std::vector<std::string>;
+
+TEST_F(Jogging, LampsTellWhatIsCommandedFromWhatIsReported) {
+  flute_grinder::MachineInfo able;
+  able.spindle = able.coolant = able.probe = 1;
+  stage.publishMachine(able);
+  const auto lamps = [&] {
+    Lamps seen;
+    for (const char* name : {"spindle_lamp", "coolant_lamp", "probe_lamp"}) {
+      if (panel.isVisible(name)) seen.push_back(panel.label(name));
+    }
+    return seen;
+  };
+  const auto set = [&](bool commanded, bool reported) {
+    stage.change([&] {
+      stage.state.spindle_commanded = stage.state.coolant_commanded = commanded;
+      stage.state.spindle_at_speed = stage.state.coolant_on = stage.state.probe_contact = reported;
+    });
+  };
+  WAIT_FOR(lamps() == (Lamps{"○ Spindle off", "○ Coolant off", "○ Probe free"}));
+  set(true, false);
+  WAIT_FOR(lamps() == (Lamps{"◐ Spindle runs up", "◐ Coolant asked", "○ Probe free"}));
+  panel.picture("lamps_commanded");
+  set(true, true);
+  WAIT_FOR(lamps() == (Lamps{"● Spindle at speed", "● Coolant on", "● Probe touches"}));
+  panel.picture("lamps_on");
+  set(false, true);
+  WAIT_FOR(lamps() == (Lamps{"◐ Spindle turns", "◐ Coolant flows", "● Probe touches"}));
+  able.coolant = able.probe = 0;
+  stage.publishMachine(able);
+  WAIT_FOR(lamps() == Lamps{"◐ Spindle turns"});
+  stage.change([&] { stage.silent = true; });
+  WAIT_FOR(lamps().empty());
+}
+
 TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
   WAIT_FOR(panel.enabled("jog_x_plus"));
   choose("0.1 mm, deg");

@@ -161,13 +161,17 @@ TEST_F(WithoutMaster, BothAreFoundAfterBothWereLost) {
 
 TEST_F(WithoutMaster, AnotherNameIsTakenUpWhenTheMasterIsBack) {
   loseMaster();
+  panel.click("cancel");  // while the job runs it is not to be changed
+  WAIT_FOR(panel.state() == "Ready");
   for (const char* name : {"nobody", "/cell/stage"}) {
     panel.enterNode(name);  // it would wait here for ever
     EXPECT_EQ(panel.state(), "No answer");
   }
   EXPECT_EQ(panel.label("grinder"), "/cell/stage");
   startMaster();
-  findBoth();
+  WAIT_FOR(panel.state() == "Ready" && panel.enabled("disable"));
+  panel.click("disable");
+  WAIT_FOR(panel.state() == "Disabled");
 }
 
 }  // namespace grinder::test_panel_without_master

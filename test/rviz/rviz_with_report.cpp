@@ -1,7 +1,8 @@
 /// @file
 /// rviz as it is, and services beside it: `~report` reports how many frames it has drawn, where its window and the
-/// screen are, how small the window can be, its title, where its view looks, and what its displays say of themselves;
-/// `~look` turns the view as the parameter `~camera` says.
+/// screen are, how small the window can be, its title, where its view looks, which dialogs and buttons are seen, and
+/// what its displays say of themselves; `~look` turns the view as the parameter `~camera` says, and `~operate` does
+/// what the hand does by `~operation`.
 
 #include <ros/ros.h>
 #include <rviz/display_group.h>
@@ -14,8 +15,16 @@
 #include <rviz/visualization_manager.h>
 #include <rviz/visualizer_app.h>
 #include <std_srvs/Trigger.h>
+#include <QAbstractButton>
+#include <QAction>
 #include <QApplication>
+#include <QDialog>
+#include <QMenuBar>
 #include <QScreen>
+#include <QTabBar>
+#include <QTimer>
+#include <QToolButton>
+#include <QtTest>
 
 #include <algorithm>
 #include <sstream>
@@ -56,6 +65,68 @@ void writeStatus(rviz::Property& property, const std::string& path, std::ostream
   for (int i = 0; i < property.numChildren(); ++i) writeStatus(*property.childAt(i), name, text);
 }
 
+/// A line "dialog name" for each dialog that is seen, and a line "button name enabled x y width height" for each
+/// button, and for the panel's replies, of which all is seen.
+void writeWhatIsSeen(std::ostream& text) {
+  for (const QWidget* widget : QApplication::allWidgets()) {
+    if (!widget->isVisible() || widget->objectName().isEmpty()) continue;
+    const std::string name = widget->objectName().toStdString();
+    if (qobject_cast<const QDialog*>(widget)) text << "dialog " << name << "\n";
+    const bool counts = qobject_cast<const QAbstractButton*>(widget) || name == "messages";
+    if (!counts || widget->visibleRegion().boundingRect() != widget->rect()) continue;
+    writeRectangle(("button " + name + (widget->isEnabled() ? " 1" : " 0")).c_str(),
+                   QRect(widget->mapToGlobal(QPoint(0, 0)), widget->size()), text);
+  }
+}
+
+/// A button by its name, rviz's view, or what rviz gives no name: the panel's close box, and the arrow that folds it.
+QWidget* widgetNamed(const QString& name) {
+  if (name == "view") return window()->getManager()->getRenderPanel();
+  if (name == "fold") return window()->centralWidget()->findChildren<QToolButton*>().last();
+  for (auto* dock : window()->findChildren<rviz::PanelDockWidget*>()) {
+    if (name == "close_box" && dock->windowTitle().startsWith("Grinder")) {
+      return dock->titleBarWidget()->findChild<QToolButton*>();
+    }
+  }
+  return window()->findChild<QAbstractButton*>(name);
+}
+
+/// "key Ctrl+Q", "click hold", "tab Jog" or "menu &Quit".
+void doByHand(const QString& operation) {
+  const QString what = operation.section(' ', 0, 0), which = operation.section(' ', 1);
+  if (what == "key") {
+    const int key = QKeySequence(which)[0];
+    // Without a window manager none is active by itself, and shortcuts work in the active one.
+    if (!QGuiApplication::focusWindow()) window()->activateWindow();
+    if (!QTest::qWaitFor([] { return QGuiApplication::focusWindow() != nullptr; })) return;
+    QTest::keyClick(QGuiApplication::focusWindow(), static_cast<Qt::Key>(key & ~Qt::KeyboardModifierMask),
+                    Qt::KeyboardModifiers(key & Qt::KeyboardModifierMask));
+  } else if (what == "click") {
+    QTest::mouseClick(widgetNamed(which), Qt::LeftButton);
+  } else if (what == "menu") {
+    // A menu that is off does not open. trigger() asks for neither.
+    for (auto* menu : window()->menuBar()->findChildren<QMenu*>()) {
+      for (auto* action : menu->menuAction()->isEnabled() ? menu->actions() : QList<QAction*>()) {
+        if (action->text() == which && action->isEnabled()) action->trigger();
+      }
+    }
+  } else {
+    for (auto* bar : window()->findChildren<QTabBar*>()) {
+      for (int i = 0; i < bar->count(); ++i) {
+        if (bar->tabText(i) == which) QTest::mouseClick(bar, Qt::LeftButton, {}, bar->tabRect(i).center());
+      }
+    }
+  }
+}
+
+/// Answers first: what is done may open a window, or end rviz.
+bool operate(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
+  std::string operation;
+  response.success = static_cast<std::uint8_t>(window() != nullptr && ros::param::get("~operation", operation));
+  if (response.success) QTimer::singleShot(0, window(), [=] { doByHand(QString::fromStdString(operation)); });
+  return true;
+}
+
 /// Called in the thread of the windows, where rviz takes its messages.
 bool report(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response& response) {
   rviz::VisualizationFrame* frame = window();
@@ -75,6 +146,7 @@ bool report(std_srvs::Trigger::Request& /*request*/, std_srvs::Trigger::Response
   writeCamera(*manager.getViewManager()->getCurrent(), text);
   writeRectangle("view", QRect(view.mapToGlobal(QPoint(0, 0)), view.size()), text);
   writeStatus(*manager.getRootDisplayGroup(), "", text);
+  writeWhatIsSeen(text);
   response.message = text.str();
   return true;
 }
@@ -105,5 +177,6 @@ int main(int argc, char** argv) {
   ros::NodeHandle private_nh("~");
   const ros::ServiceServer service = private_nh.advertiseService("report", &report);
   const ros::ServiceServer look_service = private_nh.advertiseService("look", &look);
+  const ros::ServiceServer operate_service = private_nh.advertiseService("operate", &operate);
   return QApplication::exec();
 }

@@ -44,6 +44,7 @@ class Rviz:
         gc.poll(self.draws, 'the first frames of rviz', interval=0.1)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
         self._look = rospy.ServiceProxy('/rviz/look', Trigger)
+        self._operate = rospy.ServiceProxy('/rviz/operate', Trigger)
 
     @staticmethod
     def draws():
@@ -69,6 +70,17 @@ class Rviz:
         """As an operator who turns the view."""
         rospy.set_param('/rviz/camera', [frame, *map(float, camera)])
         assert self._look().success
+
+    def operate(self, operation, ends=False):
+        """As an operator's hand: "key Ctrl+Q", "click hold", "tab Jog" or "menu &Quit". `ends`: rviz, by that."""
+        rospy.set_param('/rviz/operation', operation)
+        assert self._operate().success
+        if not ends:
+            self.wait_frames(2)
+
+    def buttons(self):
+        """Those that are seen as a whole, by name: whether enabled, x, y, width, height."""
+        return {name: [int(number) for number in numbers] for name, *numbers in map(str.split, self.report('button'))}
 
     def wait_frames(self, number):
         """rviz takes messages before each frame. Returns how long the frames have taken [s]."""

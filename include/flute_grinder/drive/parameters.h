@@ -2,6 +2,7 @@
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +17,9 @@ class ParameterError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
+
+/// The number that a parameter is; nothing if it is none. YAML reads `0` as a whole number, and `0.0` as another kind.
+std::optional<double> numberOf(XmlRpc::XmlRpcValue value);
 
 /// Reads parameters of one namespace; rejects any that are missing, of the wrong type or out of range.
 class ParameterReader {

@@ -127,7 +127,7 @@ std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const 
   const bool probed = offsets.axes[kA].basis.method == OffsetMethod::kProbe;
   if (tool.isGround(before) || probed) return std::nullopt;
   const std::string missing = std::string("operation ") + wordsOf(before) + " is not ground on this tool";
-  return refused(missing, "that it is", missing);
+  return refused(missing, "ground", missing);
 }
 
 }  // namespace

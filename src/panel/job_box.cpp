@@ -60,7 +60,7 @@ bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swive
 
 /// What a job asks for, beside what is set.
 Comparison comparisonOf(const std::vector<OffsetMismatch>& mismatches) {
-  Comparison all{{"asked", "set", "difference"}, {}};
+  Comparison all{{"asked", "set", "off by"}, {}};
   for (const OffsetMismatch& mismatch : mismatches) {
     const std::string difference = mismatch.change ? text(Quantity{*mismatch.change, Unit::kMetre}) : "";
     QStringList row;
@@ -369,7 +369,7 @@ void JobBox::askForSwivel() {
   const QString set = known ? shown(swivel_.angle) : "not confirmed";
   const QString difference = known ? shown(asked - swivel_.angle) : "";
   ask(swivel_question_, plannedJob() + "\nIs the swivel set to " + shown(asked) + " and clamped?",
-      {{"asked", "set", "difference"}, {{"swivel", shown(asked), set, difference}}});
+      {{"asked", "set", "off by"}, {{"swivel", shown(asked), set, difference}}});
 }
 
 void JobBox::startConfirmed() {

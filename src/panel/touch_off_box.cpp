@@ -8,6 +8,8 @@
 
 #include <QDateTime>
 #include <QGridLayout>
+#include <QScrollArea>
+#include <QTimer>
 
 #include <cmath>
 #include <utility>
@@ -18,7 +20,7 @@ namespace {
 
 constexpr double kMoved = 10e-6;  ///< by which an axis at rest does not move [m], A [rad]
 constexpr int kDecimals = 4;      ///< of positions and offsets
-constexpr int kQuestionLines = 4;
+constexpr int kLinesOfChange = 4;
 constexpr double kFarthest = 9999;  ///< [mm or deg]
 
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
@@ -42,7 +44,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
       reclamped_(new PanelButton("reclamped", "New clamping", "Say that a tool was clamped: another one, or anew")),
       offset_(new QLabel),
       tool_(new QLabel),
-      question_(new Question("touch", kQuestionLines)),
+      question_(new Question("touch", kLinesOfChange)),
       pages_(new QStackedLayout(this)) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
@@ -85,6 +87,12 @@ void TouchOffBox::ask(const QString& text, const Comparison& figures, std::funct
   asked_at_ = position_;
   question_->ask(text, figures);
   pages_->setCurrentWidget(question_);
+  // Once it has its place: on a low screen the tab scrolls.
+  QTimer::singleShot(0, this, [this] {
+    for (QWidget* above = parentWidget(); above; above = above->parentWidget()) {
+      if (auto* area = qobject_cast<QScrollArea*>(above)) area->ensureWidgetVisible(question_);
+    }
+  });
 }
 
 void TouchOffBox::offerBack(int axis) {

@@ -34,9 +34,11 @@ std::string nameOf(const QWidget& widget) {
 std::vector<QWidget*> leaves(QWidget& panel) {
   std::vector<QWidget*> found;
   for (QWidget* widget : panel.findChildren<QWidget*>()) {
+    const auto isText = [](const QWidget* parent) {
+      return qobject_cast<const QPlainTextEdit*>(parent) || qobject_cast<const QTextEdit*>(parent);
+    };
     const bool scrolls =
-        qobject_cast<QPlainTextEdit*>(widget->parentWidget()) ||
-        (widget->parentWidget() && qobject_cast<QPlainTextEdit*>(widget->parentWidget()->parentWidget()));
+        widget->parentWidget() && (isText(widget->parentWidget()) || isText(widget->parentWidget()->parentWidget()));
     const bool edits = qobject_cast<QAbstractSpinBox*>(widget->parentWidget());
     const bool pages = qobject_cast<QScrollArea*>(widget) || qobject_cast<QScrollArea*>(widget->parentWidget());
     const bool groups = widget->layout() || qobject_cast<QTabWidget*>(widget) || pages;

@@ -187,6 +187,10 @@ TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
   panel.click("touch_off");
   for (const char* shown : {"-2.866 mm", "1.134 mm", "4 mm"}) EXPECT_TRUE(panel.says("touch_question", shown)) << shown;
   WAIT_FOR(panel.enabled("confirm_touch"));
+  for (const char* answer : {"confirm_touch", "decline_touch"}) {
+    const auto& button = panel.the<QPushButton>(answer);
+    EXPECT_EQ(button.visibleRegion(), QRegion(button.rect())) << answer << " is seen without scrolling";
+  }
   panel.picture("touch_off_asked");
   EXPECT_TRUE(touches().empty());
   panel.press("confirm_touch");
@@ -211,7 +215,7 @@ TEST_F(Jogging, ANewClampingIsAskedForAndSaid) {
   offsets.tool.job_name = "reamer.yaml";
   offsets.tool.ground = 0b1;
   stage.publishOffsets(offsets);
-  WAIT_FOR(panel.shows("tool", "Tool: reamer.yaml with flute"));
+  WAIT_FOR(panel.the<QLabel>("tool").toolTip() == "reamer.yaml with flute");
   panel.click("reclamped");
   EXPECT_TRUE(panel.says("touch_question", "reamer.yaml with flute"));
   EXPECT_EQ(stage.get(&Stage::reclamped), 0);

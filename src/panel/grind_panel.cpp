@@ -285,6 +285,7 @@ void GrindPanel::setNode(const QString& node) {
   planning_ = false;
   sent_.reset();
   job_->discardPlan();  // it is for another machine
+  offerBack(std::nullopt);
   override_->reset();
   link_.reset();
   name_.clear();
@@ -522,21 +523,25 @@ void GrindPanel::askToTouchOff(int axis, double at) {
     if (basis.hasJob()) text += "For " + basis.job_name + ", wheel " + wheelText(basis) + ".";
     touch_off_->ask(QString::fromStdString(text).trimmed(), change(axis, before, view.state->position[i] - position),
                     [=] {
-                      touched_ = Touched{axis, before};
-                      touchOff(axis, position, basis, false);
+                      touchOff({axis, before}, position, basis, false);
                     });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());
   }
 }
 
-void GrindPanel::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok) {
-  const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is set");
-  link_->touchOff(axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
+void GrindPanel::touchOff(const Touched& what, double position, const OffsetBasis& basis, bool large_change_ok) {
+  const auto answered = reply("touch-off: the work offset of " + axisName(what.axis) + " is set");
+  link_->touchOff(what.axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
     answered(refusal);
-    if (refusal.empty() && touched_ && touched_->before.wasSet()) touch_off_->offerBack(axis);
-    if (large_change) touch_off_->ask(capitalized(refusal), {}, [=] { touchOff(axis, position, basis, true); });
+    if (refusal.empty()) offerBack(what.before.wasSet() ? std::optional<Touched>(what) : std::nullopt);
+    if (large_change) touch_off_->ask(capitalized(refusal), {}, [=] { touchOff(what, position, basis, true); });
   });
+}
+
+void GrindPanel::offerBack(const std::optional<Touched>& touched) {
+  touched_ = touched;
+  touch_off_->offerBack(touched ? touched->axis : kAxisCount);
 }
 
 /// One step back: to the offset before the last touch-off, with what it was set for.
@@ -544,12 +549,18 @@ void GrindPanel::askToTakeBack() {
   const auto message = link_->view().offsets;
   if (!message || !touched_) return;
   const auto [axis, before] = *touched_;
-  const WorkOffset now = fromMessage(*message).axes[static_cast<std::size_t>(axis)];
+  const WorkOffsets offsets = fromMessage(*message);
+  const WorkOffset& now = offsets.axes[static_cast<std::size_t>(axis)];
+  // Set now, it would count for the wheel that is mounted now.
+  if (before.mounting != offsets.wheel.mounting) {
+    offerBack(std::nullopt);
+    return showMessage("touch-off: another wheel has been mounted since; touch off anew");
+  }
   touch_off_->ask("Set it back?", change(axis, now, before.value), [this, axis = axis, before = before] {
     const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is what it was");
     link_->setOffset(axis, before.value, before.basis, [=](const std::string& refusal) {
       answered(refusal);
-      if (refusal.empty()) touch_off_->offerBack(kAxisCount);
+      if (refusal.empty()) offerBack(std::nullopt);
     });
   });
 }

@@ -53,7 +53,7 @@ class GrindPanel : public rviz::Panel {
     flute_grinder::GrindGoal goal;
   };
 
-  /// A work offset that was touched off from here.
+  /// A touch-off from here, with the work offset before.
   struct Touched {
     int axis;
     WorkOffset before;
@@ -89,7 +89,8 @@ class GrindPanel : public rviz::Panel {
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
   void askToTouchOff(int axis, double at);
-  void touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok);
+  void touchOff(const Touched& what, double position, const OffsetBasis& basis, bool large_change_ok);
+  void offerBack(const std::optional<Touched>& touched);
   void askToTakeBack();
   void askReclamped();
   void confirmWheel(const flute_grinder::GrindGoal& goal);

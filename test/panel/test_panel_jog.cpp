@@ -207,6 +207,19 @@ TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
   EXPECT_EQ(set.value, -0.002866);
   EXPECT_EQ(set.basis.job_name, "before.yaml") << "with what it was set for";
   WAIT_FOR(!panel.enabled("touch_back"));
+
+  panel.click("touch_off");
+  panel.press("confirm_touch");
+  WAIT_FOR(panel.enabled("touch_back"));
+  // Set back with another wheel, it would count for that one.
+  offsets.wheel.mounting = 1;
+  offsets.values[kX] = 0.005;
+  stage.publishOffsets(offsets);
+  WAIT_FOR(panel.shows("work_offset", "5.0000 mm"));
+  panel.click("touch_back");
+  WAIT_FOR(panel.says("messages", "Touch-off: another wheel has been mounted since"));
+  EXPECT_FALSE(panel.isVisible("confirm_touch"));
+  WAIT_FOR(!panel.enabled("touch_back"));
 }
 
 TEST_F(Jogging, ANewClampingIsAskedForAndSaid) {

@@ -320,9 +320,9 @@ void GoalServer::releaseWhenJournaled() {
   if (ended) return;
   goal_->journal_error = tracker_.error();
   if (goal_->journal_error.empty()) {
+    loop_.confirmJournal(goal_->number);
     const flute_grinder::GrindGoal& asked = *goal_->handle.getGoal();
     offsets_.noteGrinding(basisOf(asked, OffsetMethod::kUnknown), asked.first_tooth == 0 && asked.first_pass == 0);
-    loop_.confirmJournal(goal_->number);
   } else {
     loop_.postStop(MachineEvent::kCancel);
   }

@@ -37,7 +37,7 @@ class OffsetServer {
 
   /// The axes are being homed: A may get another reference.
   void noteHoming();
-  /// A job is about to grind. @param whole it begins at its first pass.
+  /// A job has begun. @param whole at its first pass.
   void noteGrinding(const OffsetBasis& job, bool whole);
   /// A job has ground its last pass.
   void noteGround(const OffsetBasis& job);

@@ -408,9 +408,9 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
   if (offsets) offsets_ = fromMessage(*offsets);
   showFile();
   showZeroPoints();
-  for (auto* dialog : findChildren<SetupDialog*>()) dialog->refresh(progress_, job_runs_);
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
+  for (auto* dialog : findChildren<SetupDialog*>()) dialog->refresh(progress_, job_runs_);
   if (!idle || !asksWithReason()) closeQuestion();
   choose_->setEnabled(idle);
   const bool chosen = !file_.isEmpty() && !operation_->isMissing();

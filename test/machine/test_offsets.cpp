@@ -245,6 +245,9 @@ TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
   const std::string twice = " is ground on this tool already; if another blank is clamped, say so: grind reclamped";
   EXPECT_EQ(refusalOf(offsets, primary), "A: operation primary relief" + twice);
   EXPECT_EQ(refusalOf(offsets, basisOf()), "A: operation flute" + twice);
+  OffsetBasis none = basisOf();
+  none.operation = 65535;
+  EXPECT_NE(refusalOf(offsets, none), "") << "a message may have one that there is not";
   // A tooth of a tool whose flutes were ground elsewhere.
   is(primary.tool_digest, 0);
   offsets.axes[kA] = offsetFor(basisOf(OffsetMethod::kProbe));

@@ -88,7 +88,10 @@ struct ClampedTool {
   std::uint32_t ground = 0;  ///< a bit for each of the tool's operations that is finished, from the lowest
   TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< why, without a digest
 
-  bool isGround(int operation) const noexcept { return ((ground >> operation) & 1U) != 0; }
+  /// @param operation of any size: a message may ask for one that there is not.
+  bool isGround(int operation) const noexcept {
+    return operation >= 0 && operation < 32 && ((ground >> operation) & 1U) != 0;
+  }
   /// Its teeth are where nobody knows.
   void forget(TeethUnknown why) { *this = {"", "", 0, why}; }
 };

@@ -84,7 +84,7 @@ std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, con
   const WorkOffset& offset = offsets.axes[static_cast<std::size_t>(axis)];
   const OffsetBasis& was = offset.basis;
   const std::string name = nameOf(axis);
-  OffsetMismatch found{name, basisText(axis, offset), figures(axis, job, nullptr), "", axis, {}};
+  OffsetMismatch found{name, basisText(axis, offset), "touched off for this job", "", axis, {}};
   const auto refused = [&](const std::string& reason) {
     found.reason = name + reason;
     return found;
@@ -93,12 +93,14 @@ std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, con
   const std::string set = " was " + found.set;
   if (!offset.wasSet() || was.method == OffsetMethod::kUnknown || (on.on_job && !was.hasJob())) return refused(set);
   if (offset.mounting != offsets.wheel.mounting) {
-    found.set += "; another wheel has been mounted since";
-    return refused(" was " + found.set);
+    found.asked = "touched off with this wheel";
+    found.set = "before it was mounted";
+    return refused(set + "; another wheel has been mounted since");
   }
   const std::string differs = was.hasJob() ? figures(axis, job, &was) : "";
   if (differs.empty()) return std::nullopt;
   found.asked = differs;
+  found.set = rowOf(was.method).done + (" for " + figures(axis, was, &job)) + ofJob(was);
   found.change = changeFor(axis, was, job);
   return refused(set + "; this job has " + differs);
 }

@@ -3,6 +3,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/plan/job_digest.h"
@@ -14,6 +15,11 @@ namespace grinder {
 namespace {
 
 std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename(); }
+
+/// What tells a wheel without a file of its own from others of its diameter.
+std::string described(const GrindProcess& wheel) {
+  return std::string(toString(wheel.wheel_profile)) + ", " + text(Quantity{wheel.wheel_width, Unit::kMetre}) + " wide";
+}
 
 /// Copies between core and message; the members have the same names.
 template <typename From, typename To>
@@ -51,8 +57,8 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   OffsetBasis basis;
   basis.method = method;
   basis.job_name = goal.job_name;
-  basis.wheel_name = goal.wheel_name;
   const GrindJob job = jobFromGoal(goal);
+  basis.wheel_name = goal.wheel_name.empty() ? described(job.process) : goal.wheel_name;
   basis.wheel_digest = wheelDigest(job);
   basis.tool_digest = toolDigest(job);
   basis.operation = job.operation;
@@ -100,7 +106,7 @@ WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message) {
   const flute_grinder::MountedWheel& wheel = message.wheel;
   offsets.wheel = {wheel.name, wheel.digest, wheel.diameter, wheel.mounting};
   const flute_grinder::ClampedTool& tool = message.tool;
-  offsets.tool = {tool.digest, tool.job_name, tool.ground, static_cast<TeethUnknown>(tool.unknown)};
+  offsets.tool = {tool.digest, tool.job_name, tool.ground, static_cast<TeethUnknown>(tool.unknown), tool.clamping};
   return offsets;
 }
 
@@ -121,6 +127,7 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets) {
   message.tool.job_name = offsets.tool.job_name;
   message.tool.ground = offsets.tool.ground;
   message.tool.unknown = static_cast<std::uint8_t>(offsets.tool.unknown);
+  message.tool.clamping = offsets.tool.clamping;
   return message;
 }
 

@@ -246,7 +246,7 @@ void GoalServer::startJob() {
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->plan;
   goal_->stream = std::make_unique<SetpointStream>(plan.program);
-  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number, goal_->offsets.wheel.mounting);
+  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number, goal_->offsets);
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,

@@ -36,6 +36,7 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("offset_z_m", progress.offset[kZ]);
   visit("offset_a_rad", progress.offset[kA]);
   visit("mounting", progress.mounting);
+  visit("clamping", progress.clamping);
 }
 
 void requireFinite(const std::string& key, double value) {

@@ -35,6 +35,7 @@ struct Progress {
   Wheel wheel;                 ///< as it was left
   Axes offset = Axes::Zero();  ///< with which the job began, see RunStart [m], A [rad]
   std::uint32_t mounting = 0;  ///< of the wheel with which the job began, see MountedWheel
+  std::uint32_t clamping = 0;  ///< of the tool in the same way, see ClampedTool
 };
 
 /// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.

@@ -74,7 +74,7 @@ void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
     const bool same = probed && basis.tool_digest == offsets.tool.digest;
     const std::uint32_t ground = same ? offsets.tool.ground : 0;
     if (probed) {
-      offsets.tool = {basis.tool_digest, basis.job_name, ground, {}};
+      offsets.tool = {basis.tool_digest, basis.job_name, ground, {}, offsets.tool.clamping};
     } else {
       offsets.tool.forget(TeethUnknown::kSet);
     }
@@ -154,8 +154,11 @@ bool OffsetServer::onReclamped(flute_grinder::Reclamped::Request& request,
   withoutJob(
       [&]() -> std::string {
         if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
-        return changed([](WorkOffsets& offsets) { offsets.tool.forget(TeethUnknown::kClamped); },
-                       "a tool was clamped, by " + request.set_by);
+        const auto clamp = [](WorkOffsets& offsets) {
+          offsets.tool.forget(TeethUnknown::kClamped);
+          ++offsets.tool.clamping;
+        };
+        return changed(clamp, "a tool was clamped, by " + request.set_by);
       },
       response);
   return true;
@@ -210,7 +213,7 @@ void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
   if (job.operation > 0) return;
   note([=](WorkOffsets& offsets) {
     const bool goes_on = !whole && offsets.tool.digest == job.tool_digest;
-    offsets.tool = {job.tool_digest, job.job_name, goes_on ? offsets.tool.ground : 0, {}};
+    offsets.tool = {job.tool_digest, job.job_name, goes_on ? offsets.tool.ground : 0, {}, offsets.tool.clamping};
   });
 }
 

@@ -61,6 +61,7 @@ void visitOffsets(AnyOffsets& offsets, const Visit& visit) {
   visit("tool_job", offsets.tool.job_name);
   visit("tool_ground", offsets.tool.ground);
   visitChoice(offsets.tool.unknown, "tool_unknown", visit);
+  visit("tool_clamping", offsets.tool.clamping);
 }
 
 bool isKnown(const WorkOffset& offset) { return !std::isnan(offset.value); }

@@ -49,6 +49,9 @@ std::string ProgressTracker::offsetRefusal(const std::string& digest, const Work
   if (offsets.wheel.mounting != progress_.mounting) {
     return "the job is not finished, and another wheel has been mounted since it began; discard the job";
   }
+  if (offsets.tool.clamping != progress_.clamping) {
+    return "the job is not finished, and a tool was clamped since it began; discard the job";
+  }
   const std::string changes = offsetChanges(offsets);
   if (changes.empty()) return "";
   return "the job is not finished, and it began with other work offsets" + changes +
@@ -73,7 +76,7 @@ std::string ProgressTracker::offsetChanges(const WorkOffsets& offsets) const {
 }
 
 void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
-                            std::uint64_t number, std::uint32_t mounting) {
+                            std::uint64_t number, const WorkOffsets& offsets) {
   before_ = progress_;
   number_ = number;
   moves_ = program.moves();
@@ -93,7 +96,8 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
   progress_.offset = program.run().offset;
-  progress_.mounting = mounting;
+  progress_.mounting = offsets.wheel.mounting;
+  progress_.clamping = offsets.tool.clamping;
   write();
 }
 

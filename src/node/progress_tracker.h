@@ -26,7 +26,8 @@ class ProgressTracker {
   /// @param first pass to grind. @param discard what is known of the last job.
   std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
   /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
-  /// them (0.1 um, A 1e-6 rad), or another wheel has been mounted since. Empty if it may, or if it is another job.
+  /// them (0.1 um, A 1e-6 rad), or another wheel was mounted or a tool clamped since. Empty if it may, or if it is
+  /// another job.
   std::string offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
@@ -34,9 +35,9 @@ class ProgressTracker {
 
   /// Enters a job before it starts.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
-  /// @param mounting MountedWheel::mounting.
+  /// @param offsets with the wheel and the tool with which it begins.
   void begin(const GrindProgram& program, const std::string& digest, const std::string& name, std::uint64_t number,
-             std::uint32_t mounting);
+             const WorkOffsets& offsets);
   /// The job was not started: restores the previous entry.
   void revert();
   /// The job has ended. @param how for display, not empty.

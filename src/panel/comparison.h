@@ -3,6 +3,7 @@
 #include <QString>
 #include <QStringList>
 
+#include <algorithm>
 #include <vector>
 
 namespace grinder {
@@ -12,10 +13,16 @@ struct Comparison {
   QStringList columns;            ///< their heads, but the first, which has none
   std::vector<QStringList> rows;  ///< of one cell more than there are heads
 
+  /// Without the columns that are empty in every row.
   QString html() const {
-    const auto cells = [](const QStringList& texts, const QString& tag) {
+    const auto used = [this](int column) {
+      return std::any_of(rows.begin(), rows.end(), [column](const QStringList& row) { return !row[column].isEmpty(); });
+    };
+    const auto cells = [&](const QStringList& texts, const QString& tag) {
       QString line;
-      for (const QString& text : texts) line += "<" + tag + " align='left'>" + text.toHtmlEscaped() + "</" + tag + ">";
+      for (int i = 0; i < texts.size(); ++i) {
+        if (used(i)) line += "<" + tag + " align='left'>" + texts[i].toHtmlEscaped() + "</" + tag + ">";
+      }
       return "<tr>" + line + "</tr>";
     };
     if (rows.empty()) return "";

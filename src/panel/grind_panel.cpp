@@ -163,18 +163,22 @@ GrindPanel::GrindPanel(QWidget* parent)
 
 void GrindPanel::layOut() {
   auto* by_hand = new QWidget;
+  by_hand->setAutoFillBackground(true);
   auto* hand_layout = new QVBoxLayout(by_hand);
-  hand_layout->setContentsMargins(6, 4, 6, 4);
+  hand_layout->setContentsMargins(6, 6, 6, 6);
   hand_layout->setSpacing(2);
   hand_layout->addWidget(jog_);
-  // What switches off is on a low screen, too.
   hand_layout->addLayout(layOutSwitches());
-  hand_layout->addWidget(touch_off_);
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
-  for (const auto& [page, title] : std::initializer_list<std::pair<QWidget*, const char*>>{
-           {job_, "Job"}, {section_, "Section"}, {by_hand, "Jog"}, {viewTab(), "View"}}) {
-    tabs_->addTab(scrolling(page), title);
+  // Where a button was that jogs there must never be the opposite one: that page does not scroll.
+  for (const auto& [page, title] :
+       std::initializer_list<std::pair<QWidget*, const char*>>{{scrolling(job_), "Job"},
+                                                               {scrolling(section_), "Section"},
+                                                               {by_hand, "Jog"},
+                                                               {scrolling(touch_off_), "Zero"},
+                                                               {scrolling(viewTab()), "View"}}) {
+    tabs_->addTab(page, title);
   }
   messages_->setFixedHeight(messages_->minimumHeight());
 

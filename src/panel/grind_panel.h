@@ -125,7 +125,7 @@ class GrindPanel : public rviz::Panel {
   TouchOffBox* touch_off_;
   LegendBox* legend_;
   QPushButton* look_;         ///< at the tool
-  QTabWidget* tabs_;          ///< of job, section, jog and view
+  QTabWidget* tabs_;          ///< of job, section, jog, zero points and view
   RvizView* rviz_ = nullptr;  ///< null without rviz
   std::optional<flute_grinder::Cutter> looked_at_;
   std::map<MachineEvent, QPushButton*> buttons_;

@@ -10,12 +10,14 @@
 #include <functional>
 
 class QGridLayout;
+class QLabel;
 
 namespace grinder {
 
 /// Asks before something is done that the operator may not want: a text, and the answers below it in two columns, with
 /// *Not yet*, which does nothing, in the same place in each. For a second after it has appeared it takes no answer,
-/// since the click may be meant for what was there before. No key gives one.
+/// since the click may be meant for what was there before, and until its end has been in sight none but *Not yet*: what
+/// decides stands in the last line of the table. No key gives one.
 class Question : public QWidget {
   Q_OBJECT
 
@@ -43,9 +45,13 @@ class Question : public QWidget {
   void showEvent(QShowEvent* event) override;
 
  private:
-  void enableAnswers(bool enabled);
+  void appear();
+  void enableAnswers();
 
   QTextEdit* text_;
+  QPushButton* decline_ = nullptr;
+  QLabel* more_;
+  bool seen_ = false;  ///< its end, since it has appeared
   QGridLayout* layout_;
   QTimer appearing_;
 };

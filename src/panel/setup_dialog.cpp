@@ -32,7 +32,7 @@ namespace {
 constexpr int kPollInterval = 50;                     ///< [ms]
 constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< with the buttons below the sheet
 constexpr int kFewestLines = 12;                      ///< beside the question
-constexpr int kWriteLines = 6;
+constexpr int kWriteLines = 10;
 
 /// Of every operation of a job file.
 std::vector<std::string> digestsOf(const std::string& file) {

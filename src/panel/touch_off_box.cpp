@@ -8,8 +8,7 @@
 
 #include <QDateTime>
 #include <QGridLayout>
-#include <QScrollArea>
-#include <QTimer>
+#include <QVBoxLayout>
 
 #include <cmath>
 #include <utility>
@@ -45,7 +44,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
       offset_(new QLabel),
       tool_(new QLabel),
       question_(new Question("touch", kLinesOfChange)),
-      pages_(new QStackedLayout(this)) {
+      pages_(new QStackedLayout) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
   offset_->setObjectName("work_offset");
@@ -59,7 +58,6 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   auto* form = new QWidget;
   auto* layout = new QGridLayout(form);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->setVerticalSpacing(2);
   layout->addWidget(axis_, 0, 0);
   layout->addWidget(at_, 0, 1);
   layout->addWidget(touch_, 0, 2);
@@ -68,6 +66,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(tool_, 2, 0, 1, 2);
   layout->addWidget(reclamped_, 2, 2);
   layout->setColumnStretch(1, 1);
+  layout->setRowStretch(3, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
   connect(touch_, &QPushButton::clicked, this, [this] {
     if (at_->isGood()) Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()));
@@ -77,6 +76,9 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   question_->addAnswer("confirm_touch", "It is so", "What is shown then counts; nothing moves", 1, 0,
                        [this] { done_(); });
   connect(question_, &Question::answered, this, [this] { pages_->setCurrentIndex(0); });
+  auto* around = new QVBoxLayout(this);
+  around->setContentsMargins(6, 6, 6, 6);
+  around->addLayout(pages_);
   pages_->addWidget(form);
   pages_->addWidget(question_);
   chooseAxis();
@@ -87,12 +89,6 @@ void TouchOffBox::ask(const QString& text, const Comparison& figures, std::funct
   asked_at_ = position_;
   question_->ask(text, figures);
   pages_->setCurrentWidget(question_);
-  // Once it has its place: on a low screen the tab scrolls.
-  QTimer::singleShot(0, this, [this] {
-    for (QWidget* above = parentWidget(); above; above = above->parentWidget()) {
-      if (auto* area = qobject_cast<QScrollArea*>(above)) area->ensureWidgetVisible(question_);
-    }
-  });
 }
 
 void TouchOffBox::offerBack(int axis) {

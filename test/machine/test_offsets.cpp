@@ -219,7 +219,7 @@ TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
   };
   WorkOffsets offsets = offsetsFor(primary);
   const auto is = [&](const std::string& tool, std::uint32_t ground) {
-    offsets.tool = {tool, "d6.yaml", ground, TeethUnknown::kNeverGround};
+    offsets.tool = {tool, "d6.yaml", ground, TeethUnknown::kNeverGround, 0};
   };
   const std::string remedy = "; probe a tooth: grind probe tooth",
                     unknown = "A: where the teeth of this tool are is not known: ";

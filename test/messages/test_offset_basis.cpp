@@ -29,6 +29,7 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   EXPECT_EQ(basis.wheel_width, 0.003);
   EXPECT_TRUE(basis.hasJob());
   EXPECT_EQ(goalFromFile("test/jobs/paper.yaml").wheel_name, "");
+  EXPECT_EQ(basisOf(goalFromFile("test/jobs/paper.yaml"), OffsetMethod::kProbe).wheel_name, "straight, 3 mm wide");
 }
 
 TEST(GoalFromFile, HasWhenTheWheelWasDressed) {
@@ -96,11 +97,12 @@ TEST(OffsetBasis, WorkOffsetsSurviveTheirMessage) {
     offset = {0.001, "anna@grinder", 1.7e9, basisOf(goalFromFile(kJob), OffsetMethod::kProbe), 7};
   }
   offsets.wheel = {"a.yaml", std::string(64, 'a'), 0.1, 7};
-  offsets.tool = {"", "d6.yaml", 0b11, TeethUnknown::kHomed};
+  offsets.tool = {"", "d6.yaml", 0b11, TeethUnknown::kHomed, 5};
   const flute_grinder::WorkOffsets message = toMessage(offsets);
   EXPECT_TRUE(toMessage(fromMessage(message)) == message);
   EXPECT_EQ(message.wheel.mounting, 7U);
   EXPECT_EQ(message.tool.unknown, flute_grinder::ClampedTool::HOMED);
+  EXPECT_EQ(message.tool.clamping, 5U);
   EXPECT_EQ(message.basis[kA].tool_digest, toolDigest(readJobFile(kJob)));
 }
 

@@ -95,7 +95,7 @@ TEST_F(OffsetStoreTest, KeepsWheelAndTool) {
     store.change([](WorkOffsets& offsets) {
       offsets.axes[kY].mounting = 4;
       offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 5};
-      offsets.tool = {std::string(64, 'e'), "my job.yaml", 0b101, TeethUnknown::kNeverGround};
+      offsets.tool = {std::string(64, 'e'), "my job.yaml", 0b101, TeethUnknown::kNeverGround, 7};
     });
   }
   const WorkOffsets kept = OffsetStore(path_, "/grinder").offsets();
@@ -107,6 +107,7 @@ TEST_F(OffsetStoreTest, KeepsWheelAndTool) {
   EXPECT_EQ(kept.tool.digest, std::string(64, 'e'));
   EXPECT_EQ(kept.tool.job_name, "my job.yaml");
   EXPECT_EQ(kept.tool.ground, 0b101U);
+  EXPECT_EQ(kept.tool.clamping, 7U);
 }
 
 TEST_F(OffsetStoreTest, WhatIsInForceAtOnceIsOnTheDiskWithTheNextChange) {

@@ -206,7 +206,7 @@ class TestZeroPoints(OffsetsTest):
                 self.assertIn(text, warning)
 
     def test_of_another_diameter(self):
-        wheel = 'the wheel on the spindle is not confirmed; this job has D 100 mm; once it is mounted, say so: grind confirm-wheel JOB'
+        wheel = 'the wheel on the spindle is not confirmed; this job has straight, 3 mm wide, D 100 mm; once it is mounted, say so: grind confirm-wheel JOB'
         never = wheel + '; X was never set; Y was never set; Z was never set'
         self.check_reported(never)
         self.check_rejected(never + '; set them for this job, or start it with --ignore-offset-check')
@@ -218,16 +218,16 @@ class TestZeroPoints(OffsetsTest):
 
         d6 = gc.job_file(os.path.join(self.folder, 'd6.yaml'), end_diameter_mm=6)
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
-        self.assertEqual(self.said('confirm-wheel', d6), 'the wheel on the spindle is D 100 mm\n')
+        self.assertEqual(self.said('confirm-wheel', d6), 'the wheel on the spindle is straight, 3 mm wide, D 100 mm\n')
         self.grind(0, 'offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)
-        reported = 'Y was set by hand for D 6 mm, wheel D 100 mm (d6.yaml); this job has D 10 mm; ' \
+        reported = 'Y was set by hand for D 6 mm, wheel straight, 3 mm wide, D 100 mm (d6.yaml); this job has D 10 mm; ' \
                "'grind offsets --fit JOB' computes Y"
         self.check_reported(reported)
         self.check_rejected(reported)
         self.check_rejected('Y was set by hand', first_tooth=0, discard=False)
 
         self.assertRegex(self.said('offsets', '--fit', d10),
-                         r'(?m)^Y +3\.0000 .*; computed for D 10 mm, wheel D 100 mm \(d10\.yaml\)$')
+                         r'(?m)^Y +3\.0000 .*; computed for D 10 mm, wheel straight, 3 mm wide, D 100 mm \(d10\.yaml\)$')
         for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
             self.assertAlmostEqual(got, expected, delta=1e-15)
         self.check_reported()
@@ -239,7 +239,9 @@ class TestZeroPoints(OffsetsTest):
 
         # Once there is a place on the disk for it, another start without another blank grinds it a second time.
         self.check_rejected('A: operation flute is ground on this tool already; if another blank is clamped, say so: grind reclamped')
+        clamping = self.offsets().tool.clamping
         self.grind(0, 'reclamped')
+        self.assertEqual(self.offsets().tool.clamping, clamping + 1)
         self.check_reported()
 
         # Of a wheel that has become thinner Y alone could be computed: nothing is.
@@ -296,10 +298,10 @@ class TestToolOfSeveralOperations(OffsetsTest):
 
     def test_each_wants_its_wheel_and_its_zero_points(self):
         self.mount('flute')
-        self.assertIn('the wheel on the spindle is D 100 mm; allowed: for straight_d100_w6.yaml, D 100 mm once it is mounted',
+        self.assertIn('the wheel on the spindle is straight, 1 mm wide, D 100 mm; allowed: for straight_d100_w6.yaml, D 100 mm once it is mounted',
                       self.grind(1, 'touch-off', 'z', '--job', self.job, '--operation', 'primary').stderr)
         self.grind_flutes()
-        self.check_refused('primary', 'the wheel on the spindle is D 100 mm; this job has straight_d100_w6.yaml, D 100 mm')
+        self.check_refused('primary', 'the wheel on the spindle is straight, 1 mm wide, D 100 mm; this job has straight_d100_w6.yaml, D 100 mm')
         self.mount('primary')
         self.check_refused('primary', 'another wheel has been mounted since; Y was computed for')
         self.set_zeros('primary')

@@ -43,7 +43,7 @@ class ProgressTrackerTest : public ::testing::Test {
   }
 
   void begin(const GrindProgram& program, const std::string& digest) {
-    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started, mounting_);
+    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started, now_);
     status_.strokes_ended_at = 0;
     status_.place = {};
   }
@@ -52,11 +52,10 @@ class ProgressTrackerTest : public ::testing::Test {
     tracker_.update(status_);
   }
   std::string offsetRefusal(const std::string& digest, const Axes& offset) {
-    WorkOffsets offsets;
+    WorkOffsets offsets = now_;
     for (std::size_t axis = 0; axis < offsets.axes.size(); ++axis) {
       offsets.axes[axis].value = offset[static_cast<int>(axis)];
     }
-    offsets.wheel.mounting = mounting_;
     const std::string refused = tracker_.offsetRefusal(digest, offsets);
     const bool continues = digest == onDisk().job_digest && !onDisk().finished && refused.empty();
     EXPECT_EQ(tracker_.continues(digest, offsets), continues);
@@ -74,7 +73,7 @@ class ProgressTrackerTest : public ::testing::Test {
   JournalWriter writer_{folder_.path() / "journal", "/test"};
   ProgressTracker tracker_{writer_};
   LoopStatus status_;
-  std::uint32_t mounting_ = 3;
+  WorkOffsets now_;  ///< with wheel and tool
 };
 
 TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
@@ -111,7 +110,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
-  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1, mounting_);
+  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1, now_);
   tracker_.update(status_);
   const Progress entered = onDisk();
   EXPECT_EQ(entered.job_digest, "short");
@@ -122,7 +121,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
 TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   grind(two_, "left", 1);
   const Progress before = onDisk();
-  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1, mounting_);
+  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1, now_);
   EXPECT_EQ(onDisk().job_digest, "refused");
   tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);
@@ -201,9 +200,13 @@ TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
                             Axes(0.1, 0.03, 0, 0.5 - 1.1e-6), Axes(std::nan(""), 0.03, 0, 0.5)}) {
     EXPECT_NE(offsetRefusal("job", other), "") << other.transpose();
   }
-  ++mounting_;
+  ++now_.wheel.mounting;
   EXPECT_EQ(offsetRefusal("job", offset),
             "the job is not finished, and another wheel has been mounted since it began; discard the job");
+  --now_.wheel.mounting;
+  ++now_.tool.clamping;
+  EXPECT_EQ(offsetRefusal("job", offset),
+            "the job is not finished, and a tool was clamped since it began; discard the job");
   grind(shifted, "job", 2);
   EXPECT_EQ(offsetRefusal("job", Axes::Zero()), "") << "it is finished";
   EXPECT_TRUE(onDisk().finished);

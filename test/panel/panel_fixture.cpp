@@ -11,6 +11,7 @@
 #include <QScrollBar>
 #include <QTabBar>
 #include <QTabWidget>
+#include <QTextEdit>
 
 #include <vector>
 
@@ -120,7 +121,14 @@ void Panel::plan() {
 }
 
 void Panel::press(const char* name) {
-  EXPECT_TRUE(QTest::qWaitFor([&] { return the<QPushButton>(name).isVisible() && enabled(name); }, kPatience)) << name;
+  const auto offered = [&] {
+    // An answer to a question is taken once its end was in sight.
+    for (auto* text : panel_->findChildren<QTextEdit*>()) {
+      if (text->isVisible()) text->verticalScrollBar()->setValue(text->verticalScrollBar()->maximum());
+    }
+    return the<QPushButton>(name).isVisible() && enabled(name);
+  };
+  EXPECT_TRUE(QTest::qWaitFor(offered, kPatience)) << name;
   click(name);
 }
 

@@ -463,7 +463,7 @@ class BeforeTheSwivelIsSet : public OnStage {
 TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
   EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
   setSwivel(43.32 * M_PI / 180, false);
-  for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+  for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
     panel.openTab(tab);
     EXPECT_TRUE(panel.isVisible("swivel"));
     EXPECT_EQ(panel.label("swivel"), "Swivel set to 43.32 deg");
@@ -478,7 +478,8 @@ TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
 
 TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmedOnly) {
   start();
-  for (const char* shown : {"paper.yaml (D 10 mm, ", ", wheel D 100 mm", "31.769 deg", "not confirmed"}) {
+  for (const char* shown :
+       {"paper.yaml (D 10 mm, ", ", wheel straight, 3 mm wide, D 100 mm", "31.769 deg", "not confirmed"}) {
     EXPECT_TRUE(panel.says("swivel_question", shown)) << shown;
   }
   panel.picture("swivel_question");
@@ -541,7 +542,7 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
       panel.text("unfinished_question"),
       "Not finished: published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), at tooth 2, pass 3. "
       "It cannot be continued once this one starts:\npaper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 "
-      "tooth), wheel D 100 mm");
+      "tooth), wheel straight, 3 mm wide, D 100 mm");
   EXPECT_FALSE(panel.isVisible("keep")) << "the chosen file is another job";
   panel.picture("discard_question");
   EXPECT_EQ(goals().size(), 0U);

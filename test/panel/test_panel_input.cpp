@@ -134,7 +134,7 @@ TEST_P(InALanguage, WhatIsNoNumberInRangeStaysAsItWasTyped) {
 }
 
 TEST_F(OnStage, AUnitThatIsDeletedInPartComesBack) {
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   auto& box = panel.the<QAbstractSpinBox>("touch_at");
   typed(box, "5");
   const QString whole = box.text();
@@ -146,7 +146,7 @@ TEST_F(OnStage, AUnitThatIsDeletedInPartComesBack) {
 }
 
 TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus"));
   const auto enter = [&](const char* box, const char* text) { typed(panel.the<QAbstractSpinBox>(box), text); };
   const auto red = [&](const char* box) {
@@ -154,6 +154,7 @@ TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   };
   enter("touch_at", "abc");
   WAIT_FOR(!panel.enabled("touch_off") && red("touch_at"));
+  panel.openTab("Jog");
   enter("jog_speed", "1e9");
   WAIT_FOR(!panel.enabled("jog_x_plus") && red("jog_speed"));
   EXPECT_TRUE(panel.enabled("jog_a_plus")) << "A has a speed of its own";
@@ -166,8 +167,10 @@ TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   panel.openTab("Jog");
   EXPECT_FALSE(panel.enabled("touch_off")) << "it was only hidden";
   enter("jog_speed", "120");
+  WAIT_FOR(panel.enabled("jog_x_plus") && !red("jog_speed"));
+  panel.openTab("Zero");
   enter("touch_at", "0.5");
-  WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus") && !red("touch_at") && !red("jog_speed"));
+  WAIT_FOR(panel.enabled("touch_off") && !red("touch_at"));
   enter("touch_at", "500000");
   WAIT_FOR(red("touch_at"));
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
@@ -315,7 +318,7 @@ TEST_F(OnStage, ADoubleClickPressesAButtonOnce) {
   Names clicked;
   for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
     stage.be(state, panel);
-    for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+    for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
       panel.openTab(tab);
       for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
         for (const int pause : {100, 250, 400, 500}) {
@@ -422,7 +425,7 @@ class Keys : public OnStage {
 };
 
 TEST_F(Keys, WhatTabComesToAfterATouchOffThatIsOffIsNotPressed) {
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   auto& at = panel.the<QAbstractSpinBox>("touch_at");
   WAIT_FOR(panel.enabled("spindle_on") && panel.enabled("touch_off"));
   at.setFocus();
@@ -444,7 +447,7 @@ TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
   Names pressed;
   for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
     stage.be(state, panel);
-    for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+    for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
       panel.openTab(tab);
       for (auto* button : panel.widget().findChildren<QPushButton*>()) {
         // Qt's own, which choose a file.
@@ -473,7 +476,7 @@ TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
 TEST_F(Keys, SpaceHoldsWhateverHasTheFocus) {
   stage.be("running", panel);
   int widgets = 0;
-  for (const char* tab : {"Job", "Section", "Jog", "View"}) {
+  for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
     panel.openTab(tab);
     for (auto* widget : panel.widget().findChildren<QWidget*>()) {
       if (!widget->isVisible() || !widget->isEnabled() || widget->focusPolicy() == Qt::NoFocus) continue;

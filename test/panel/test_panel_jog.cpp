@@ -3,6 +3,7 @@
 #include "flute_grinder/job/axes.h"
 #include "stage.h"
 
+#include <QAbstractScrollArea>
 #include <QDateTime>
 #include <QTabWidget>
 
@@ -64,6 +65,13 @@ TEST_F(Jogging, AxesMayBeJoggedAndTouchedOffWhereTheStateAllows) {
   stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
   WAIT_FOR(enabledButtons().empty());
   EXPECT_FALSE(panel.enabled("touch_off"));
+}
+
+// Scrolled, the opposite one would be where a button was.
+TEST_F(Jogging, ItsButtonsDoNotScroll) {
+  for (auto* page : panel.widget().findChildren<QAbstractScrollArea*>()) {
+    for (const std::string& name : kButtons) EXPECT_FALSE(page->isAncestorOf(&panel.the<QPushButton>(name.c_str())));
+  }
 }
 
 TEST_F(Jogging, ItsButtonsAreLargeAndApart) {
@@ -144,6 +152,7 @@ TEST_F(Jogging, AClickMovesByTheStepAtTheSpeed) {
 }
 
 TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
+  panel.openTab("Zero");
   auto& axes = panel.the<QComboBox>("touch_axis");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");
   stage.publishOffsets({});
@@ -174,6 +183,7 @@ TEST_F(Jogging, TouchOffSetsTheOffsetOfTheChosenAxis) {
 }
 
 TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
+  panel.openTab("Zero");
   flute_grinder::WorkOffsets offsets;
   offsets.values = {-0.002866, 0, 0, 0};
   offsets.set_at[kX] = ros::Time(1.7e9);
@@ -223,6 +233,7 @@ TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
 }
 
 TEST_F(Jogging, ANewClampingIsAskedForAndSaid) {
+  panel.openTab("Zero");
   flute_grinder::WorkOffsets offsets;
   offsets.tool.digest = std::string(64, 'a');
   offsets.tool.job_name = "reamer.yaml";
@@ -237,6 +248,7 @@ TEST_F(Jogging, ANewClampingIsAskedForAndSaid) {
 }
 
 TEST_F(Jogging, TouchOffOfYAndZNeedsTheJob) {
+  panel.openTab("Zero");
   auto& axes = panel.the<QComboBox>("touch_axis");
   axes.setCurrentText("Y");
   stage.publishOffsets({});
@@ -272,6 +284,8 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   axes.setCurrentText("Y");
   panel.the<QDoubleSpinBox>("touch_at").setValue(12.02);
   panel.picture("jog");
+  panel.openTab("Zero");
+  panel.picture("zero_points");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(offset().empty());
 }

@@ -3,6 +3,9 @@
 #include "flute_grinder/messages/conversions.h"
 #include "stage.h"
 
+#include <QScrollBar>
+#include <QTextEdit>
+
 namespace grinder::test_panel_offsets {
 
 /// With the paper's job, of D 10 mm, planned.
@@ -43,7 +46,7 @@ class ZeroPoints : public OnStage {
 TEST_F(ZeroPoints, AreAskedForBesideWhatTheJobHas) {
   setFor(0.006);
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("Y"));
-  for (const char* shown : {"paper.yaml (D 10 mm, ", "touched off for D 6 mm, wheel D 100 mm (other.yaml)", "2 mm"}) {
+  for (const char* shown : {"paper.yaml (D 10 mm, ", "touched off for D 6 mm (other.yaml)", "2 mm"}) {
     EXPECT_TRUE(panel.says("offsets_question", shown)) << shown;
   }
   panel.picture("offset_question");
@@ -61,7 +64,7 @@ TEST_F(ZeroPoints, OfAnotherWheelAreAskedForOnceTheWheelIsConfirmed) {
   panel.picture("wheel_question");
   panel.press("confirm_wheel");
   WAIT_FOR(stage.get(&Stage::wheels).size() == 1);
-  EXPECT_EQ(stage.get(&Stage::wheels)[0].job.wheel_name, "");
+  EXPECT_EQ(stage.get(&Stage::wheels)[0].job.wheel_name, "straight, 3 mm wide");
   EXPECT_FALSE(stage.get(&Stage::wheels)[0].again);
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
   EXPECT_TRUE(goals().empty()) << "only planned";
@@ -130,16 +133,36 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   WAIT_FOR(!panel.isVisible("ignore_offset_check"));
 }
 
+TEST_F(ZeroPoints, OfALongQuestionMustHaveBeenInSightBeforeTheyAreIgnored) {
+  flute_grinder::GrindGoal goal = goalFromFile(kPaper.toStdString());
+  goal.cutter.end_diameter = 0.006;
+  goal.process.setup_swivel = 0.3;
+  setFor(goal);
+  WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+  panel.click("start");
+  WAIT_FOR(panel.enabled("decline_offsets"));
+  QScrollBar& bar = *panel.the<QTextEdit>("offsets_question").verticalScrollBar();
+  ASSERT_LT(bar.value(), bar.maximum());
+  EXPECT_FALSE(panel.enabled("ignore_offset_check"));
+  EXPECT_TRUE(panel.isVisible("offsets_more"));
+  panel.picture("offset_question_to_scroll");
+  bar.setValue(bar.maximum());
+  EXPECT_TRUE(panel.enabled("ignore_offset_check"));
+  EXPECT_FALSE(panel.isVisible("offsets_more"));
+  bar.setValue(0);
+  EXPECT_TRUE(panel.enabled("ignore_offset_check")) << "it was in sight";
+}
+
 TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
   const auto asks = [&] { return panel.isVisible("confirm_touch"); };
   stage.publishOffsets({});
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
   WAIT_FOR(panel.enabled("touch_off"));
   stage.change([&] { stage.touch_refusal = "it would change by much", stage.large_change = true; });
   panel.click("touch_off");
   WAIT_FOR(asks());
-  EXPECT_TRUE(panel.says("touch_question", "For paper.yaml, wheel D 100 mm."));
+  EXPECT_TRUE(panel.says("touch_question", "For paper.yaml, wheel straight, 3 mm wide, D 100 mm."));
   panel.press("decline_touch");
   EXPECT_TRUE(touches().empty());
   panel.click("touch_off");
@@ -162,7 +185,7 @@ TEST_F(ZeroPoints, AreTouchedOffForTheJobAndALargeChangeIsAskedFor) {
 
 TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
   stage.publishOffsets({});
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   panel.the<QComboBox>("touch_axis").setCurrentText("Y");
   auto& at = panel.the<QDoubleSpinBox>("touch_at");
   at.setValue(16.9);

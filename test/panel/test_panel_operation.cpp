@@ -102,13 +102,13 @@ TEST_F(Operation, ThatWasLeftIsTakenByAClick) {
 
 TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {
   stage.publishOffsets({});
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   panel.the<QComboBox>("touch_axis").setCurrentText("Z");
   panel.press("touch_off");
   WAIT_FOR(panel.says("messages", "Touch-off: choose the operation of the job first"));
   panel.openTab("Job");
   panel.chooseOperation("3 secondary relief");
-  panel.openTab("Jog");
+  panel.openTab("Zero");
   panel.click("touch_off");
   panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 1);

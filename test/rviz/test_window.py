@@ -45,14 +45,14 @@ class TestWindow(unittest.TestCase):
         left, top, width, height = self.rviz.numbers('window')
         self.assertTrue(left >= 0 and top >= 0 and left + width <= right and top + height <= bottom)
         places = []
-        for tab in ['Job', 'Section', 'Jog', 'View']:
+        for tab in ['Job', 'Section', 'Jog', 'Zero', 'View']:
             self.rviz.operate('tab ' + tab)
             seen = self.rviz.buttons()
             places.append([seen[name] for name in sorted(STOPS | {'messages'})])
             for _, left, top, width, height in places[-1]:
                 self.assertTrue(left >= 0 and top >= 0 and left + width <= right and top + height <= bottom)
-            self.assertTrue(tab != 'Jog' or {'jog_y_minus', 'spindle_off', 'coolant_off'} <= set(seen))
-        self.assertEqual(places, places[:1] * 4)
+            self.assertTrue(tab != 'Jog' or {'jog_y_plus', 'jog_y_minus', 'spindle_off', 'coolant_off'} <= set(seen))
+        self.assertEqual(places, places[:1] * 5)
 
     def test_1_panel_stays_while_a_job_runs(self):
         run = self.start()

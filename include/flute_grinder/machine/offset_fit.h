@@ -17,9 +17,9 @@ namespace grinder {
 /// A work offset, or the wheel on the spindle, that does not fit a job.
 struct OffsetMismatch {
   std::string what;              ///< "X", "Y", "Z", "A" or "wheel"
-  std::string set;               ///< what it is or was set for, for the operator, in mm and deg
-  std::string asked;             ///< what the job has, in the same way
-  std::string reason;            ///< both in one sentence
+  std::string set;               ///< what it is or was set for and is not asked, for the operator, in mm and deg
+  std::string asked;             ///< what the job has instead, in the same way
+  std::string reason;            ///< both in one sentence, with all that it was set for
   int axis = 0;                  ///< whose offset `change` is for
   std::optional<double> change;  ///< to be added to the offset, so that it fits; nothing if it must be set anew [m]
 };

@@ -31,7 +31,7 @@ constexpr auto& rowsOf(OffsetMethod) noexcept { return kOffsetMethods; }
 struct OffsetBasis {
   OffsetMethod method = OffsetMethod::kUnknown;
   std::string job_name;       ///< the job file's; may be empty
-  std::string wheel_name;     ///< the wheel file's; empty if the job has the wheel's figures itself
+  std::string wheel_name;     ///< the wheel file's; profile and width if the job has the wheel's figures itself
   std::string wheel_digest;   ///< of the wheel's figures but wear and width; empty if it was set for no particular job
   double end_diameter = 0;    ///< of the cutter [m]
   double wheel_diameter = 0;  ///< to which Y = 0 is set [m]
@@ -57,7 +57,7 @@ struct WorkOffset {
 
 /// The wheel on the spindle, as an operator has confirmed it.
 struct MountedWheel {
-  std::string name;            ///< the wheel file's; empty if a job has the wheel's figures itself
+  std::string name;            ///< as OffsetBasis::wheel_name
   std::string digest;          ///< as OffsetBasis::wheel_digest; empty until one is confirmed
   double diameter = 0;         ///< nominal [m]
   std::uint32_t mounting = 0;  ///< grows with every change of the wheel: X, Y and Z count for one mounting alone
@@ -87,13 +87,14 @@ struct ClampedTool {
   std::string job_name;      ///< of the job that ground or probed them; may be empty
   std::uint32_t ground = 0;  ///< a bit for each of the tool's operations that is finished, from the lowest
   TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< why, without a digest
+  std::uint32_t clamping = 0;  ///< grows whenever a tool is clamped: an unfinished job goes on in one clamping alone
 
   /// @param operation of any size: a message may ask for one that there is not.
   bool isGround(int operation) const noexcept {
     return operation >= 0 && operation < 32 && ((ground >> operation) & 1U) != 0;
   }
   /// Its teeth are where nobody knows.
-  void forget(TeethUnknown why) { *this = {"", "", 0, why}; }
+  void forget(TeethUnknown why) { *this = {"", "", 0, why, clamping}; }
 };
 
 /// The work offset of every axis. The coordinates of a job are the work's; those of limits, park position, homing and

@@ -33,7 +33,7 @@ std::string changesText(const std::string& path, const JobSetup& setup) {
     double before = 0;
     const bool is_there = file.has(edit.key) && file.take(edit.key, "", before);
     const double change = std::stod(edit.value) - before;
-    text += format("  %-30s", edit.key.c_str());
+    text += format("  %-32s", edit.key.c_str());
     text += is_there ? format("%.8g in the file, %s solved", before, edit.value.c_str())
                      : "not in the file, " + edit.value + " solved";
     text += !is_there ? "\n" : change == 0 ? ": the same\n" : format(": %+.5f\n", change);

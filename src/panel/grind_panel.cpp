@@ -573,9 +573,10 @@ void GrindPanel::askReclamped() {
   const auto offsets = link_->view().offsets;
   if (!offsets) return;
   const std::string tool = toolText(fromMessage(*offsets).tool);
-  touch_off_->ask("Was a tool clamped? Where its teeth are is then not known.",
-                  {{"now", "then"}, {{"tool", QString::fromStdString(tool), "a blank, or to be probed"}}},
-                  [this] { link_->sayReclamped(reply("reclamped: where the teeth are is not known")); });
+  touch_off_->ask(
+      "Was a tool clamped? Where its teeth are is then not known, and an unfinished job cannot be continued.",
+      {{"now", "then"}, {{"tool", QString::fromStdString(tool), "a blank, or to be probed"}}},
+      [this] { link_->sayReclamped(reply("reclamped: where the teeth are is not known")); });
 }
 
 void GrindPanel::confirmWheel(const flute_grinder::GrindGoal& goal) {

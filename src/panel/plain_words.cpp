@@ -52,8 +52,8 @@ std::string describe(const flute_grinder::GrinderState& state) {
   if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
   // Switched off while the wheel is lifted, they keep the job from being resumed.
   const bool is_lifted = isInJob(machine) && after(machine, MachineEvent::kSpindleOn);
-  if (is_lifted && !state.spindle_commanded) text += "The spindle is off. ";
-  if (is_lifted && !state.coolant_commanded) text += "The coolant is off. ";
+  if (is_lifted && !state.spindle_commanded) text += "The spindle is off: switch it on first. ";
+  if (is_lifted && !state.coolant_commanded) text += "The coolant is off: switch it on first. ";
   // In the other states of a job it belongs there.
   if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(machine);
   if (machine == MachineState::kReady && !state.homed)

@@ -4,7 +4,6 @@
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel/panel_button.h"
-#include "panel/text_view.h"
 
 #include <QDateTime>
 #include <QGridLayout>
@@ -20,6 +19,7 @@ namespace {
 constexpr double kMoved = 10e-6;  ///< by which an axis at rest does not move [m], A [rad]
 constexpr int kDecimals = 4;      ///< of positions and offsets
 constexpr int kLinesOfChange = 4;
+constexpr int kLinesOfOffset = 3;
 constexpr double kFarthest = 9999;  ///< [mm or deg]
 
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
@@ -52,9 +52,10 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // A long text must not make the panel grow.
   offset_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
-  offset_->setMinimumHeight(2 * offset_->fontMetrics().lineSpacing() + 4);
+  offset_->setMinimumHeight(kLinesOfOffset * offset_->fontMetrics().lineSpacing() + 4);
   tool_->setObjectName("tool");
-  tool_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
+  tool_->setWordWrap(true);
+  tool_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* form = new QWidget;
   auto* layout = new QGridLayout(form);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -64,7 +65,7 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(offset_, 1, 0, 1, 2);
   layout->addWidget(back_, 1, 2, Qt::AlignTop);
   layout->addWidget(tool_, 2, 0, 1, 2);
-  layout->addWidget(reclamped_, 2, 2);
+  layout->addWidget(reclamped_, 2, 2, Qt::AlignTop);
   layout->setColumnStretch(1, 1);
   layout->setRowStretch(3, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
@@ -116,7 +117,7 @@ void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
   reclamped_->setEnabled(has_services && view.state && !isInJob(static_cast<MachineState>(view.state->state)));
   const QString tool = view.offsets ? QString::fromStdString(toolText(fromMessage(*view.offsets).tool)) : "";
   tool_->setToolTip(tool);
-  showName(*tool_, "Tool: " + tool);
+  tool_->setText("Tool: " + tool);
   const QString text = offsetText(view);
   if (text == offset_->text()) return;
   offset_->setText(text);

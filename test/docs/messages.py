@@ -68,7 +68,7 @@ MESSAGES = {
                                   'the job is done', 'the job was sent', 'confirm-swivel: the swivel is set to',
                                   'confirm-wheel: the wheel on the spindle is', 'reclamped: where the teeth are is not known',
                                   'Set it back?', 'is what it was', 'a blank, or to be probed',
-                                  'Was a tool clamped? Where its teeth are is then not known.',
+                                  'Was a tool clamped? Where its teeth are is then not known, and an unfinished job cannot be continued.',
                                   'touch-off: the work offset of', '. It was not started in this panel.',
                                   'Choose which grinder this panel shows',
                                   'Look at the tool',

@@ -314,10 +314,15 @@ TEST_F(Jogging, SpindleAndCoolantAreSwitchedWhereTheStateAllowsAndTheDriveHasThe
     EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"}));
     panel.click("spindle_off");
     WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_off"}));
-    EXPECT_EQ(panel.label("meaning").find("The spindle is off. "), 0U) << panel.label("meaning");
+    EXPECT_EQ(panel.label("meaning").find("The spindle is off: switch it on first. "), 0U) << panel.label("meaning");
+    stage.change([&] { stage.state.coolant_commanded = 0; });
+    WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_on"}));
+    panel.picture("spindle_and_coolant_off");
+    stage.change([&] { stage.state.coolant_commanded = 1; });
+    WAIT_FOR(enabled() == (Names{"spindle_on", "coolant_off"}));
     panel.click("spindle_on");
     WAIT_FOR(enabled() == (Names{"spindle_off", "coolant_off"}));
-    EXPECT_EQ(panel.label("meaning").find("is off. "), std::string::npos) << panel.label("meaning");
+    EXPECT_EQ(panel.label("meaning").find("is off: "), std::string::npos) << panel.label("meaning");
   }
   stage.be("disabled", panel);
   EXPECT_EQ(enabled(), (Names{"spindle_off", "coolant_off"})) << "off is never refused";

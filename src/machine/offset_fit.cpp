@@ -59,7 +59,7 @@ std::string figures(int axis, const OffsetBasis& basis, const OffsetBasis* other
   add(on.height, isSame(basis.height, to.height), "height " + shown(basis.height, Unit::kMetre));
   add(on.placing, isSameSwivel(basis, to), "swivel " + shown(basis.swivel, Unit::kRadian));
   add(on.wheel, same_wheel, looks_same ? "another " + wheel : wheel);
-  add(on.placing, isSame(basis.wheel_width, to.wheel_width),
+  add(on.placing, !same_wheel || isSame(basis.wheel_width, to.wheel_width),
       "width of the wheel " + shown(basis.wheel_width, Unit::kMetre));
   return list;
 }

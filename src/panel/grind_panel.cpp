@@ -165,7 +165,7 @@ void GrindPanel::layOut() {
   auto* by_hand = new QWidget;
   by_hand->setAutoFillBackground(true);
   auto* hand_layout = new QVBoxLayout(by_hand);
-  hand_layout->setContentsMargins(6, 6, 6, 6);
+  hand_layout->setContentsMargins(6, 4, 6, 2);
   hand_layout->setSpacing(2);
   hand_layout->addWidget(jog_);
   hand_layout->addLayout(layOutSwitches());

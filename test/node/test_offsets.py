@@ -247,7 +247,7 @@ class TestZeroPoints(OffsetsTest):
         # Of a wheel that has become thinner Y alone could be computed: nothing is.
         other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
         self.assertRegex(self.grind(1, 'offsets', '--fit', other).stderr,
-                         r'(?m)^X was set by hand for .*; this job has width of the wheel 2 mm; set it anew$')
+                         r'(?m)^X was set by hand for .*; this job has wheel straight, 2 mm wide, D 100 mm; set it anew$')
         self.assertAlmostEqual(self.offsets().values[Y], 3 * MM, delta=1e-15)
 
         # The question for the second is answered by no: the first is as it was.

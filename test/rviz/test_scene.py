@@ -159,7 +159,8 @@ class TestScene(unittest.TestCase):
         self.assertTrue(left >= 0 and top >= 0 and left + width <= 1280 and top + height <= 800)
         # With room for the title of a window, and a task bar.
         _, _, min_width, min_height = self.rviz.numbers('least')
-        self.assertTrue(min_width <= 800 and min_height <= 760)
+        self.assertLessEqual(min_width, 800)
+        self.assertLessEqual(min_height, 760)
 
     def test_3_view_of_the_operator_stays_until_another_tool_comes(self):
         turned = [3.5, 0.5, 0.05, 0.002, 0.001, 0]

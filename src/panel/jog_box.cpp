@@ -18,7 +18,7 @@ namespace {
 constexpr int kRepeatInterval = 25;
 
 /// What a hurried hand hits, and not its neighbour [px].
-constexpr int kButtonHeight = 40, kApart = 8, kOppositesApart = 20, kRowsApart = 2;
+constexpr int kButtonHeight = 40, kApart = 8, kOppositesApart = 20;
 
 constexpr double kContinuous = 0;                                 ///< among the steps
 constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< [mm], A [deg]
@@ -58,10 +58,10 @@ JogBox::JogBox(QWidget* parent)
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setHorizontalSpacing(kApart);
-  layout->setVerticalSpacing(kRowsApart);
-  layout->setRowMinimumHeight(2, kApart - 2 * kRowsApart);
-  layout->setRowMinimumHeight(4, kOppositesApart - 2 * kRowsApart);
-  layout->setRowMinimumHeight(6, kApart - 2 * kRowsApart);
+  layout->setVerticalSpacing(2);
+  layout->setRowMinimumHeight(2, kApart);
+  layout->setRowMinimumHeight(4, kOppositesApart);
+  layout->setRowMinimumHeight(6, kApart);
   layout->addWidget(new QLabel("Step"), 0, 0);
   layout->addWidget(step_, 0, 1, 1, 3);
   layout->addLayout(speeds, 1, 0, 1, 4);

@@ -128,6 +128,7 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
   ASSERT_NO_FATAL_FAILURE(startAndBeAskedFor("X, Y, Z"));
   EXPECT_FALSE(panel.isVisible("fit_offsets"));
   EXPECT_TRUE(panel.says("offsets_question", "never set"));
+  EXPECT_FALSE(panel.says("offsets_question", "off by")) << "a column with nothing in it";
   panel.picture("offset_question_never");
   setFor(0.01);
   WAIT_FOR(!panel.isVisible("ignore_offset_check"));

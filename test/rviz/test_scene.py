@@ -41,19 +41,20 @@ class Rviz:
         for topic in TOPICS:
             rospy.Subscriber('/grinder/' + topic, MarkerArray, self.messages[topic].append)
         rospy.Subscriber('/grinder/legend', Legend, self.legends.append)
-        gc.poll(self.draws, 'the first frames of rviz', interval=0.1)
+        # One that dies as it starts does so before, and another is started.
+        gc.poll(lambda: self.frames() > 10, 'the first frames of rviz', interval=0.1)
         self._report = rospy.ServiceProxy('/rviz/report', Trigger, persistent=True)
         self._look = rospy.ServiceProxy('/rviz/look', Trigger)
         self._operate = rospy.ServiceProxy('/rviz/operate', Trigger)
 
     @staticmethod
-    def draws():
-        """Whether rviz has drawn some frames: one that dies as it starts does so before, and another is started."""
+    def frames():
+        """How many frames the rviz of now has drawn: 0 while it starts or ends."""
         try:
             said = rospy.ServiceProxy('/rviz/report', Trigger)()
         except rospy.ServiceException:
-            return False
-        return said.success and int(said.message.split()[1]) > 10
+            return 0
+        return int(said.message.split()[1]) if said.success else 0
 
     def report(self, key):
         """What follows a key in the lines that rviz reports on itself."""

@@ -119,7 +119,7 @@ void collision(benchmark::State& state) {
   clear.collision_clearance = 1e-3;
   for (auto _ : state) {
     const ClosestPlace closest =
-        checkCollision(GrindProgram(job, clear, clear.park), MachineShapes(urdf.str())).closest.value();
+        checkCollision(GrindProgram(job, clear, clear.park), MachineShapes(MachineModel(urdf.str()))).closest.value();
     state.counters["closest_mm"] = closest.distance * 1e3;
     state.SetLabel(closest.first + " and " + closest.second);
   }

@@ -15,7 +15,8 @@ INSTALLED = ('curve', 'drive')
 ARROW = re.compile(r'`(\w+)`(?: \(([^)]+)\))?')
 INCLUDE = re.compile(r'(?m)^#include [<"](.+?)[>"]')
 CORE = ('curve', 'job', 'motion', 'machine')
-LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h'}
+LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h',
+             'urdfdom': r'urdf_\w+/\w+\.h', 'tinyxml2': r'tinyxml2\.h'}
 
 
 def read_modules():

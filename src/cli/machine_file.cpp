@@ -32,19 +32,10 @@ XmlRpc::XmlRpcValue toXmlRpc(const YAML::Node& node) {
 
 }  // namespace
 
-LoopConfig readMachineFiles(const std::string& parameters, const std::string& urdf) {
+MachineFiles readMachineFiles(const std::string& parameters, const std::string& urdf) {
   const YAML::Node root = parseYaml(readTextFile(parameters), parameters);
-  return readMachineConfig(readUrdfFile(urdf), ParameterReader(toXmlRpc(root), parameters));
-}
-
-std::string readUrdfFile(const std::string& path) {
-  std::string text = readTextFile(path, kMaxUrdfFile);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos || text[first] != '<') {
-    throw JobFileError(path +
-                       ": is not a URDF, which is XML and begins with '<'; the machine's YAML goes with --machine");
-  }
-  return text;
+  const MachineModel model(readTextFile(urdf, kMaxUrdfFile), urdf);
+  return {model, readMachineConfig(model, ParameterReader(toXmlRpc(root), parameters))};
 }
 
 std::string packageFile(const std::string& path) {

@@ -126,14 +126,15 @@ void printChecks(const GrindJob& job, const CutterFigures& ground, const std::op
 
 int runPlan(const PlanOptions& options) {
   const ValidJob job(readJobFile(options.job, {}, options.operation));
-  const Machine machine = readMachineFiles(options.parameters, options.urdf).machine;
+  const MachineFiles files = readMachineFiles(options.parameters, options.urdf);
+  const Machine& machine = files.config.machine;
   std::optional<SetpointCsv> csv;
   std::function<void(const Setpoint&)> visit;
   if (!options.csv.empty()) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  const PlannedJob plan = planWholeJob(job, machine, MachineShapes(readUrdfFile(options.urdf)), machine.park, visit);
+  const PlannedJob plan = planWholeJob(job, machine, MachineShapes(files.model), machine.park, visit);
   if (csv) csv->close();
   if (options.json) {
     Json json = toJson(plan);

@@ -3,8 +3,6 @@
 #include "flute_grinder/collision/joint_pose.h"
 #include "flute_grinder/job/axes.h"
 
-#include <urdf_parser/urdf_parser.h>
-
 #include <cmath>
 #include <stdexcept>
 
@@ -45,33 +43,12 @@ Solid toSolid(const urdf::Collision& shape, const urdf::Link& link) {
   return solid;
 }
 
-void requireJoints(const urdf::ModelInterface& model) {
-  for (const auto& [name, joint] : model.joints_) {
-    if (joint->type == urdf::Joint::FLOATING || joint->type == urdf::Joint::PLANAR) {
-      refuse("joint " + name + " is floating or planar; allowed: fixed, prismatic, revolute, continuous");
-    }
-  }
-  const auto require = [&](const char* name, bool linear) {
-    const auto joint = model.getJoint(name);
-    if (!joint) refuse(std::string("no joint ") + name);
-    if ((joint->type == urdf::Joint::PRISMATIC) != linear || joint->type == urdf::Joint::FIXED) {
-      refuse(std::string("joint ") + name + " must be " + (linear ? "prismatic" : "revolute"));
-    }
-  };
-  for (int axis = 0; axis < kAxisCount; ++axis) require(kJointNames[static_cast<std::size_t>(axis)], axis != kA);
-  require(kYZero, true);
-  require(kSwivel, false);
-  if (!model.getLink(kWheel)) refuse(std::string("no link ") + kWheel);
-}
-
 }  // namespace
 
-MachineShapes::MachineShapes(const std::string& urdf) : model_(urdf::parseURDF(urdf)) {
-  if (!model_) throw std::invalid_argument("robot_description is not a URDF");
-  requireJoints(*model_);
-  chuck_ = model_->getJoint(kJointNames[kA])->child_link_name;
+MachineShapes::MachineShapes(const MachineModel& model)
+    : model_(model), chuck_(model.joint(kJointNames[kA]).child_link_name) {
   if (isBelow(kWheel, chuck_)) refuse("link wheel turns with axis_a");
-  for (const urdf::Link* at = &link(kWheel); at && !isBelow(chuck_, at->name); at = at->getParent().get()) {
+  for (const urdf::Link* at = &model_.link(kWheel); at && !isBelow(chuck_, at->name); at = at->getParent().get()) {
     wheel_side_ = at->name;
   }
   if (wheel_side_.empty()) refuse("joint axis_a moves with link wheel");
@@ -80,11 +57,11 @@ MachineShapes::MachineShapes(const std::string& urdf) : model_(urdf::parseURDF(u
 
 std::vector<MachinePart> MachineShapes::parts(double y_zero, double swivel) const {
   const Eigen::Isometry3d turning = pose(chuck_, {{kYZero, y_zero}, {kSwivel, swivel}});
-  const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
+  const urdf::Joint& axis_a = model_.joint(kJointNames[kA]);
   const Eigen::Isometry3d axis =
       turning * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), toEigen(axis_a.axis));
   std::vector<MachinePart> parts;
-  for (const auto& [name, link] : model_->links_) {
+  for (const auto& [name, link] : model_.urdf().links_) {
     for (const urdf::CollisionSharedPtr& shape : link->collision_array) {
       MachinePart part = on(name, y_zero, swivel);
       const Eigen::Isometry3d link_pose = part.solid.pose;
@@ -109,7 +86,7 @@ MachinePart MachineShapes::on(const std::string& name, double y_zero, double swi
     part.motion.col(axis) = pose(name, joints).translation() - part.solid.pose.translation();
     joints[kJointNames[static_cast<std::size_t>(axis)]] = 0;
   }
-  const urdf::Link* carrier = link(name).getParent().get();
+  const urdf::Link* carrier = model_.link(name).getParent().get();
   while (carrier && carrier->collision_array.empty()) carrier = carrier->getParent().get();
   if (carrier) part.carrier = carrier->name;
   return part;
@@ -117,7 +94,7 @@ MachinePart MachineShapes::on(const std::string& name, double y_zero, double swi
 
 Eigen::Isometry3d MachineShapes::pose(const std::string& name, const Joints& joints) const {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (const urdf::Link* at = &link(name); at->parent_joint; at = at->getParent().get()) {
+  for (const urdf::Link* at = &model_.link(name); at->parent_joint; at = at->getParent().get()) {
     const urdf::Joint& joint = *at->parent_joint;
     const auto position = joints.find(joint.name);
     pose = childPose(joint, position == joints.end() ? 0 : position->second) * pose;
@@ -126,7 +103,7 @@ Eigen::Isometry3d MachineShapes::pose(const std::string& name, const Joints& joi
 }
 
 bool MachineShapes::isBelow(const std::string& name, const std::string& other) const {
-  for (const urdf::Link* at = &link(name); at; at = at->getParent().get()) {
+  for (const urdf::Link* at = &model_.link(name); at; at = at->getParent().get()) {
     if (at->name == other) return true;
   }
   return false;

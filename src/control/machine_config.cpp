@@ -1,9 +1,5 @@
 #include "flute_grinder/control/machine_config.h"
 
-#include "flute_grinder/control/swivel_range.h"
-
-#include <urdf/model.h>
-
 #include <cmath>
 #include <sstream>
 
@@ -55,18 +51,6 @@ double limit(const ParameterReader& p, const std::string& joint, const LimitName
                        " is missing, and robot_description has no such limit; allowed: true, with " + name.value);
 }
 
-const urdf::Joint& axisJoint(const urdf::Model& model, int axis) {
-  const char* name = kJointNames[static_cast<std::size_t>(axis)];
-  const auto joint = model.getJoint(name);
-  if (!joint) throw ParameterError(std::string("robot_description has no joint ") + name);
-  const int type = axis == kA ? urdf::Joint::REVOLUTE : urdf::Joint::PRISMATIC;
-  if (joint->type != type) {
-    throw ParameterError(std::string("robot_description: joint ") + name + " must be " +
-                         (axis == kA ? "revolute, with limits over several turns" : "prismatic"));
-  }
-  return *joint;
-}
-
 void readProbing(const ParameterReader& p, const std::string& joint, int axis, LoopConfig& config) {
   const auto value = [&](const char* what, double max) {
     return p.number(std::string("probing/") + what + "/" + joint, kMin, max);
@@ -77,8 +61,8 @@ void readProbing(const ParameterReader& p, const std::string& joint, int axis, L
   probing.max_spread[axis] = value("max_spread", 1);
 }
 
-void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, LoopConfig& config) {
-  const urdf::Joint& joint = axisJoint(model, axis);
+void readAxis(const MachineModel& model, const ParameterReader& p, int axis, LoopConfig& config) {
+  const urdf::Joint& joint = model.joint(kJointNames[static_cast<std::size_t>(axis)]);
   const std::string name = joint.name;
   const std::string ns = "joint_limits/" + name + "/";
   AxisLimits& limits = config.machine.limits;
@@ -86,7 +70,7 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
   if (states(p, name, "has_position_limits", {"min_position", "max_position"})) {
     limits.min_position[axis] = p.number(ns + "min_position", -kMax, kMax);
     limits.max_position[axis] = p.number(ns + "max_position", -kMax, kMax);
-  } else if (joint.limits) {
+  } else {
     limits.min_position[axis] = joint.limits->lower;
     limits.max_position[axis] = joint.limits->upper;
   }
@@ -97,7 +81,7 @@ void readAxis(const urdf::Model& model, const ParameterReader& p, int axis, Loop
          << limits.max_position[axis] << " " << axisUnit(axis) << "; allowed: the lower below the upper";
     throw ParameterError(text.str());
   }
-  limits.max_velocity[axis] = limit(p, name, kVelocity, joint.limits ? joint.limits->velocity : 0);
+  limits.max_velocity[axis] = limit(p, name, kVelocity, joint.limits->velocity);
   limits.max_acceleration[axis] = limit(p, name, kAcceleration, 0);
   limits.max_jerk[axis] = limit(p, name, kJerk, 0);
   config.following_error[axis] = p.number("constraints/" + name + "/trajectory", kMin, kMax);
@@ -125,11 +109,9 @@ MachineGeometry readMachineGeometry(const ParameterReader& p) {
   return geometry;
 }
 
-LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) {
-  urdf::Model model;
-  if (!model.initString(urdf)) throw ParameterError("robot_description is not a URDF");
+LoopConfig readMachineConfig(const MachineModel& model, const ParameterReader& p) {
   LoopConfig config;
-  config.name = model.getName();
+  config.name = model.urdf().getName();
   config.machine.period = 1 / p.number("control_rate", 10, 20000);
   config.feedback_timeout = p.number("feedback_timeout", 0, 10);
   config.enable_timeout = p.number("enable_timeout", 0, 60);
@@ -145,7 +127,7 @@ LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& p) 
   config.late_slow_down = p.number("late_cycle/slow_down", 2, kMax);
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kMax);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
-  config.machine.swivel = readSwivelRange(urdf);
+  config.machine.swivel = model.swivel();
   return config;
 }
 

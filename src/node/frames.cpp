@@ -3,11 +3,8 @@
 #include "flute_grinder/collision/joint_pose.h"
 #include "flute_grinder/job/grind_job.h"
 
-#include <urdf_parser/urdf_parser.h>
-
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace grinder {
 
@@ -41,16 +38,7 @@ bool Frames::SetUp::operator==(const SetUp& other) const {
   return wheel_y == other.wheel_y && height == other.height && swivel == other.swivel && (offset == other.offset).all();
 }
 
-Frames::Frames(const std::string& urdf, const FirstView& first_view)
-    : model_(urdf::parseURDF(urdf)), first_view_(first_view) {
-  if (!model_->getJoint("z_zero")) throw std::invalid_argument("robot_description: no joint z_zero");
-  for (const char* frame : {kWork, kCutter, kContact}) {
-    if (model_->getLink(frame)) {
-      throw std::invalid_argument(std::string("robot_description: link ") + frame +
-                                  "; allowed: another name, since the node itself publishes the frame " + frame);
-    }
-  }
-}
+Frames::Frames(const MachineModel& model, const FirstView& first_view) : model_(model), first_view_(first_view) {}
 
 void Frames::publish(const Axes& position, const Axes& offset, int tooth, const ros::Time& stamp) {
   const SetUp set_up = setUpFor(offset.isFinite().select(offset, 0));
@@ -76,13 +64,13 @@ Frames::SetUp Frames::setUpFor(const Axes& offset) const {
 void Frames::publishSetUp(const ros::Time& stamp) {
   const SetUp& set_up = *published_;
   std::vector<geometry_msgs::TransformStamped> frames;
-  const urdf::Joint& axis_a = *model_->getJoint(kJointNames[kA]);
+  const urdf::Joint& axis_a = model_.joint(kJointNames[kA]);
   const Eigen::Translation3d end(set_up.offset[kX], 0, 0);
   frames.push_back(transformMessage(axis_a.parent_link_name, kWork, childPose(axis_a, 0) * end, stamp));
   frames.push_back(transformMessage(axis_a.child_link_name, kCutter,
                                     end * Eigen::AngleAxisd(set_up.offset[kA], Eigen::Vector3d::UnitX()), stamp));
   const auto add_child = [&](const char* name, double at) {
-    const urdf::Joint& joint = *model_->getJoint(name);
+    const urdf::Joint& joint = model_.joint(name);
     frames.push_back(transformMessage(joint.parent_link_name, joint.child_link_name, childPose(joint, at), stamp));
   };
   // The joints of the axes have machine positions.

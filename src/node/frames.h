@@ -2,16 +2,15 @@
 
 #include "flute_grinder/geometry/ground_edge.h"
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/first_view.h"
 
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
-#include <urdf_world/types.h>
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -28,10 +27,8 @@ namespace grinder {
 /// Not thread safe; not for the control thread.
 class Frames {
  public:
-  /// @param urdf the robot description in XML, good for MachineShapes.
   /// @param first_view what is shown until there is a job.
-  /// @throw std::invalid_argument if it has no joint z_zero, or a link by the name of a frame above.
-  Frames(const std::string& urdf, const FirstView& first_view);
+  Frames(const MachineModel& model, const FirstView& first_view);
 
   /// From now on the frames are those of this job. Without one they are those of the first view's blank and wheel, not
   /// swivelled, and there is no contact.
@@ -63,7 +60,7 @@ class Frames {
   void publishSetUp(const ros::Time& stamp);
   void publishContact(double x, int tooth, const ros::Time& stamp);
 
-  urdf::ModelInterfaceSharedPtr model_;
+  const MachineModel model_;
   const FirstView first_view_;
   tf2_ros::StaticTransformBroadcaster set_up_frames_;
   tf2_ros::TransformBroadcaster moving_frames_;

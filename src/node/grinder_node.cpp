@@ -92,7 +92,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
     throw ParameterError("parameter " + nh_.resolveName("robot_description") + " is missing; allowed: a URDF");
   }
   const ParameterReader parameters(private_nh_);
-  const LoopConfig config = readMachineConfig(urdf, parameters);
+  const MachineModel model(urdf);
+  const LoopConfig config = readMachineConfig(model, parameters);
   const std::string name = private_nh_.getNamespace();
   loader_ = std::make_unique<pluginlib::ClassLoader<Drive>>("flute_grinder", "grinder::Drive");
   const NodeParameters own = readNodeParameters(parameters, name, join(loader_->getDeclaredClasses()));
@@ -111,9 +112,9 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
   machine_.publish(toMessage(machine, can, config.jog_timeout));
   loop_ = std::make_unique<ControlLoop>(*drive_, config, journal.on_disk.wheel);
-  planner_ = std::make_unique<Planner>(config.machine, MachineShapes(urdf));
+  planner_ = std::make_unique<Planner>(config.machine, MachineShapes(model));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
-                                           own.thresholds, urdf, own.first_view);
+                                           own.thresholds, model, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   watchdog_ = std::make_unique<LoopWatchdog>(*loop_, *drive_);

@@ -59,7 +59,7 @@ flute_grinder::JobProgress toMessage(const Progress& progress) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const std::string& urdf,
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const MachineModel& model,
                      const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
@@ -71,7 +71,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                    }),
       diagnostic_updater_(nh, private_nh),
       robot_status_(nh),
-      frames_(urdf, first_view),
+      frames_(model, first_view),
       scene_(private_nh, first_view),
       recorder_(private_nh.getNamespace(), machine, history),
       thread_(kTickPeriod, [this] { tick(); }) {

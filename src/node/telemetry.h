@@ -36,10 +36,9 @@ class Telemetry {
   /// @param nh the node's namespace, for joint_states.
   /// @param private_nh the node's private namespace, for everything else.
   /// @param loop,journal,offsets,history must outlive this object.
-  /// @param urdf as for Frames.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
             const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
-            const DiagnosticThresholds& thresholds, const std::string& urdf, const FirstView& first_view);
+            const DiagnosticThresholds& thresholds, const MachineModel& model, const FirstView& first_view);
 
   /// Starts publishing. @param watchdog must outlive this object.
   void start(const LoopWatchdog& watchdog) {

@@ -1,12 +1,12 @@
 #include "panel/setup_dialog.h"
 
-#include "flute_grinder/control/swivel_range.h"
 #include "flute_grinder/drive/parameters.h"
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "panel/panel_button.h"
@@ -157,7 +157,7 @@ SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
     if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
       return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");
     }
-    const Range swivel = readSwivelRange(static_cast<std::string>(*description));
+    const Range swivel = MachineModel(static_cast<std::string>(*description)).swivel();
     const auto result = solveJobSetup(job, swivel, keep);
     if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
     const auto& setup = std::get<JobSetup>(result);

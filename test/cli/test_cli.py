@@ -158,7 +158,7 @@ class TestPlan(CommandLine):
 
     def test_yaml_is_no_urdf(self):
         self.assertEqual(self.grind(2, 'plan', PAPER_JOB, '--urdf', PAPER_JOB).stderr,
-                         PAPER_JOB + ": is not a URDF, which is XML and begins with '<'; the machine's YAML goes with --machine\n")
+                         PAPER_JOB + ' is not a URDF, by line 1 (XML_ERROR_PARSING_TEXT); allowed: XML with the root <robot>\n')
 
     def test_machine_file_of_two_documents(self):
         with open(gc.package_file('config/grinder.yaml')) as file:

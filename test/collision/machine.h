@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/collision/machine_shapes.h"
 #include "temp_folder.h"
 
 #include <string>
@@ -7,6 +8,8 @@
 namespace grinder {
 
 inline std::string shippedUrdf() { return test_support::readFile("urdf/grinder.urdf"); }
+inline MachineShapes shapesOf(const std::string& urdf) { return MachineShapes(MachineModel(urdf)); }
+inline MachineShapes shippedShapes() { return shapesOf(shippedUrdf()); }
 
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
@@ -37,18 +40,20 @@ struct SmallMachine {
                           const std::string& child, const std::string& axis) {
       return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" +
              child + "\"/><axis xyz=\"" + axis +
-             "\"/><limit lower=\"-9\" upper=\"9\" velocity=\"1\" effort=\"1\"/></joint>";
+             "\"/><limit lower=\"-1.5\" upper=\"1.5\" velocity=\"1\" effort=\"1\"/></joint>";
     };
     const auto link = [](const std::string& name, const std::string& shapes) {
       return "<link name=\"" + name + "\">" + shapes + "</link>";
     };
     return "<?xml version=\"1.0\"?><robot name=\"small\">" + link("base", base) + link("table", table) +
-           link("cutter", cutter) + link("y_datum", "") + link("column", column) + link("wheel_head", wheel_head) +
-           link("wheel", wheel) + joint("axis_x", "prismatic", "base", "table", "-1 0 0") +
-           joint("axis_a", "revolute", "table", "cutter", "-1 0 0") +
+           link("chuck", cutter) + link("y_datum", "") + link("column", column) + link("z_datum", "") +
+           link("wheel_head", wheel_head) + link("wheel", wheel) +
+           joint("axis_x", "prismatic", "base", "table", "-1 0 0") +
+           joint("axis_a", "revolute", "table", "chuck", "-1 0 0") +
            joint("y_zero", "prismatic", "base", "y_datum", "0 1 0") +
            joint("axis_y", "prismatic", "y_datum", "column", "0 1 0") +
-           joint("axis_z", "prismatic", "column", "wheel_head", "0 0 1") +
+           joint("z_zero", "prismatic", "column", "z_datum", "0 0 1") +
+           joint("axis_z", "prismatic", "z_datum", "wheel_head", "0 0 1") +
            joint("wheel_swivel", "revolute", "wheel_head", "wheel", "0 -1 0") + "</robot>";
   }
 };

@@ -70,7 +70,7 @@ struct Checked : CollisionResult {
 Checked checked(const GrindJob& job, double collision_clearance = 1e-3, const std::optional<Axes>& start = {}) {
   const Machine machine = machineWith(collision_clearance);
   const GrindProgram program(ValidJob(job), machine, start.value_or(machine.park));
-  return {checkCollision(program, MachineShapes(roomyUrdf())), program};
+  return {checkCollision(program, shapesOf(roomyUrdf())), program};
 }
 
 /// The wheel's rim is at a radius of 5 + 0.5 mm when A indexes and X leaves, and the shank's is 6 mm.

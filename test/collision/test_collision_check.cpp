@@ -33,7 +33,7 @@ CollisionJob plainJob(double swivel = 0, double height = 0) {
 Axes axes(double x, double y, double z = 0, double a = 0) { return Axes(x, y, z, a); }
 
 ClosestPlace closestOf(const std::string& urdf, const CollisionJob& job, const std::vector<Axes>& path) {
-  return CollisionCheck(MachineShapes(urdf), job).closest(path);
+  return CollisionCheck(shapesOf(urdf), job).closest(path);
 }
 
 /// The rim meets the edge of the collet, 21 mm from the axis at X = 62 mm, in the plane Z = 0.
@@ -79,7 +79,7 @@ TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
 /// Many legs, all pairs of the shipped machine, angled wheels: the closest of close positions all along the path.
 TEST(CollisionCheck, AgreesWithManyPositionsOfAPath) {
   auto between = numbers(9);
-  const MachineShapes machine(shippedUrdf());
+  const MachineShapes machine = shippedShapes();
   int apart = 0;
   for (int i = 0; i < 6; ++i) {
     CollisionJob job = plainJob(between(-50, 50) * kDegree, between(-0.01, 0.01));
@@ -147,7 +147,7 @@ TEST(CollisionCheck, TheRunOutEndsWhereTheWheelIsClearOfTheShank) {
 
 TEST(CollisionCheck, RefusesWhatIsNoFigureAndAMachineThatDoesNotHoldTheCutter) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const MachineShapes machine(SmallMachine().urdf());
+  const MachineShapes machine = shapesOf(SmallMachine().urdf());
   const auto broken = [&](const auto& change) {
     CollisionJob job = plainJob();
     change(job);
@@ -166,7 +166,7 @@ TEST(CollisionCheck, RefusesWhatIsNoFigureAndAMachineThatDoesNotHoldTheCutter) {
   EXPECT_THROW(check.closest({axes(0, 0), axes(nan, 0)}), std::invalid_argument);
   SmallMachine without_holder;
   without_holder.cutter = "";
-  EXPECT_THROW(CollisionCheck(MachineShapes(without_holder.urdf()), plainJob()), std::invalid_argument);
+  EXPECT_THROW(CollisionCheck(shapesOf(without_holder.urdf()), plainJob()), std::invalid_argument);
 }
 
 }  // namespace test_collision_check

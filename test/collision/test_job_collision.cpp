@@ -42,7 +42,7 @@ GrindProgram programOf(const ValidJob& job, const Axes& offset = Axes::Zero()) {
 
 CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUrdf(),
                         const Axes& offset = Axes::Zero()) {
-  return checkCollision(programOf(ValidJob(job), offset), MachineShapes(urdf));
+  return checkCollision(programOf(ValidJob(job), offset), shapesOf(urdf));
 }
 
 /// The wheel's rim and the edge of the collet, in the plane Z = 0.
@@ -125,7 +125,7 @@ TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
   longer.process.wheel_diameter = 0.5;
   longer.cutter.flute_length = 0.16;
   const ValidJob job = ValidJob(longer).withZCorrections({bentJob().zCorrectionOf(0)});
-  const CollisionResult result = checkCollision(programOf(job), MachineShapes(shippedUrdf()));
+  const CollisionResult result = checkCollision(programOf(job), shippedShapes());
   ASSERT_TRUE(result.reason);
   EXPECT_EQ(result.reason->move, programOf(job).moves().at(result.closest->leg).kind);
   EXPECT_EQ(result.reason->x, result.closest->axes[kX]);

@@ -19,7 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 LoopConfig read(const std::string& urdf, const YAML::Node& parameters) {
-  return readMachineConfig(urdf, ParameterReader(test_support::toXmlRpc(parameters), "/grinder"));
+  return readMachineConfig(MachineModel(urdf), ParameterReader(test_support::toXmlRpc(parameters), "/grinder"));
 }
 
 void expectAxes(const Axes& axes, const Axes& expected) {
@@ -31,9 +31,6 @@ TEST(MachineConfig, TakesTheShippedMachineWithTheLimitsOfItsUrdf) {
   expectAxes(config.machine.limits.min_position, {-0.1, -0.02, -0.05, -125.663706});
   expectAxes(config.machine.limits.max_position, {0.3, 0.15, 0.1, 125.663706});
   expectAxes(config.machine.limits.max_velocity, {0.2, 0.1, 0.1, 12.566});
-  constexpr double kSixtyDegrees = 1.04719755;
-  EXPECT_NEAR(config.machine.swivel.from, -kSixtyDegrees, 1e-7);
-  EXPECT_NEAR(config.machine.swivel.to, kSixtyDegrees, 1e-7);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -53,10 +50,14 @@ struct Description {
   std::string y = joint("axis_y", "prismatic", limitOf("-0.12", "0.32", "0.22"));
   std::string z = joint("axis_z", "prismatic", limitOf("-0.13", "0.33", "0.23"));
   std::string a = joint("axis_a", "revolute", limitOf("-114", "134", "24"));
-  std::string swivel = joint("wheel_swivel", "revolute", limitOf("-0.7", "1.1", "0"));
+  std::string set_up =
+      joint("wheel_swivel", "revolute", limitOf("-0.7", "1.1", "0")) +
+      joint("y_zero", "prismatic", limitOf("0", "1", "0")) + joint("z_zero", "prismatic", limitOf("0", "1", "0")) +
+      "<link name=\"wheel\"/><joint name=\"spindle\" type=\"fixed\"><parent link=\"link_wheel_swivel\"/>"
+      "<child link=\"wheel\"/></joint>";
 
   std::string urdf() const {
-    return "<robot name=\"grinder\"><link name=\"base\"/>" + x + y + z + a + swivel + "</robot>";
+    return "<robot name=\"grinder\"><link name=\"base\"/>" + x + y + z + a + set_up + "</robot>";
   }
 };
 
@@ -184,60 +185,20 @@ TEST(MachineConfig, NeedsLimitsThatAUrdfHasNot) {
   }
 }
 
-void expectRefused(const std::string& what, const std::string& urdf, const std::vector<std::string>& words) {
-  const std::string error = errorOf(urdf, parameters());
-  ASSERT_FALSE(error.empty()) << what << " was taken";
-  for (const std::string& word : words) {
-    EXPECT_NE(error.find(word), std::string::npos) << what << ": " << error << "\n" << word;
-  }
-}
-
-TEST(MachineConfig, RefusesABadDescriptionWithWhatIsAllowed) {
-  const std::string no_urdf = "robot_description is not a URDF";
-  for (const std::string& text : {std::string("this is no XML"), std::string(), Description().urdf().substr(0, 200)}) {
-    expectRefused(text, text, {no_urdf});
-  }
-  const std::string any = limitOf("-1", "1", "1"), no_velocity = "/grinder/joint_limits/axis_x/has_velocity_limits";
-  const auto refuse = [](std::string Description::*which, const std::string& name, const std::string& type,
-                         const std::string& limit, const std::vector<std::string>& words) {
-    Description description;
-    description.*which = joint(name, type, limit);
-    expectRefused(name + " " + type + " " + limit, description.urdf(), words);
-    description.*which = "";
-    expectRefused("none", description.urdf(), {"robot_description has no joint " + name});
-  };
-  using D = Description;
-  const std::string swivel = "wheel_swivel";
-  refuse(&D::swivel, swivel, "continuous", "", {swivel, "revolute, with limits"});
-  refuse(&D::swivel, swivel, "revolute", "", {no_urdf});
-  refuse(&D::swivel, swivel, "revolute", limitOf("0.5", "-0.5", "0"),
-         {swivel, "0.5 to -0.5 rad", "the lower below the upper"});
-  refuse(&D::swivel, swivel, "revolute", limitOf("-1.6", "1", "0"), {swivel, "-1.6 to 1 rad", "within -pi/2 to pi/2"});
-  refuse(&D::x, "axis_x", "revolute", any, {"axis_x", "prismatic"});
-  refuse(&D::y, "axis_y", "fixed", "", {"axis_y", "prismatic"});
-  refuse(&D::a, "axis_a", "continuous", "", {"axis_a", "revolute", "several turns"});
-  refuse(&D::a, "axis_a", "prismatic", any, {"axis_a", "revolute"});
-  refuse(
-      &D::z, "axis_z", "prismatic", limitOf("0.3", "0.1", "1"),
-      {"parameters /grinder/joint_limits/axis_z/min_position, max_position (or the limits of robot_description): 0.3 "
-       "to 0.1 m; allowed: the lower below the upper"});
-  refuse(&D::a, "axis_a", "revolute", "<limit velocity=\"1\" effort=\"1\"/>", {"axis_a", "robot_description): 0 to 0"});
+TEST(MachineConfig, RefusesLimitsOfTheUrdfThatAreNone) {
+  const std::string no_velocity = "/grinder/joint_limits/axis_x/has_velocity_limits";
+  Description swapped, endless;
+  swapped.z = joint("axis_z", "prismatic", limitOf("0.3", "0.1", "1"));
+  endless.a = joint("axis_a", "revolute", "<limit velocity=\"1\" effort=\"1\"/>");
+  EXPECT_EQ(errorOf(swapped.urdf(), parameters()),
+            "parameters /grinder/joint_limits/axis_z/min_position, max_position (or the limits of robot_description): "
+            "0.3 to 0.1 m; allowed: the lower below the upper");
+  EXPECT_NE(errorOf(endless.urdf(), parameters()).find("robot_description): 0 to 0 rad"), std::string::npos);
   for (const char* none : {"0", "-2"}) {
-    refuse(&D::x, "axis_x", "prismatic", limitOf("-1", "1", none),
-           {no_velocity + " is missing", "robot_description", "with max_velocity"});
-  }
-}
-
-// Whether or not the URDF reader accepts such a number, the machine must not get it as a limit.
-TEST(MachineConfig, TakesFiniteLimitsOfTheUrdfOnly) {
-  for (const std::string number : {"nan", "inf", "-inf", "1e999"}) {
-    SCOPED_TRACE(number);
-    for (const std::string& limit :
-         {limitOf("-1", number, "1"), limitOf(number, "1", "1"), limitOf("-1", "1", number)}) {
-      Description description;
-      description.x = joint("axis_x", "prismatic", limit);
-      EXPECT_NE(errorOf(description.urdf(), parameters()), "") << limit;
-    }
+    Description still;
+    still.x = joint("axis_x", "prismatic", limitOf("-1", "1", none));
+    const std::string error = errorOf(still.urdf(), parameters());
+    EXPECT_EQ(error.find("parameter " + no_velocity + " is missing"), 0U) << error;
   }
 }
 

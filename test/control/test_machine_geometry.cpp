@@ -5,7 +5,6 @@
 #include "yaml_parameters.h"
 
 #include <gtest/gtest.h>
-#include <urdf/model.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
@@ -21,11 +20,7 @@ namespace test_machine_geometry {
 
 const double kDegree = std::acos(-1.0) / 180;
 
-urdf::Model urdfModel() {
-  urdf::Model model;
-  EXPECT_TRUE(model.initString(test_support::readFile("urdf/grinder.urdf")));
-  return model;
-}
+MachineModel machineModel() { return MachineModel(test_support::readFile("urdf/grinder.urdf")); }
 
 /// Of config/grinder.yaml.
 MachineGeometry shippedGeometry() {
@@ -34,10 +29,10 @@ MachineGeometry shippedGeometry() {
 }
 
 /// Where a link stands in the root's frame.
-Eigen::Isometry3d poseOf(const urdf::Model& model, const std::string& name,
+Eigen::Isometry3d poseOf(const MachineModel& model, const std::string& name,
                          const std::map<std::string, double>& joints) {
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  for (auto link = model.getLink(name); link->parent_joint; link = link->getParent()) {
+  for (const urdf::Link* link = &model.link(name); link->parent_joint; link = link->getParent().get()) {
     const urdf::Joint& joint = *link->parent_joint;
     const urdf::Pose& origin = joint.parent_to_joint_origin_transform;
     const Eigen::Vector3d axis(joint.axis.x, joint.axis.y, joint.axis.z);
@@ -57,10 +52,10 @@ Eigen::Isometry3d poseOf(const urdf::Model& model, const std::string& name,
 }
 
 TEST(WorkZero, KnowsTheShippedMachineAsItsUrdfShowsIt) {
-  const urdf::Model model = urdfModel();
+  const MachineModel model = machineModel();
   const MachineGeometry machine = shippedGeometry();
   const auto shapeOf = [&](const char* link, const char* name) {
-    for (const auto& shape : model.getLink(link)->visual_array) {
+    for (const auto& shape : model.link(link).visual_array) {
       if (shape->name == name) return shape;
     }
     throw std::runtime_error(name);
@@ -79,7 +74,7 @@ TEST(WorkZero, KnowsTheShippedMachineAsItsUrdfShowsIt) {
 
 /// Wherever work axis, collet and swivel are: what the URDF has otherwise is added.
 TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
-  const urdf::Model model = urdfModel();
+  const MachineModel model = machineModel();
   std::mt19937 engine(12);
   const auto within = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(engine); };
   for (int i = 0; i < 200; ++i) {

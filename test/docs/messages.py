@@ -31,8 +31,9 @@ MESSAGES = {
     'src/control/loop_requests.cpp': (),
     'src/control/loop_thread.cpp': (),
     'src/control/machine_config.cpp': (),
+    'src/machine/machine_model.cpp': (),
+    'src/machine/strict_urdf.cpp': (),
     'src/control/request_box.cpp': ('refused: allowed:', 'refused: allowed: hold, cancel, disable'),  # wrong calls of the class
-    'src/control/swivel_range.cpp': (),
     'include/flute_grinder/machine/loop_fault.h': (),
     'src/machine/offset_fit.cpp': ('width of the wheel', 'another tool', 'not confirmed',
                                      'A as the flutes were ground, or probed on a tooth'),
@@ -49,7 +50,6 @@ MESSAGES = {
     'src/geometry/touch_off.cpp': (),
     'src/messages/continue_job.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),
-    'src/node/frames.cpp': (),
     'src/node/goal_server.cpp': ('planned and checked; nothing moved',),
     'src/node/grinder_node.cpp': (),
     'src/node/journal_writer.cpp': (),

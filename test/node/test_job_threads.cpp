@@ -40,7 +40,7 @@ actionlib_msgs::GoalID id(int number) {
 
 class JobThreads : public ::testing::Test {
  protected:
-  JobThreads() : planner_(machineConfig().machine, MachineShapes(shippedUrdf())) {
+  JobThreads() : planner_(machineConfig().machine, shippedShapes()) {
     test_support::setUp(drive_, machineConfig());
     drive_.on_read = [this](FakeDrive& drive) { drive.status.emergency_stop = emergency_stop_; };
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());

@@ -80,10 +80,9 @@ BAD_PARAMETERS = [
      'the drive flute_grinder/SimulatedDrive: parameter /doubtful/hardware/axis_x/time_constant is missing; allowed: a number'),
 ]
 
-# Text of the robot description and its replacement, what the message must say. The others are test_machine_config.cpp's.
+# Text of the robot description and its replacement, what the message must say. The others are those of the tests of MachineModel.
 BAD_DESCRIPTIONS = [
-    ('joint name="z_zero"', 'joint name="z_other"', 'no joint z_zero'),
-    ('"z_datum"', '"cutter"', 'link cutter; allowed: another name'),
+    ('radius="0.022"', 'radius="0,022"', 'link wheel, <visual> flange, <geometry>, <cylinder> radius = "0,022"; allowed: a number'),
 ]
 
 

@@ -24,7 +24,7 @@ Machine machine() {
   return m;
 }
 
-const MachineShapes kShapes(shippedUrdf());
+const MachineShapes kShapes = shippedShapes();
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 

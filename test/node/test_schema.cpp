@@ -260,8 +260,8 @@ struct Section {
 const Section kSections[]{
     {"machine",
      [](const ParameterReader& p, const ParameterReader&) {
-       static const std::string urdf = readTextFile("urdf/grinder.urdf", 1'000'000);
-       readMachineConfig(urdf, p);
+       static const MachineModel model(readTextFile("urdf/grinder.urdf", 1'000'000));
+       readMachineConfig(model, p);
      }},
     {"node", [](const ParameterReader& p, const ParameterReader&) { readNodeParameters(p, "/grinder", "a text"); }},
     {"simulated_drive",

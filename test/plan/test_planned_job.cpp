@@ -26,7 +26,7 @@ Machine machine() {
 }
 
 PlannedJob planned(const GrindJob& job, const Machine& on = machine(), const PlanWatch& watch = {}) {
-  return planWholeJob(ValidJob(job), on, MachineShapes(shippedUrdf()), on.park, {}, watch);
+  return planWholeJob(ValidJob(job), on, shippedShapes(), on.park, {}, watch);
 }
 
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
@@ -47,7 +47,7 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
   EXPECT_EQ(whole.complete->to, job.cutter.flute_length);
   EXPECT_EQ(whole.figures.rake.to, checkGroundCutter(with_law).figures.rake.to);
-  const auto closest = checkCollision(*whole.program, MachineShapes(shippedUrdf())).closest;
+  const auto closest = checkCollision(*whole.program, shippedShapes()).closest;
   EXPECT_EQ(whole.closest->distance, closest->distance);
   EXPECT_EQ(whole.closest->leg, closest->leg);
 }

@@ -1,9 +1,7 @@
 #pragma once
 
 #include "flute_grinder/collision/solid.h"
-
-#include <urdf_model/model.h>
-#include <urdf_world/types.h>
+#include "flute_grinder/machine/machine_model.h"
 
 #include <Eigen/Geometry>
 
@@ -23,14 +21,13 @@ struct MachinePart {
   bool turns = false;       ///< turns with the cutter
 };
 
-/// The machine's bodies: the <collision> shapes of a URDF with the joints and links that urdf/grinder.urdf has. The
+/// The machine's bodies: the <collision> shapes of its URDF. The
 /// bodies that turn with axis_a count as what they sweep in a turn, so that the angle of A makes no difference.
 class MachineShapes {
  public:
-  /// @param urdf the robot description in XML.
-  /// @throw std::invalid_argument naming the link, or what else is wrong: no joint of an axis, no link `wheel`, or a
-  ///        shape that is no box, cylinder or sphere.
-  explicit MachineShapes(const std::string& urdf);
+  /// @throw std::invalid_argument naming the link: a shape that is no box, cylinder or sphere, or wheel and cutter on
+  ///        one side of the machine.
+  explicit MachineShapes(const MachineModel& model);
 
   /// The bodies with the joints y_zero [m] and wheel_swivel [rad] set for a job.
   std::vector<MachinePart> parts(double y_zero, double swivel) const;
@@ -47,9 +44,8 @@ class MachineShapes {
 
   Eigen::Isometry3d pose(const std::string& link, const Joints& joints) const;
   bool isBelow(const std::string& link, const std::string& other) const;
-  const urdf::Link& link(const std::string& name) const { return *model_->getLink(name); }
 
-  urdf::ModelInterfaceSharedPtr model_;
+  MachineModel model_;
   std::string chuck_;
   std::string wheel_side_;  ///< the first link toward the wheel that the cutter does not hang on
 };

@@ -2,8 +2,7 @@
 
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/drive/parameters.h"
-
-#include <string>
+#include "flute_grinder/machine/machine_model.h"
 
 namespace grinder {
 
@@ -12,10 +11,9 @@ namespace grinder {
 /// homing_timeout, spindle_timeout, jog_timeout, jog_velocity/<joint>, probing/..., max_job_duration,
 /// collision_clearance, geometry/..., late_cycle/slow_down and .../fault; the swivel's range from the URDF alone. Every
 /// axis must have complete limits of position, velocity, acceleration and jerk.
-/// @param urdf the robot description in XML.
 /// @param parameters the node's parameters.
 /// @throw ParameterError
-LoopConfig readMachineConfig(const std::string& urdf, const ParameterReader& parameters);
+LoopConfig readMachineConfig(const MachineModel& model, const ParameterReader& parameters);
 
 /// Reads the parameters geometry/... alone; geometry/probe may be missing, on a machine without one.
 /// @throw ParameterError

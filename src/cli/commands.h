@@ -46,7 +46,7 @@ class Commands {
 /// What is done with a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `goal`, `report`, `history`.
 void addJobCommands(Commands& commands);
 
-/// What is done with a wheel, and the zeros that follow from it: `wheel`, `zeros`.
+/// What is done with a wheel, the zeros that follow from it, and the machine's files: `wheel`, `zeros`, `machine`.
 void addWheelCommands(Commands& commands);
 
 /// Requests to the machine: `override`, `confirm-swivel`, `jog`, `status` and the requests without arguments.

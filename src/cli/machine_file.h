@@ -1,23 +1,32 @@
 #pragma once
 
-#include "flute_grinder/control/loop_config.h"
-#include "flute_grinder/machine/machine_model.h"
+#include "flute_grinder/control/machine_config.h"
 
 #include <string>
+#include <vector>
 
 namespace grinder {
 
 struct MachineFiles {
   MachineModel model;
-  LoopConfig config;
+  MachineConfig config;
 };
 
 /// Reads the machine from the files that roslaunch loads, without ROS running.
-/// @param parameters YAML, the node's parameters.
+/// @param parameters YAML, the node's parameters; those of a file override those of the files before it.
 /// @param urdf the robot description.
-/// @throw JobFileError if a file cannot be read; ParameterError or std::invalid_argument if the machine cannot
-///        be used.
-MachineFiles readMachineFiles(const std::string& parameters, const std::string& urdf);
+/// @throw JobFileError if a file cannot be read, has a key twice, or a number that roslaunch would read otherwise;
+///        ParameterError or std::invalid_argument if the machine cannot be used.
+MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const std::string& urdf);
+
+/// Arguments of `grind machine`.
+struct MachineOptions {
+  std::vector<std::string> parameters;
+  std::string urdf;
+};
+
+/// Reads and checks the files, and prints in a line which drive they name and where they are. @return the exit status.
+int runMachine(const MachineOptions& options);
 
 /// A file of this package, as `config/grinder.yaml`. @throw JobFileError if the shell does not know the package.
 std::string packageFile(const std::string& path);

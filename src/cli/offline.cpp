@@ -126,8 +126,8 @@ void printChecks(const GrindJob& job, const CutterFigures& ground, const std::op
 
 int runPlan(const PlanOptions& options) {
   const ValidJob job(readJobFile(options.job, {}, options.operation));
-  const MachineFiles files = readMachineFiles(options.parameters, options.urdf);
-  const Machine& machine = files.config.machine;
+  const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
+  const Machine& machine = files.config.loop.machine;
   std::optional<SetpointCsv> csv;
   std::function<void(const Setpoint&)> visit;
   if (!options.csv.empty()) {

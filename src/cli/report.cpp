@@ -140,7 +140,7 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   const bool draws = !options.html.empty() || !options.pdf.empty();
   if (!draws && !options.json) throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
   ReportContext context;
-  context.limits = machineInfo(readMachineFiles(options.parameters, options.urdf).config, "");
+  context.limits = machineInfo(readMachineFiles({options.parameters}, options.urdf).config.loop, "");
   context.tolerances =
       readTolerances(options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
   context.words = Json::object();

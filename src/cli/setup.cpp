@@ -51,7 +51,7 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
 
 int runSetup(const SetupOptions& options) {
   const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep), options.operation);
-  const LoopConfig config = readMachineFiles(options.parameters, options.urdf).config;
+  const LoopConfig config = readMachineFiles({options.parameters}, options.urdf).config.loop;
   const Range swivel = config.machine.swivel;
   const auto result = solveJobSetup(job, swivel, options.keep);
   if (const auto* refusal = std::get_if<std::string>(&result)) {

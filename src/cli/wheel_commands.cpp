@@ -52,11 +52,24 @@ void addZeros(Commands& commands) {
   addJson(command, options->json);
 }
 
+void addMachineFile(Commands& commands) {
+  const auto options = std::make_shared<MachineOptions>();
+  auto& command =
+      commands.add("machine", "check the machine's files as the launch file does before it starts the grinder",
+                   "config/grinder.yaml --urdf urdf/grinder.urdf", [options] { return runMachine(*options); });
+  command
+      .add_option("FILE", options->parameters, "parameters of the machine; those of a file override those before it")
+      ->required()
+      ->type_name(kYamlFile);
+  command.add_option("--urdf", options->urdf, "robot description")->required()->type_name(kUrdfFile);
+}
+
 }  // namespace
 
 void addWheelCommands(Commands& commands) {
   addWheel(commands);
   addZeros(commands);
+  addMachineFile(commands);
 }
 
 }  // namespace grinder

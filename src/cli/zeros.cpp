@@ -52,7 +52,7 @@ double flangeOf(const std::string& job, int operation, const std::optional<doubl
 }
 
 int printZeros(const ZerosOptions& options) {
-  const MachineGeometry geometry = readMachineFiles(options.parameters, options.urdf).config.geometry;
+  const MachineGeometry geometry = readMachineFiles({options.parameters}, options.urdf).config.loop.geometry;
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, geometry);
   if (!zero) return 1;
   printZero(*zero, options.json);

@@ -1,5 +1,7 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "flute_grinder/motion/work_offsets.h"
+
 #include <cmath>
 #include <sstream>
 
@@ -11,6 +13,7 @@ constexpr double kMin = kMinFigure;
 constexpr double kMax = kMaxFigure;
 /// Twice the period at which the panel repeats its messages [s].
 constexpr double kMinJogTimeout = 0.05;
+constexpr double kMaxHistory = 1e12;                ///< [bytes]
 constexpr double kMinBall = 1e-4, kMaxBall = 0.02;  ///< diameter of a probe's [m]
 
 /// One kind of limit, with its names in ros_control.
@@ -90,6 +93,31 @@ void readAxis(const MachineModel& model, const ParameterReader& p, int axis, Loo
   config.machine.park[axis] = p.number("park_position/" + name, limits.min_position[axis], limits.max_position[axis]);
 }
 
+DiagnosticLevels readLevels(const ParameterReader& p, const std::string& quantity, double max) {
+  const std::string ns = "diagnostics/" + quantity + "/";
+  const double warn = p.number(ns + "warn", 0, max);
+  return {warn, p.number(ns + "error", warn, max)};
+}
+
+DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters) {
+  DiagnosticThresholds thresholds;
+  thresholds.late_cycles = readLevels(parameters, "late_cycles", 1);
+  thresholds.following_error = readLevels(parameters, "following_error", 1);
+  thresholds.limit_use = readLevels(parameters, "limit_use", 2);
+  const double warn = parameters.number("diagnostics/buffer_fill/warn", 0, 1);
+  thresholds.buffer_fill = {warn, parameters.number("diagnostics/buffer_fill/error", 0, warn)};
+  return thresholds;
+}
+
+FirstView readFirstView(const ParameterReader& p) {
+  FirstView view;
+  view.wheel_diameter = p.number("first_view/wheel_diameter", 1e-3, 0.5);
+  view.wheel_width = p.number("first_view/wheel_width", 1e-4, 0.1);
+  view.blank_diameter = p.number("first_view/blank_diameter", 1e-4, 0.2);
+  view.blank_length = p.number("first_view/blank_length", 1e-4, 1);
+  return view;
+}
+
 }  // namespace
 
 MachineGeometry readMachineGeometry(const ParameterReader& p) {
@@ -109,7 +137,7 @@ MachineGeometry readMachineGeometry(const ParameterReader& p) {
   return geometry;
 }
 
-LoopConfig readMachineConfig(const MachineModel& model, const ParameterReader& p) {
+LoopConfig readLoopConfig(const MachineModel& model, const ParameterReader& p) {
   LoopConfig config;
   config.name = model.urdf().getName();
   config.machine.period = 1 / p.number("control_rate", 10, 20000);
@@ -128,6 +156,21 @@ LoopConfig readMachineConfig(const MachineModel& model, const ParameterReader& p
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kMax);
   for (int axis = 0; axis < kAxisCount; ++axis) readAxis(model, p, axis, config);
   config.machine.swivel = model.swivel();
+  return config;
+}
+
+MachineConfig readMachineConfig(const MachineModel& model, const ParameterReader& p, const std::string& drives) {
+  MachineConfig config;
+  config.loop = readLoopConfig(model, p);
+  config.history_limit = static_cast<std::uint64_t>(p.number("history_limit", 0, kMaxHistory));
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    const std::string joint = kJointNames[static_cast<std::size_t>(axis)];
+    config.offset_change_limit[axis] = p.number("offset_change_limit/" + joint, 0, 2 * kMaxOffset);
+  }
+  config.thresholds = readDiagnosticThresholds(p);
+  config.first_view = readFirstView(p);
+  config.drive = p.text("hardware/type", drives);
+  p.refuseUnknown({"hardware", "journal", "offsets", "history", "configuration", "diagnostic_period"});
   return config;
 }
 

@@ -1,7 +1,12 @@
 #include "flute_grinder/drive/parameters.h"
 
+#include "flute_grinder/job/did_you_mean.h"
+
 #include <ros/node_handle.h>
 
+#include <boost/algorithm/string/join.hpp>
+
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -33,6 +38,7 @@ ParameterReader::ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::str
 ParameterReader::ParameterReader(const ros::NodeHandle& nh) : ns_(nh.getNamespace()) { nh.getParam("", parameters_); }
 
 XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
+  asked_->insert(path);
   const XmlRpc::XmlRpcValue* at = &parameters_;
   std::istringstream names(path);
   for (std::string name; std::getline(names, name, '/');) {
@@ -48,6 +54,38 @@ XmlRpc::XmlRpcValue ParameterReader::require(const std::string& path, const std:
   XmlRpc::XmlRpcValue value = find(path);
   if (!value.valid()) throw ParameterError("parameter " + name(path) + " is missing; allowed: " + what);
   return value;
+}
+
+void ParameterReader::refuseUnknown(const std::vector<std::string>& others) const {
+  asked_->insert(others.begin(), others.end());
+  refuseUnknown(parameters_, "", others);
+}
+
+void ParameterReader::refuseUnknown(const XmlRpc::XmlRpcValue& group, const std::string& begin,
+                                    const std::vector<std::string>& others) const {
+  if (group.getType() != XmlRpc::XmlRpcValue::TypeStruct) return;
+  for (const auto& [word, value] : group) {
+    const std::string path = begin + word;
+    if (std::find(others.begin(), others.end(), path) != others.end()) continue;
+    const bool is_group = value.getType() == XmlRpc::XmlRpcValue::TypeStruct && !asked(path + "/").empty();
+    if (is_group) {
+      refuseUnknown(value, path + "/", others);
+    } else if (asked_->count(path) == 0) {
+      const std::vector<std::string> known = asked(begin);
+      std::string text = "parameter " + name(path) + " is not known";
+      const std::string near = didYouMean(word, known);
+      throw ParameterError(text + (near.empty() ? "; allowed: " + boost::algorithm::join(known, ", ") : near));
+    }
+  }
+}
+
+std::vector<std::string> ParameterReader::asked(const std::string& begin) const {
+  std::vector<std::string> words;
+  for (auto at = asked_->lower_bound(begin); at != asked_->end() && at->compare(0, begin.size(), begin) == 0; ++at) {
+    const std::string word = at->substr(begin.size(), at->find('/', begin.size()) - begin.size());
+    if (words.empty() || words.back() != word) words.push_back(word);
+  }
+  return words;
 }
 
 double ParameterReader::number(const std::string& path, double min, double max) const {

@@ -68,6 +68,7 @@ RosControlParameters readRosControlParameters(const ParameterReader& p) {
   r.commands.coolant = sink(p, "coolant");
   r.commands.home = service(p, "home");
   r.commands.reset = service(p, "reset");
+  p.refuseUnknown({"type", "robot_hw"});
   return r;
 }
 

@@ -70,6 +70,7 @@ SimulatedDrive::Simulation SimulatedDrive::readSimulation(const ParameterReader&
   if (p.has("pace")) equipment.pace = p.number("pace", 1, 100);
   if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
   if (p.has("blank")) simulation.blank = readBlank(root, p);
+  p.refuseUnknown({"type"});
   return simulation;
 }
 

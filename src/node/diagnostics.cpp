@@ -16,12 +16,6 @@ constexpr double kPercent = 0.01;
 constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend
 constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
 
-DiagnosticLevels readLevels(const ParameterReader& p, const std::string& quantity, double max) {
-  const std::string ns = "diagnostics/" + quantity + "/";
-  const double warn = p.number(ns + "warn", 0, max);
-  return {warn, p.number(ns + "error", warn, max)};
-}
-
 /// For a quantity with upper thresholds; NaN exceeds them all.
 unsigned char levelAbove(double value, const DiagnosticLevels& levels) {
   if (!(value <= levels.error)) return DiagnosticStatus::ERROR;
@@ -58,16 +52,6 @@ std::string text(const Parts&... parts) {
 }
 
 }  // namespace
-
-DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters) {
-  DiagnosticThresholds thresholds;
-  thresholds.late_cycles = readLevels(parameters, "late_cycles", 1);
-  thresholds.following_error = readLevels(parameters, "following_error", 1);
-  thresholds.limit_use = readLevels(parameters, "limit_use", 2);
-  const double warn = parameters.number("diagnostics/buffer_fill/warn", 0, 1);
-  thresholds.buffer_fill = {warn, parameters.number("diagnostics/buffer_fill/error", 0, warn)};
-  return thresholds;
-}
 
 Diagnostics::Diagnostics(const LoopConfig& config, const DiagnosticThresholds& thresholds,
                          std::function<Scheduling()> scheduling)

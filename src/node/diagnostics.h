@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/control/diagnostic_thresholds.h"
 #include "flute_grinder/control/durations.h"
-#include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/motion/limit_check.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
@@ -12,24 +12,6 @@
 #include <string>
 
 namespace grinder {
-
-/// Thresholds of a quantity for a warning and for an error.
-struct DiagnosticLevels {
-  double warn = 0;
-  double error = 0;
-};
-
-/// All thresholds; fractions.
-struct DiagnosticThresholds {
-  DiagnosticLevels late_cycles;      ///< upper, of all cycles since the last report
-  DiagnosticLevels following_error;  ///< upper, of the allowed following error
-  DiagnosticLevels limit_use;        ///< upper, of an axis limit
-  DiagnosticLevels buffer_fill;      ///< lower, of the maximum fill since power-on
-};
-
-/// Reads diagnostics/<quantity>/warn and .../error.
-/// @throw ParameterError unless all are present, in range, and no error threshold is reached before its warning.
-DiagnosticThresholds readDiagnosticThresholds(const ParameterReader& parameters);
 
 /// What the operating system granted the control loop.
 struct Scheduling {

@@ -3,8 +3,10 @@
 #include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/drive/export_drive.h"
 #include "node/crash_guard.h"
-#include "node/node_parameters.h"
+#include "node/node_files.h"
 #include "node/plugin_abi.h"
+
+#include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -93,22 +95,26 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   }
   const ParameterReader parameters(private_nh_);
   const MachineModel model(urdf);
-  const LoopConfig config = readMachineConfig(model, parameters);
-  const std::string name = private_nh_.getNamespace();
   loader_ = std::make_unique<pluginlib::ClassLoader<Drive>>("flute_grinder", "grinder::Drive");
-  const NodeParameters own = readNodeParameters(parameters, name, join(loader_->getDeclaredClasses()));
-  journal_ = std::make_unique<JournalWriter>(own.journal, name);
-  offsets_ = std::make_unique<OffsetStore>(own.offsets, name);
+  const MachineConfig own = readMachineConfig(model, parameters, join(loader_->getDeclaredClasses()));
+  const LoopConfig& config = own.loop;
+  const std::string name = private_nh_.getNamespace();
+  const NodeFiles files = readNodeFiles(parameters, name);
+  journal_ = std::make_unique<JournalWriter>(files.journal, name);
+  offsets_ = std::make_unique<OffsetStore>(files.offsets, name);
   const std::string unknown = offsets_->unknown();
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
   if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
-  history_ = std::make_unique<History>(own.history, own.history_limit);
+  history_ = std::make_unique<History>(files.history, own.history_limit);
   loadDrive(own.drive, parameters);
   initDrive(own.drive, signals);
   const DriveCapabilities can = drive_->capabilities();
   checkCapabilities(can, own.drive, parameters.name("control_rate"), config.machine.period);
   const MachineInfo machine = machineInfo(config, own.drive);
+  const auto configuration = private_nh_.param<std::string>("configuration", "of the parameter server");
+  ROS_INFO_STREAM("machine " << machine.name << ", drive " << machine.drive << ", configuration "
+                             << boost::algorithm::trim_copy(configuration));
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
   machine_.publish(toMessage(machine, can, config.jog_timeout));
   loop_ = std::make_unique<ControlLoop>(*drive_, config, journal.on_disk.wheel);

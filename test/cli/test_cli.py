@@ -10,6 +10,7 @@ import pty
 import re
 import subprocess
 import sys
+import xml.etree.ElementTree
 
 import flute_grinder.job
 from flute_grinder.msg import GrindActionGoal, Process
@@ -159,6 +160,51 @@ class TestPlan(CommandLine):
     def test_yaml_is_no_urdf(self):
         self.assertEqual(self.grind(2, 'plan', PAPER_JOB, '--urdf', PAPER_JOB).stderr,
                          PAPER_JOB + ' is not a URDF, by line 1 (XML_ERROR_PARSING_TEXT); allowed: XML with the root <robot>\n')
+
+    def check_machine(self, old, new, said, *more):
+        text = pathlib.Path(gc.package_file('config/grinder.yaml')).read_text()
+        self.assertIn(old, text)
+        files = [self.write('machine.yaml', text.replace(old, new)), *more]
+        done = self.grind(2, 'machine', *files, '--urdf', gc.package_file('urdf/grinder.urdf'))
+        self.assertEqual(done.stderr, said.format(*files) + '\n')
+
+    def test_machine_file(self):
+        files = [gc.package_file(file) for file in ('config/grinder.yaml', 'config/hal.yaml', 'urdf/grinder.urdf')]
+        self.assertEqual(self.grind(0, 'machine', *files[:2], '--urdf', files[2]).stdout, ', '.join(files) + '\n')
+        decimal = '; allowed: a decimal number, as 100, 0.002 or 2.0e-3, or a text in quotes'
+        self.check_machine('control_rate: 1000', 'control_rate: 0100', '{0}:3: control_rate = 0100' + decimal)
+        for wrong in ('2e-3', '1_000', '0x10', '1:30', '.5', '0o17'):
+            self.check_machine('feedback_timeout: 0.002', 'feedback_timeout: ' + wrong,
+                               '{0}:4: feedback_timeout = ' + wrong + decimal)
+        self.check_machine('history_limit: 1.0e+7', 'history_limit: 10000000000',
+                           '{0}:14: history_limit = 10000000000; allowed: whole numbers up to 2147483647, or one with a point')
+        self.check_machine('slow: 0.1 ', 'slow: 0.1\n  slow: 0.2 ', '{0}:26: probing/slow appears twice')
+        self.check_machine('slow: 0.1 ', 'slow:  ', '{0}:25: probing/slow has no value')
+        self.check_machine('axis_x: {has_acc', 'axis_x: {max_postion: 0.02, has_acc',
+                           'parameter {0}/joint_limits/axis_x/max_postion is not known; did you mean \'max_position\'?')
+        self.check_machine('homing_timeout: 60.0', 'homing_timeout: "60.0"',
+                           'parameter {0}/homing_timeout = "60.0"; allowed: a number')
+        # Of a second file, a key overrides that of the first.
+        self.check_machine('jog_timeout', 'jog_timeout', 'parameter {0}, {1}/jog_timeout = 9; allowed: 0.05 to 1',
+                           self.write('more.yaml', 'jog_timeout: 9\n'))
+
+    def launch(self, *arguments):
+        return subprocess.run(['roslaunch', '--dump-params', 'flute_grinder', 'grinder.launch', *arguments], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True)
+
+    def test_launch_file_takes_what_it_declares_and_no_more(self):
+        files = {'config': 'config/grinder.yaml', 'hal_config': 'config/hal.yaml', 'urdf': 'urdf/grinder.urdf'}
+        values = dict({name: gc.package_file(file) for name, file in files.items()}, name='other', hardware='hal', loopback_only='true',
+                      **{name: 'false' for name in ('rviz', 'required', 'bag')},
+                      **{name: '/tmp/' for name in ('journal', 'offsets', 'history', 'bag_file')})
+        tree = xml.etree.ElementTree.parse(gc.package_file('launch/grinder.launch'))
+        self.assertEqual({arg.get('name') for arg in tree.iter('arg') if 'default' in arg.keys()}, set(values))
+        self.assertIn('/other/journal: /tmp/', self.launch(*('%s:=%s' % item for item in values.items())).stdout)
+        said = self.launch('hardwear:=hal')
+        self.assertNotIn('control_rate', said.stdout)
+        self.assertIn("unknown arguments: ['hardwear']", said.stdout + said.stderr)
+        wrong = self.write('machine.yaml', 'control_rate: 1000\ncontrol_rate: 500\n')
+        self.assertIn(wrong + ':2: control_rate appears twice\n', self.launch('config:=' + wrong).stderr)
 
     def test_machine_file_of_two_documents(self):
         with open(gc.package_file('config/grinder.yaml')) as file:

@@ -19,7 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 LoopConfig read(const std::string& urdf, const YAML::Node& parameters) {
-  return readMachineConfig(MachineModel(urdf), ParameterReader(test_support::toXmlRpc(parameters), "/grinder"));
+  return readLoopConfig(MachineModel(urdf), ParameterReader(test_support::toXmlRpc(parameters), "/grinder"));
 }
 
 void expectAxes(const Axes& axes, const Axes& expected) {

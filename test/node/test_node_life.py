@@ -71,6 +71,8 @@ class TestLoopback(unittest.TestCase):
 # parameters; test_schema.cpp has them all.
 BAD_PARAMETERS = [
     ('control_rate', math.nan, 'nan; allowed: 10 to 20000'),
+    ('jog_timeot', 0.2, " is not known; did you mean 'jog_timeout'?"),
+    ('hardware/pase', 2, " is not known; did you mean 'pace'?"),
     ('history_limit', -1, 'allowed: 0 to 1e+12'),
     ('hardware/type', 'flute_grinder/NoSuchDrive',
      '= flute_grinder/NoSuchDrive; allowed: flute_grinder/HalHardware; flute_grinder/RosControlDrive; flute_grinder/SimulatedDrive'),
@@ -106,7 +108,7 @@ class TestStartFailsClosed(unittest.TestCase):
                 parameters = gc.machine()
                 *groups, name = path.split('/')
                 group = functools.reduce(dict.get, groups, parameters)
-                group.pop(name)
+                group.pop(name, None)
                 group.update({} if value is None else {name: value})
                 self.check(parameters, text, 'parameter /doubtful/' + path)
 

@@ -3,7 +3,7 @@
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/wheel_file.h"
-#include "node/node_parameters.h"
+#include "node/node_files.h"
 
 #include "yaml_parameters.h"
 
@@ -257,23 +257,24 @@ struct Section {
   void (*read)(const ParameterReader& root, const ParameterReader& hardware);
 };
 
+void readNode(const ParameterReader& p, const ParameterReader& /*hardware*/) {
+  static const MachineModel model(readTextFile("urdf/grinder.urdf", 1'000'000));
+  readMachineConfig(model, p, "a text");
+  readNodeFiles(p, "/grinder");
+}
+
 const Section kSections[]{
-    {"machine",
-     [](const ParameterReader& p, const ParameterReader&) {
-       static const MachineModel model(readTextFile("urdf/grinder.urdf", 1'000'000));
-       readMachineConfig(model, p);
-     }},
-    {"node", [](const ParameterReader& p, const ParameterReader&) { readNodeParameters(p, "/grinder", "a text"); }},
+    {"machine", readNode},
+    {"node", readNode},
     {"simulated_drive",
      [](const ParameterReader& p, const ParameterReader& hardware) { SimulatedDrive::readSimulation(p, hardware); }},
     {"hal", [](const ParameterReader& p, const ParameterReader& hardware) { readHalParameters(p, hardware); }},
 };
 
 /// The shipped parameters, and those that may be left out.
-YAML::Node goodParameters() {
+YAML::Node goodParameters(bool with_hal) {
   YAML::Node p = YAML::LoadFile("config/grinder.yaml");
-  for (const auto& item : YAML::LoadFile("config/hal.yaml")["hardware"])
-    p["hardware"][item.first.Scalar()] = item.second;
+  if (with_hal) p["hardware"] = YAML::LoadFile("config/hal.yaml")["hardware"];
   for (const char* file : {"journal", "offsets", "history"}) p[file] = "/tmp/";
   for (const char* joint : kJointNames) {
     YAML::Node limits = p["joint_limits"][joint];
@@ -283,6 +284,7 @@ YAML::Node goodParameters() {
     limits["max_position"] = 2;
     limits["max_velocity"] = 1;
   }
+  if (with_hal) return p;
   p["hardware"]["blank"] = YAML::Load("{end_face: 0, diameter: 0.01, run_out: 0, rake_face: {height: 0, angle: 0}}");
   p["hardware"]["swivel"] = 0;
   return p;
@@ -332,7 +334,7 @@ class SchemaOfParameters : public ::testing::TestWithParam<Section> {
     return false;
   }
 
-  const YAML::Node good_ = goodParameters();
+  const YAML::Node good_ = goodParameters(GetParam().name == std::string("hal"));
 };
 
 INSTANTIATE_TEST_SUITE_P(, SchemaOfParameters, ::testing::ValuesIn(kSections),
@@ -351,6 +353,17 @@ TEST_P(SchemaOfParameters, EachIsMissed) {
     } else {
       EXPECT_EQ(error, missing + "; allowed: " + (type(entry) == "text" ? "a text" : "a number"));
     }
+  });
+}
+
+TEST_P(SchemaOfParameters, AMisspelledOneIsNamedWithTheRightOne) {
+  // The file of HAL lies over one with another drive's parameters, and all of its own are needed.
+  if (GetParam().name == std::string("hal")) return;
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node&, Range) {
+    const bool of_drive = begins(path, "hardware/");
+    if (of_drive != begins(GetParam().name, "simulated") || path == "hardware/type") return;
+    const std::string word = path.substr(path.rfind('/') + 1);
+    EXPECT_EQ(refusal(with(good_, path + "s", 1)), full + "s is not known; did you mean '" + word + "'?");
   });
 }
 

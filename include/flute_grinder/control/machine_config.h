@@ -1,19 +1,42 @@
 #pragma once
 
+#include "flute_grinder/control/diagnostic_thresholds.h"
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/drive/parameters.h"
+#include "flute_grinder/job/axes.h"
+#include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/machine/machine_model.h"
+
+#include <cstdint>
+#include <string>
 
 namespace grinder {
 
-/// Reads the machine data: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as in
-/// ros_control; control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout, enable_timeout,
-/// homing_timeout, spindle_timeout, jog_timeout, jog_velocity/<joint>, probing/..., max_job_duration,
+/// All that a machine's file says but the parameters of its drive.
+struct MachineConfig {
+  LoopConfig loop;
+  Axes offset_change_limit;         ///< [m], A [rad]
+  std::uint64_t history_limit = 0;  ///< [bytes]
+  DiagnosticThresholds thresholds;
+  FirstView first_view;
+  std::string drive;  ///< type of the plugin
+};
+
+/// Reads what the control loop needs: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as
+/// in ros_control; control_rate, park_position/<joint>, constraints/<joint>/trajectory, feedback_timeout,
+/// enable_timeout, homing_timeout, spindle_timeout, jog_timeout, jog_velocity/<joint>, probing/..., max_job_duration,
 /// collision_clearance, geometry/..., late_cycle/slow_down and .../fault; the swivel's range from the URDF alone. Every
 /// axis must have complete limits of position, velocity, acceleration and jerk.
 /// @param parameters the node's parameters.
 /// @throw ParameterError
-LoopConfig readMachineConfig(const MachineModel& model, const ParameterReader& parameters);
+LoopConfig readLoopConfig(const MachineModel& model, const ParameterReader& parameters);
+
+/// Reads all: beside the above history_limit, offset_change_limit/<joint>, diagnostics/..., first_view/... and
+/// hardware/type.
+/// @param drives the types of plugins that there are, for a message.
+/// @throw ParameterError also for a parameter that nobody reads, but for those of the drive, in hardware/.
+MachineConfig readMachineConfig(const MachineModel& model, const ParameterReader& parameters,
+                                const std::string& drives);
 
 /// Reads the parameters geometry/... alone; geometry/probe may be missing, on a machine without one.
 /// @throw ParameterError

@@ -2,9 +2,12 @@
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace ros {
 class NodeHandle;
@@ -41,15 +44,24 @@ class ParameterReader {
   std::string text(const std::string& path) const;
   /// The same. @param what the texts that are allowed, for the message.
   std::string text(const std::string& path, const std::string& what) const;
+  /// To be called when all have been read: a parameter that nobody has asked for is misspelled.
+  /// @param others those that other programs read, with all that is below them.
+  /// @throw ParameterError naming the first such parameter, and the nearest that is known.
+  void refuseUnknown(const std::vector<std::string>& others = {}) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }
 
  private:
   XmlRpc::XmlRpcValue find(const std::string& path) const;
   XmlRpc::XmlRpcValue require(const std::string& path, const std::string& what) const;
+  void refuseUnknown(const XmlRpc::XmlRpcValue& group, const std::string& begin,
+                     const std::vector<std::string>& others) const;
+  /// The next words of the paths so far that begin so.
+  std::vector<std::string> asked(const std::string& begin) const;
 
   XmlRpc::XmlRpcValue parameters_;
   std::string ns_;
+  std::shared_ptr<std::set<std::string>> asked_ = std::make_shared<std::set<std::string>>();  ///< paths
 };
 
 }  // namespace grinder

@@ -1,17 +1,10 @@
 #pragma once
 
 #include "flute_grinder/geometry/wheel_profile.h"
+#include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/scene/markers.h"
 
 namespace grinder {
-
-/// The straight wheel and the round blank that rviz shows until there is a job.
-struct FirstView {
-  double wheel_diameter = 0;  ///< [m]
-  double wheel_width = 0;     ///< [m]
-  double blank_diameter = 0;  ///< [m]
-  double blank_length = 0;    ///< from its end face into the collet [m]
-};
 
 /// Wheel in the frame `wheel` and blank in the frame `cutter`. The first marker deletes what was shown before.
 /// @throw std::invalid_argument for a wheel that WheelProfile refuses.

@@ -1,0 +1,19 @@
+#include "node/node_files.h"
+
+namespace grinder {
+
+namespace {
+
+/// An atomic file; if the parameter is a folder, the file in it named after the node.
+std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
+  return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
+}
+
+}  // namespace
+
+NodeFiles readNodeFiles(const ParameterReader& parameters, const std::string& node) {
+  return {filePath(parameters.text("journal"), node, ".journal"),
+          filePath(parameters.text("offsets"), node, ".offsets"), filePath(parameters.text("history"), node, "/")};
+}
+
+}  // namespace grinder

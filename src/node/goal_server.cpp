@@ -64,8 +64,8 @@ Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& 
 
 }  // namespace
 
-GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
-                       Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets)
+GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops,
+                       Planner& planner, Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets)
     : loop_(loop),
       gate_(gate),
       planner_(planner),
@@ -78,9 +78,14 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
   job_ = nh.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
   server_ = std::make_unique<Server>(
       nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
-      [this](const GoalHandle& handle) { onCancel(handle); }, false);
+      [this](const GoalHandle& handle) { onCancel(handle); },
+      [](flute_grinder::GrindResult& recalled, const std::string& why) {
+        if (recalled.error_string.empty()) recalled = result(flute_grinder::GrindResult::CANCELED, why);
+      });
   server_->start();
-  rejected_ = nh.advertise<flute_grinder::GrindActionResult>("grind/result", 50);
+  cancels_ = stops.subscribeToCancels([this](const actionlib_msgs::GoalID::ConstPtr& what) {
+    thread_.post([this, what] { server_->cancelCallback(what); });
+  });
   dropped_topic_ = nh.resolveName("grind/goal");
   setOnDropped(dropped_topic_, [this](std::uint32_t length, std::vector<std::uint8_t> head) {
     rejectDropped(length, std::move(head));
@@ -89,6 +94,7 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
 }
 
 GoalServer::~GoalServer() {
+  cancels_.shutdown();
   setOnDropped(dropped_topic_, {});
   thread_.stop();
 }
@@ -108,7 +114,7 @@ void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> h
   answer.status.text = "a goal of " + std::to_string(length) + " bytes; allowed: " + std::to_string(kMaxPeerMessage) +
                        "; give fewer teeth";
   answer.result = result(flute_grinder::GrindResult::INVALID_GOAL, answer.status.text);
-  rejected_.publish(answer);
+  server_->publish(answer);
 }
 
 void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }

@@ -2,14 +2,15 @@
 
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/control/control_loop.h"
+#include "node/action_server.h"
 #include "node/job_gate.h"
 #include "node/offset_server.h"
 #include "node/planner.h"
 #include "node/progress_tracker.h"
 #include "node/served_queue.h"
+#include "node/stop_server.h"
 #include "node/telemetry.h"
 
-#include <actionlib/server/action_server.h>
 #include <ros/ros.h>
 
 #include <memory>
@@ -26,7 +27,7 @@ class GoalServer {
  public:
   /// @param private_nh the node's own namespace.
   /// @param the rest must outlive this object.
-  GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, Planner& planner,
+  GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops, Planner& planner,
              Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets);
   ~GoalServer();
 
@@ -34,7 +35,7 @@ class GoalServer {
   bool busy() const { return busy_; }
 
  private:
-  using Server = actionlib::ActionServer<flute_grinder::GrindAction>;
+  using Server = ActionServer<flute_grinder::GrindAction>;
   using GoalHandle = Server::GoalHandle;
 
   enum class Phase { kPlanning, kStarting, kJournaling, kRunning };
@@ -93,8 +94,8 @@ class GoalServer {
   std::string dropped_topic_;  ///< on which goals come
   ServedQueue thread_;         ///< whose queue those below take their callbacks from
   ros::Publisher job_;         ///< the goal about to start; a recorder may connect to its sender too late
-  ros::Publisher rejected_;    ///< results of goals that the action server never sees
   std::unique_ptr<Server> server_;
+  ros::Subscriber cancels_;
 };
 
 }  // namespace grinder

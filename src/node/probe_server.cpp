@@ -14,8 +14,12 @@ ProbeServer::ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, J
   alive_ = nh.subscribe("probe_alive", 1, &ProbeServer::onAlive, this, ros::TransportHints().tcpNoDelay());
   server_ = std::make_unique<Server>(
       nh, "probe", [this](const GoalHandle& handle) { onGoal(handle); },
-      [this](const GoalHandle& handle) { onCancel(handle); }, false);
+      [this](const GoalHandle& handle) { onCancel(handle); },
+      [](flute_grinder::ProbeResult& recalled, const std::string& why) {
+        if (recalled.message.empty()) recalled.message = why;
+      });
   server_->start();
+  cancels_ = nh.subscribe("probe/cancel", 50, &Server::Base::cancelCallback, static_cast<Server::Base*>(server_.get()));
   motion_.start();
   messages_.start();
 }

@@ -2,11 +2,11 @@
 
 #include "flute_grinder/ProbeAction.h"
 #include "flute_grinder/control/control_loop.h"
+#include "node/action_server.h"
 #include "node/job_gate.h"
 #include "node/offset_server.h"
 #include "node/served_queue.h"
 
-#include <actionlib/server/action_server.h>
 #include <ros/ros.h>
 #include <std_msgs/Header.h>
 
@@ -28,7 +28,7 @@ class ProbeServer {
   ~ProbeServer();
 
  private:
-  using Server = actionlib::ActionServer<flute_grinder::ProbeAction>;
+  using Server = ActionServer<flute_grinder::ProbeAction>;
   using GoalHandle = Server::GoalHandle;
 
   void onGoal(GoalHandle handle);
@@ -45,7 +45,7 @@ class ProbeServer {
   mutable std::mutex mutex_;        ///< guards the next; held only to compare, and to post a stop
   std::optional<GoalHandle> goal_;  ///< that has not ended
   ServedQueue messages_, motion_;
-  ros::Subscriber alive_;
+  ros::Subscriber alive_, cancels_;
   std::unique_ptr<Server> server_;
 };
 

@@ -1,19 +1,23 @@
 #include "node/stop_server.h"
 
 #include <sstream>
+#include <utility>
 
 namespace grinder {
 
-StopServer::StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate) : loop_(loop), gate_(gate) {
-  ros::NodeHandle nh(private_nh);
-  nh.setCallbackQueue(thread_.queue());
-  services_.push_back(nh.advertiseService(serviceOf(MachineEvent::kHold), &StopServer::onHold, this));
-  services_.push_back(nh.advertiseService(serviceOf(MachineEvent::kDisable), &StopServer::onDisable, this));
-  services_.push_back(nh.advertiseService("set_feed_override", &StopServer::onFeedOverride, this));
-  const auto hints = ros::TransportHints().tcpNoDelay();
-  // In addition to actionlib, which blocks on publishing, and forwards only the first cancel of a goal.
-  subscribers_.push_back(nh.subscribe("grind/cancel", 50, &StopServer::onCancel, this, hints));
-  subscribers_.push_back(nh.subscribe("stop", 50, &StopServer::onStop, this, hints));
+namespace {
+
+constexpr std::uint32_t kQueue = 50;
+
+}  // namespace
+
+StopServer::StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate)
+    : nh_(private_nh), loop_(loop), gate_(gate) {
+  nh_.setCallbackQueue(thread_.queue());
+  services_.push_back(nh_.advertiseService(serviceOf(MachineEvent::kHold), &StopServer::onHold, this));
+  services_.push_back(nh_.advertiseService(serviceOf(MachineEvent::kDisable), &StopServer::onDisable, this));
+  services_.push_back(nh_.advertiseService("set_feed_override", &StopServer::onFeedOverride, this));
+  stops_ = nh_.subscribe("stop", kQueue, &StopServer::onStop, this, ros::TransportHints().tcpNoDelay());
   thread_.start();
 }
 
@@ -49,8 +53,12 @@ bool StopServer::onFeedOverride(flute_grinder::SetFeedOverride::Request& request
   return true;
 }
 
-void StopServer::onCancel(const actionlib_msgs::GoalID::ConstPtr& what) {
-  if (gate_.cancel(*what)) loop_.postStop(MachineEvent::kCancel);
+ros::Subscriber StopServer::subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::ConstPtr&)> pass_on) {
+  const auto cancel = [this, pass_on = std::move(pass_on)](const actionlib_msgs::GoalID::ConstPtr& what) {
+    if (gate_.cancel(*what)) loop_.postStop(MachineEvent::kCancel);
+    pass_on(what);
+  };
+  return nh_.subscribe<actionlib_msgs::GoalID>("grind/cancel", kQueue, cancel, {}, ros::TransportHints().tcpNoDelay());
 }
 
 void StopServer::onStop(const flute_grinder::Stop::ConstPtr& stop) {

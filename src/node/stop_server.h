@@ -9,6 +9,7 @@
 #include <ros/ros.h>
 #include <std_srvs/Trigger.h>
 
+#include <functional>
 #include <vector>
 
 namespace grinder {
@@ -21,19 +22,24 @@ class StopServer {
   /// @param loop,gate must outlive this object.
   StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
 
+  /// Serves the topic `~grind/cancel` for as long as the subscriber that is returned lives.
+  /// @param pass_on called in this thread with each cancel, once the loop has it: actionlib, which may block on
+  ///        publishing, has to know of it, too, and forwards only the first cancel of a goal.
+  ros::Subscriber subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::ConstPtr&)> pass_on);
+
  private:
   bool onHold(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onDisable(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onFeedOverride(flute_grinder::SetFeedOverride::Request& request,
                       flute_grinder::SetFeedOverride::Response& response);
-  void onCancel(const actionlib_msgs::GoalID::ConstPtr& what);
   void onStop(const flute_grinder::Stop::ConstPtr& stop);
 
+  ros::NodeHandle nh_;  ///< with the thread's queue
   ControlLoop& loop_;
   JobGate& gate_;
   ServedQueue thread_;
   std::vector<ros::ServiceServer> services_;
-  std::vector<ros::Subscriber> subscribers_;
+  ros::Subscriber stops_;
 };
 
 }  // namespace grinder

@@ -263,9 +263,9 @@ def axes_of(joint_state):
     return tuple(joint_state.position[joint_state.name.index(name)] for name in JOINTS)
 
 
-def publisher(clean_up, topic, kind):
+def publisher(clean_up, topic, kind, queue_size=10):
     """To somebody who listens."""
-    made = rospy.Publisher(topic, kind, queue_size=10, tcp_nodelay=True)
+    made = rospy.Publisher(topic, kind, queue_size=queue_size, tcp_nodelay=True)
     clean_up(made.unregister)
     poll(lambda: made.get_num_connections() > 0, 'a subscriber of ' + topic)
     return made

@@ -13,6 +13,7 @@ import urllib.parse
 import xmlrpc.client
 
 import rosgraph
+import roslib.message
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
 from flute_grinder.srv import Plan, PlanRequest
@@ -27,6 +28,7 @@ FEW_MEGABYTES = 24 * MEGABYTE
 # As in the source.
 LONGEST_MESSAGE = 256 << 10
 MEGABYTES_OF_TEETH = 64
+EMPTY_MESSAGES = 3000
 
 
 class Attacked(unittest.TestCase):
@@ -156,6 +158,23 @@ class TestPeers(Attacked):
         self.assertEqual(len(re.findall(r'a message of \d+ bytes on /attacked/grind/(?:cancel|goal) is dropped; allowed: 262144',
                                         self.node.output[reported:])), 3)
         self.check_memory()
+
+    def test_messages_of_no_bytes(self):
+        """roscpp reads one from freed memory for the second subscription to a topic in a process."""
+        master = rosgraph.Master(CALLER)
+        types = dict(master.getTopicTypes())
+        topics = [topic for topic, nodes in master.getSystemState()[1] if '/attacked' in nodes]
+        self.assertLessEqual({'/attacked/' + topic for topic in ('stop', 'jog', 'grind/goal', 'grind/cancel', 'probe/goal', 'probe/cancel',
+                                                                 'probe_alive')}, set(topics))
+        refused = 'Exception thrown when deserializing message of length [0]'
+        for topic in topics:
+            empty = type('Empty', (roslib.message.get_message_class(types[topic]),), {'serialize': lambda self, buffer: None})
+            publisher = gc.publisher(self.addCleanup, topic, empty, queue_size=EMPTY_MESSAGES)
+            before = self.node.output.count(refused)
+            for _ in range(EMPTY_MESSAGES):
+                publisher.publish(empty())
+            gc.poll(lambda: self.node.output.count(refused) > before, 'an empty message to arrive on ' + topic)
+            self.check()
 
     def test_random_bytes(self):
         chance = random.Random(9)

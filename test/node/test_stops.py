@@ -12,7 +12,7 @@ import time
 import unittest
 
 import rospy
-from actionlib_msgs.msg import GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
 from flute_grinder.srv import Plan
 from rosgraph_msgs.msg import Clock
@@ -276,6 +276,20 @@ class TestTheEnd(NodeTest):
         self.check_stopped_and_lifted(run)
         reported = {batch.goal_id for batch in self.client.batches}
         self.assertEqual(reported, {run.id})
+
+
+class TestCancelOfTheFuture(NodeTest):
+    def test_goals_that_it_cancels_are_told_so(self):
+        self.start(machine())
+        cancels = gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID)
+        # By more, the stamp is that of its receipt.
+        cancels.publish(GoalID(stamp=rospy.Time.from_sec(time.time() + 55)))
+        runs = []
+        # Cancels and goals come by connections of their own.
+        gc.poll(lambda: runs.append(self.client.send(gc.paper(), confirm=False).wait()) or runs[-1].status == 'RECALLED', 'the cancel')
+        self.assertEqual(runs[-1].code, GrindResult.CANCELED)
+        self.assertRegex(runs[-1].text, r'^a cancel was stamped [1-5]\d?(\.\d+)? s in the future, and cancels every goal until then; '
+                         'allowed: clients whose clocks agree$')
 
 
 class TestClock(NodeTest):

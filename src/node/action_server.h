@@ -1,0 +1,100 @@
+#pragma once
+
+#include <actionlib/server/action_server_base.h>
+#include <actionlib_msgs/GoalStatusArray.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace grinder {
+
+/// An action server as actionlib::ActionServer, but for two things: its owner subscribes to the cancels, which may need
+/// another thread, as roscpp reads an empty message twice, from freed memory, for a topic that is subscribed to twice;
+/// and the result says why a goal was canceled by the stamp of an earlier cancel.
+template <typename ActionSpec>
+class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
+ public:
+  using Base = actionlib::ActionServerBase<ActionSpec>;
+  using GoalHandle = typename Base::GoalHandle;
+  using Result = typename Base::Result;
+  using ActionResult = typename Base::ActionResult;
+
+  /// @param nh whose queue the goals' callbacks come from. @param name of the action.
+  /// @param recalled completes the result of a goal that was canceled before it was received, if it has no reason yet.
+  ActionServer(const ros::NodeHandle& nh, const std::string& name, std::function<void(GoalHandle)> on_goal,
+               std::function<void(GoalHandle)> on_cancel, std::function<void(Result&, const std::string&)> recalled)
+      : Base(on_goal, on_cancel), nh_(nh, name), recalled_(std::move(recalled)) {}
+
+  /// Publishes the result of a goal that this server has not seen.
+  void publish(const ActionResult& result) const { results_.publish(result); }
+
+ private:
+  using Lock = boost::recursive_mutex::scoped_lock;
+  using Feedback = typename Base::Feedback;
+  using ActionFeedback = typename Base::ActionFeedback;
+
+  static constexpr int kQueue = 50;
+
+  void initialize() override {
+    results_ = nh_.advertise<ActionResult>("result", kQueue);
+    feedback_ = nh_.advertise<ActionFeedback>("feedback", kQueue);
+    statuses_ = nh_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
+    this->status_list_timeout_ = ros::Duration(5);
+    timer_ = nh_.createTimer(ros::Duration(0.2), [this](const ros::TimerEvent&) { publishStatus(); });
+    goals_ = nh_.subscribe("goal", kQueue, &Base::goalCallback, static_cast<Base*>(this));
+  }
+
+  void publishResult(const actionlib_msgs::GoalStatus& status, const Result& result) override {
+    const Lock lock(this->lock_);
+    ActionResult message;
+    message.header.stamp = ros::Time::now();
+    message.status = status;
+    message.result = result;
+    if (status.status == actionlib_msgs::GoalStatus::RECALLED) recalled_(message.result, reasonOf(status));
+    results_.publish(message);
+    publishStatus();
+  }
+
+  void publishFeedback(const actionlib_msgs::GoalStatus& status, const Feedback& feedback) override {
+    const Lock lock(this->lock_);
+    ActionFeedback message;
+    message.header.stamp = ros::Time::now();
+    message.status = status;
+    message.feedback = feedback;
+    feedback_.publish(message);
+  }
+
+  void publishStatus() override {
+    const Lock lock(this->lock_);
+    actionlib_msgs::GoalStatusArray message;
+    message.header.stamp = ros::Time::now();
+    for (auto at = this->status_list_.begin(); at != this->status_list_.end();) {
+      message.status_list.push_back(at->status_);
+      const ros::Time dropped = at->handle_destruction_time_;
+      const bool is_over = !dropped.isZero() && dropped + this->status_list_timeout_ < message.header.stamp;
+      at = is_over ? this->status_list_.erase(at) : std::next(at);
+    }
+    statuses_.publish(message);
+  }
+
+  std::string reasonOf(const actionlib_msgs::GoalStatus& status) const {
+    const double ahead = (this->last_cancel_ - ros::Time::now()).toSec();
+    if (status.text.empty() || !(ahead > 0)) return "canceled before it was received";
+    std::ostringstream text;
+    text << "a cancel was stamped " << ahead << " s in the future, and cancels every goal until then; allowed: clients "
+         << "whose clocks agree";
+    return text.str();
+  }
+
+  ros::NodeHandle nh_;
+  const std::function<void(Result&, const std::string&)> recalled_;
+  ros::Publisher results_, feedback_, statuses_;
+  ros::Timer timer_;
+  ros::Subscriber goals_;
+};
+
+}  // namespace grinder

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/regular_file.h"
 #include "record/record_summary.h"
 
 #include <algorithm>
@@ -21,6 +22,7 @@ constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
 constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
 
 std::string textOf(const std::string& path) {
+  requireRegularFile(path);
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   std::string text(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
   if (!file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()))) {

@@ -358,6 +358,19 @@ class TestOutput(CommandLine):
 
 
 class TestUsage(CommandLine):
+    def test_number_is_named_with_what_is_allowed(self):
+        wheel = gc.package_file('wheels/straight_d125_w2.yaml')
+        for arguments, said in ((['wheel', 'measure', wheel, '--diameter', '124,7'], '--diameter = 124,7'),
+                                (['simulate', PAPER_JOB, '--at', '1.5,b'], '--at = 1.5,b'),
+                                (['simulate', PAPER_JOB, '--sections', '3.5'], '--sections = 3.5'),
+                                (['jog', 'x', '1,5\x1b[2J'], 'DISTANCE = 1,5\\x1b[2J')):
+            self.assertEqual(self.grind(2, *arguments).stderr.splitlines()[0], said +
+                             '; allowed: a number, with a point as in 124.7, or a whole one where it counts')
+
+    def test_texts_of_files_control_no_terminal(self):
+        bad = self.write('bad.yaml', 'cutter: "\\\x1b[2J"\n')
+        self.assertEqual(self.grind(2, 'plan', bad).stderr, bad + ':1: unknown escape character: \\x1b\n')
+
     def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
                           ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['goal', PAPER_JOB], ['--help'],

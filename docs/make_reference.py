@@ -52,7 +52,7 @@ def allowed(entry):
     if 'choices' in entry:
         text = ', '.join('`%s`' % choice for choice in entry['choices'])
     if not text:
-        text = {'text': 'a text', 'flag': 'true or false'}[entry['type']]
+        text = {'text': 'a text', 'path': 'an absolute path, or one that begins with ~/', 'flag': 'true or false'}[entry['type']]
     if entry.get('integer'):
         text += ', whole'
     if 'default' in entry:

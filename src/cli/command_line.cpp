@@ -2,6 +2,7 @@
 
 #include "cli/completion.h"
 #include "cli/usage.h"
+#include "flute_grinder/job/escaped.h"
 
 #include <cstdio>
 #include <memory>
@@ -42,8 +43,9 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
   } catch (const CLI::ParseError& error) {
     // A word that nobody knows is named before what is missing, which it may have been meant for.
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app_);
-    if (unknown.empty()) return app_.exit(error) == 0 ? 0 : kUsage;
-    std::fprintf(stderr, "%s\nRun with --help for more information.\n", unknown.c_str());
+    const std::string wrong = unknown.empty() ? wrongNumber(error) : unknown;
+    if (wrong.empty()) return app_.exit(error) == 0 ? 0 : kUsage;
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", escaped(wrong).c_str());
     return kUsage;
   }
 }

@@ -1,30 +1,23 @@
 #pragma once
 
+#include "cli/output_file.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/motion/setpoint.h"
 #include "flute_grinder/report/csv_columns.h"
 
-#include <cstdio>
-#include <memory>
 #include <string>
 
 namespace grinder {
 
-/// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly. The
-/// old contents of the file stay until the first line is written or the file is closed; if neither happens, a new file
-/// is removed again.
+/// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly.
 class CsvFile {
  public:
   /// @param path the file.
   /// @param header its first line.
-  /// @throw FileError if it cannot be opened for writing.
-  CsvFile(std::string path, std::string header);
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
-  ~CsvFile();
+  /// @throw FileError as OutputFile does.
+  CsvFile(std::string path, const std::string& header);
 
-  /// Closes the file. @throw WriteError if writing failed.
+  /// Closes the file; without it, nothing is written. @throw FileError as OutputFile does.
   void close();
 
  protected:
@@ -32,16 +25,8 @@ class CsvFile {
   void print(const char* format, ...) __attribute__((format(printf, 2, 3)));
 
  private:
-  void begin();
-
-  struct Closer {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  const std::string path_;
-  const std::string header_;
-  bool created_ = false, begun_ = false;
+  OutputFile file_;
   int error_ = 0;  ///< errno of the first line that could not be written
-  std::unique_ptr<std::FILE, Closer> file_;
 };
 
 /// A line for each point of a curve.

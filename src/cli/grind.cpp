@@ -2,6 +2,7 @@
 #include "cli/csv.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/network/init_ros.h"
 
 #include <ros/ros.h>
@@ -61,7 +62,7 @@ int runToTheEnd(int argc, char** argv) {
   } catch (const WriteError& error) {
     return fail(error.what());
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s\n", error.what());
+    std::fprintf(stderr, "%s\n", escaped(error.what(), "\n").c_str());
   } catch (...) {
     std::fprintf(stderr, "unknown error\n");
   }

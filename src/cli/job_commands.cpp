@@ -113,10 +113,8 @@ void addTolerances(CLI::App& command, std::string& path) {
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
   auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
-                               "setpoints.csv -o report.html", [&commands, options] {
-                                 writeReport(commands.node, *options);
-                                 return 0;
-                               });
+                               "setpoints.csv -o report.html",
+                               [&commands, options] { return writeReport(commands.node, *options); });
   auto* file = command.add_option("FILE", options->file,
                                   "bag of 'roslaunch ... bag:=true', record of 'grind history', or CSV file of table, "
                                   "plan or run");

@@ -46,8 +46,7 @@ Json toJson(const StepTable& table, EvenStepRule rule, double step_length_mm) {
           {"max_even_error_rad", table.max_even_error}};
 }
 
-void writeCsv(const StepTable& table, const std::string& path) {
-  TableCsv csv(path);
+void writeCsv(const StepTable& table, TableCsv& csv) {
   int number = 0;
   for (const StepTable::Row& row : table.rows) csv.write(number++, row.point, row.theory);
   csv.close();
@@ -57,6 +56,8 @@ void writeCsv(const StepTable& table, const std::string& path) {
 
 int runTable(const TableOptions& options) {
   const GrindJob job = readJobFile(options.job, {}, toString(OperationKind::kFlute));
+  std::optional<TableCsv> csv;
+  if (!options.csv.empty()) csv.emplace(options.csv);
   const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
   const StepTable table = interpolateBySteps(ConicalCutter(job.cutter), job.interpolation.rotary_scale, rule,
                                              options.step_length_mm * kMillimetre);
@@ -65,7 +66,7 @@ int runTable(const TableOptions& options) {
                  table.rows.back().point.x / kMillimetre);
     return 1;
   }
-  if (!options.csv.empty()) writeCsv(table, options.csv);
+  if (csv) writeCsv(table, *csv);
   if (options.json) {
     print(toJson(table, rule, options.step_length_mm));
   } else {

@@ -12,6 +12,7 @@
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
@@ -154,7 +155,7 @@ int awaitMotion(int status, const StateWatch& watch, const std::function<bool(st
 }  // namespace
 
 int fail(const std::string& text) {
-  std::fprintf(stderr, "%s\n", text.c_str());
+  std::fprintf(stderr, "%s\n", escaped(text, "\n").c_str());
   return 1;
 }
 

@@ -120,22 +120,47 @@ Json documentOf(const std::string& path, int job, bool draws, ReportContext& con
   return document;
 }
 
-/// Replaces this process by the program that draws the report.
-[[noreturn]] void draw(const Json& document, const ReportOptions& options) {
-  std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath()};
-  // In one word, since a value may begin with a dash.
-  if (!options.html.empty()) arguments.push_back("--output=" + options.html);
-  if (!options.pdf.empty()) arguments.push_back("--pdf=" + options.pdf);
-  const auto input = temporaryFile(text(document));
-  ::dup2(::fileno(input.get()), STDIN_FILENO);
-  std::vector<char*> argv = pointersTo(arguments);
-  execv(argv[0], argv.data());
-  throw FileError(arguments[0] + ": cannot be started: " + std::strerror(errno));
+/// Runs a program that draws. @param words it and its arguments. @param document on its standard input.
+/// @return its exit status; the reason is on stderr.
+int drawBy(std::vector<std::string> words, const std::string& document) {
+  // By a file, so that nothing waits for the other end of a pipe.
+  const auto input = temporaryFile(document);
+  words.insert(words.begin(), PYTHON_EXECUTABLE);
+  const std::vector<char*> argv = pointersTo(words);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ::fileno(input.get()), STDIN_FILENO);
+  pid_t child = 0;
+  const int error = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (error != 0) throw FileError(words[0] + ": cannot be started: " + std::strerror(error));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  throw FileError(words[1] + ": was ended by signal " + std::to_string(WTERMSIG(status)));
+}
+
+/// The files of a report.
+struct ReportFiles {
+  std::unique_ptr<OutputFile> html, pdf;
+};
+
+/// @return the exit status.
+int draw(const Json& document, const ReportFiles& files) {
+  std::vector<std::string> words{programPath()};
+  if (files.html) words.push_back("--output=" + files.html->forProgram());
+  if (files.pdf) words.push_back("--pdf=" + files.pdf->forProgram());
+  const int status = drawBy(words, text(document));
+  if (status != 0) return status;
+  for (OutputFile* file : {files.html.get(), files.pdf.get()}) {
+    if (file) file->close();
+  }
+  return 0;
 }
 
 }  // namespace
 
-void writeReport(const std::string& node, const ReportOptions& options) {
+int writeReport(const std::string& node, const ReportOptions& options) {
   if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
   const bool draws = !options.html.empty() || !options.pdf.empty();
   if (!draws && !options.json) throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
@@ -153,31 +178,22 @@ void writeReport(const std::string& node, const ReportOptions& options) {
   const std::string path =
       options.last ? lastRecord(options.folder.empty() ? historyFolder(node) : options.folder) : options.file;
   context.file = std::filesystem::path(path).filename();
+  kindOf(path);  // before the files are opened, none of which may be this one
+  const ReportFiles files{openOutput(options.html), openOutput(options.pdf)};
   Json document = documentOf(path, options.job, draws, context);
   if (options.json) {
     Json data = document;
     data.erase("plots");
     print(data);
-    if (std::fflush(stdout) != 0) return;  // which the program itself reports
+    if (std::fflush(stdout) != 0) return 1;  // which the program itself reports
   }
-  if (draws) draw(document, options);
+  return draws ? draw(document, files) : 0;
 }
 
-bool drawTool(const std::string& json, const std::string& svg) {
-  // By a file, so that nothing waits for the other end of a pipe.
-  const auto input = temporaryFile(json);
-  std::vector<std::string> arguments{PYTHON_EXECUTABLE, programPath() / "tool.py", svg};
-  const std::vector<char*> argv = pointersTo(arguments);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ::fileno(input.get()), STDIN_FILENO);
-  pid_t child = 0;
-  const int error = ::posix_spawn(&child, argv[0], &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw FileError(arguments[0] + ": cannot be started: " + std::strerror(error));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+int drawTool(const std::string& json, OutputFile& svg) {
+  const int status = drawBy({programPath() / "tool.py", svg.forProgram()}, json);
+  if (status == 0) svg.close();
+  return status;
 }
 
 }  // namespace grinder

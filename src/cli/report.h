@@ -1,5 +1,7 @@
 #pragma once
 
+#include "cli/output_file.h"
+
 #include <string>
 
 namespace grinder {
@@ -21,15 +23,15 @@ struct ReportOptions {
   std::string urdf;
 };
 
-/// Writes a report: works out what it says, and replaces this process by the Python program that draws it, if it is to
-/// be drawn.
+/// Writes a report: works out what it says, and has a Python program draw it, if it is to be drawn.
 /// @param node the grinder's name, as for historyFolder().
 /// @throw JobFileError or ParameterError if the machine or the tolerances cannot be read, FileError if the file cannot,
 /// there is no record, or the program is missing, std::invalid_argument if nothing is asked for.
-void writeReport(const std::string& node, const ReportOptions& options);
+/// @return the exit status.
+int writeReport(const std::string& node, const ReportOptions& options);
 
-/// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return whether that succeeded; the
-/// reason is on stderr. @throw FileError if the program is missing.
-bool drawTool(const std::string& json, const std::string& svg);
+/// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return the exit status; the reason
+/// is on stderr. @throw FileError if the program is missing.
+int drawTool(const std::string& json, OutputFile& svg);
 
 }  // namespace grinder

@@ -2,6 +2,7 @@
 
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
+#include "cli/output_file.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
@@ -52,6 +53,7 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
 int runSetup(const SetupOptions& options) {
   const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep), options.operation);
   const LoopConfig config = readMachineFiles({options.parameters}, options.urdf).config.loop;
+  if (options.write) requireNotRead(options.job + ".before");
   const Range swivel = config.machine.swivel;
   const auto result = solveJobSetup(job, swivel, options.keep);
   if (const auto* refusal = std::get_if<std::string>(&result)) {

@@ -1,6 +1,7 @@
 #include "cli/simulate.h"
 
 #include "cli/ground_tool.h"
+#include "cli/output_file.h"
 #include "cli/report.h"
 #include "cli/run_before.h"
 #include "flute_grinder/curve/units.h"
@@ -14,9 +15,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <sstream>
 
@@ -25,8 +24,6 @@ namespace grinder {
 namespace {
 
 using units::kMillimetre;
-
-constexpr int kUnusable = 2;  ///< exit status for a file that cannot be written
 
 /// Where the wheel can have been on the cutter.
 Range reach(const GrindJob& job) {
@@ -54,18 +51,18 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 }
 
 /// The cutter as a solid, with as much of the shank as the flutes run out into and a diameter more.
-void writeStlFile(const GroundTool& tool, const std::string& path) {
+void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
   const GrindProcess& p = job.process;
   const double length = job.cutter.flute_length;
   const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
   const SolidExtent extent{0, length, job.cutter.shank_diameter, length + run_out + job.cutter.shank_diameter};
   const CutterSolid solid = cutterSolid(tool.cutter, extent);
-  std::ofstream file(path, std::ios::binary);
-  if (!file) throw FileError(path + ": cannot be written: " + std::strerror(errno));
-  writeStl(file, solid);
-  file.close();
-  if (!file) throw WriteError(path + ": write failed: " + std::strerror(errno));
+  std::ostringstream stl;
+  writeStl(stl, solid);
+  const std::string bytes = stl.str();
+  const bool good = std::fwrite(bytes.data(), 1, bytes.size(), file.stream()) == bytes.size();
+  file.close(good ? 0 : errno);
 }
 
 /// What is simulated: the job alone, or a run of it.
@@ -129,14 +126,15 @@ int runSimulate(const SimulateOptions& options) {
   const std::vector<double> at = sectionsOf(options, *source.job);
   std::optional<GroundToolCsv> csv;
   if (!options.csv.empty()) csv.emplace(options.csv, source.job);
+  const auto stl = openOutput(options.stl), svg = openOutput(options.svg);
   try {
     const GroundTool tool = simulate(source, at);
     if (csv) csv->write(tool);
     if (csv) csv->close();
     const int status = show(tool, options.json);
-    if (!options.stl.empty()) writeStlFile(tool, options.stl);
-    if (!options.svg.empty() && !drawTool(text(toJson(tool)), options.svg)) return kUnusable;
-    return status;
+    if (stl) writeStlFile(tool, *stl);
+    const int drawn = svg ? drawTool(text(toJson(tool)), *svg) : 0;
+    return drawn != 0 ? drawn : status;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;

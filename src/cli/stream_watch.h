@@ -17,7 +17,7 @@ namespace grinder {
 class StreamWatch {
  public:
   /// @param nh the grinder's namespace.
-  /// @param csv file to write, or empty; it is opened, but unchanged until the first setpoint.
+  /// @param csv file to write, or empty; it is opened, but unchanged until close(), and then if there is a setpoint.
   /// @throw FileError if it cannot be opened.
   StreamWatch(const ros::NodeHandle& nh, const std::string& csv);
 

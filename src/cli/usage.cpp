@@ -56,4 +56,10 @@ std::string unknownWord(const CLI::App& app) {
   }
 }
 
+std::string wrongNumber(const CLI::ParseError& error) {
+  const std::string words = error.what(), begin = "Could not convert: ";
+  if (words.rfind(begin, 0) != 0) return "";
+  return words.substr(begin.size()) + "; allowed: a number, with a point as in 124.7, or a whole one where it counts";
+}
+
 }  // namespace grinder

@@ -27,7 +27,7 @@ RequestReply Answer::reply() const {
     const Unit unit = axis == kA ? Unit::kRadianPerSecond : Unit::kFeedMetrePerSecond;
     return grinder::text(Quantity{si, unit});
   };
-  const auto words = [&] { return drive_text.view().empty() ? "" : ": " + std::string(drive_text.view()); };
+  const auto words = [&] { return drive_text.text().empty() ? "" : ": " + drive_text.text(); };
   std::ostringstream text;
   const bool confirmation = refusal == Refusal::kSwivelMeasured || refusal == Refusal::kSwivelInUse;
   text << (confirmation ? "confirm-swivel" : toString(event)) << " refused: ";
@@ -44,7 +44,7 @@ RequestReply Answer::reply() const {
       break;
     case Refusal::kInterlock: text << toString(interlock); break;
     case Refusal::kPreparing: text << "the drive has not become ready in time; wait, then try again"; break;
-    case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.view(); break;
+    case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.text(); break;
     case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
     case Refusal::kMoved: text << "the axes are not where the job was planned to start; plan it again"; break;
     case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 #include <utility>
 
@@ -128,6 +129,14 @@ std::string ParameterReader::text(const std::string& path, const std::string& wh
     throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: " + what);
   }
   return static_cast<std::string>(value);
+}
+
+std::string ParameterReader::path(const std::string& path) const {
+  const std::string what = "an absolute path, or one that begins with ~/", given = text(path, what);
+  if (given[0] == '/') return given;
+  const char* home = std::getenv("HOME");
+  if ((given == "~" || given.compare(0, 2, "~/") == 0) && home && *home == '/') return home + given.substr(1);
+  throw ParameterError("parameter " + name(path) + " = \"" + given + "\"; allowed: " + what);
 }
 
 }  // namespace grinder

@@ -19,6 +19,15 @@ void require(bool done, const std::string& path) {
   if (!done) throw std::system_error(errno, std::generic_category(), path);
 }
 
+void write(int descriptor, const std::string& text, const std::string& path) {
+  for (std::size_t done = 0; done < text.size();) {
+    const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    require(count >= 0, path);
+    done += static_cast<std::size_t>(count);
+  }
+}
+
 /// A descriptor, which is closed at the end of its scope.
 class Descriptor {
  public:
@@ -28,58 +37,97 @@ class Descriptor {
   ~Descriptor() { ::close(number_); }
 
   void sync() const { require(::fsync(number_) == 0, path_); }
-  void write(const std::string& text) const {
-    for (std::size_t done = 0; done < text.size();) {
-      const ssize_t count = ::write(number_, text.data() + done, text.size() - done);
-      if (count < 0 && errno == EINTR) continue;
-      require(count >= 0, path_);
-      done += static_cast<std::size_t>(count);
-    }
-  }
+  void write(const std::string& text) const { grinder::write(number_, text, path_); }
 
  private:
   int number_;
   const std::string& path_;
 };
 
-/// @param fresh path of the new file. @param number its descriptor. @param old whose owner and mode it gets, if any.
-void writeInOneStep(const std::string& file, const std::string& text, const std::string& fresh, int number,
-                    const struct stat* old = nullptr) {
-  const Descriptor descriptor(number, fresh);
-  try {
-    // Who is not root cannot give a file away, and need not, if it is his own.
-    require(!old || ::fchown(number, old->st_uid, old->st_gid) == 0 || errno == EPERM, fresh);
-    require(!old || ::fchmod(number, old->st_mode & 07777) == 0, fresh);
-    descriptor.write(text);
-    descriptor.sync();
-    require(::rename(fresh.c_str(), file.c_str()) == 0, file);
-  } catch (const std::system_error&) {
-    ::unlink(fresh.c_str());
-    throw;
+/// Where links lead, to the name of a file that there may not be.
+std::string behindLinks(const std::string& path) {
+  constexpr int most = 40;  // as Linux
+  std::filesystem::path file = path;
+  std::error_code error;
+  for (int i = 0; i < most && std::filesystem::is_symlink(file, error); ++i) {
+    file = file.parent_path() / std::filesystem::read_symlink(file, error);
+  }
+  return file;
+}
+
+std::string folderOf(const std::string& path) { return std::filesystem::absolute(path).parent_path(); }
+
+/// Takes a name beside a file that nobody has. @param take whether it could take one; EEXIST if not.
+template <typename Take>
+std::string takeName(const std::string& file, const Take& take) {
+  for (int i = 0;; ++i) {
+    const std::string name = file + "." + std::to_string(i) + ".new";
+    if (take(name.c_str())) return name;
+    require(errno == EEXIST, file);
   }
 }
 
 }  // namespace
 
+FileReplacement::FileReplacement(const std::string& path) : file_(behindLinks(path)) {
+  is_new_ = ::stat(file_.c_str(), &old_) != 0;
+  require(is_new_ ? errno == ENOENT : ::access(file_.c_str(), W_OK) == 0, file_);
+  constexpr mode_t mode = 0666;
+  descriptor_ = ::open(folderOf(file_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
+  // FAT and NFS have no files without a name.
+  if (descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
+    fresh_ = takeName(file_, [this](const char* name) {
+      descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+      return descriptor_ >= 0;
+    });
+  }
+  require(descriptor_ >= 0, file_);
+}
+
+FileReplacement::~FileReplacement() {
+  ::close(descriptor_);
+  if (!fresh_.empty()) ::unlink(fresh_.c_str());
+}
+
+void FileReplacement::commit() {
+  // Who is not root cannot give a file away, and need not, if it is his own.
+  require(is_new_ || ::fchown(descriptor_, old_.st_uid, old_.st_gid) == 0 || errno == EPERM, file_);
+  require(is_new_ || ::fchmod(descriptor_, old_.st_mode & 07777) == 0, file_);
+  require(::fsync(descriptor_) == 0, file_);
+  if (fresh_.empty()) {
+    const std::string nameless = "/proc/self/fd/" + std::to_string(descriptor_);
+    fresh_ = takeName(file_, [&](const char* name) {
+      return ::linkat(AT_FDCWD, nameless.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+    });
+  }
+  require(::rename(fresh_.c_str(), file_.c_str()) == 0, file_);
+  fresh_.clear();
+}
+
 void replaceFile(const std::string& path, const std::string& text) {
-  const std::string file = std::filesystem::canonical(path);
-  struct stat old {};
-  require(::stat(file.c_str(), &old) == 0 && ::access(file.c_str(), W_OK) == 0, file);
-  std::string fresh = file + ".XXXXXX";
-  const int number = ::mkostemp(fresh.data(), O_CLOEXEC);
-  writeInOneStep(file, text, fresh, number, &old);
-  settleFile(file);
+  FileReplacement fresh(path);
+  write(fresh.descriptor(), text, fresh.file());
+  fresh.commit();
+  settleFile(fresh.file());
 }
 
 void writeFile(const std::string& path, const std::string& text) {
   const std::string fresh = path + ".new";
   // A FIFO must not block.
   const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC;
-  writeInOneStep(path, text, fresh, ::open(fresh.c_str(), flags, 0644));
+  const Descriptor descriptor(::open(fresh.c_str(), flags, 0644), fresh);
+  try {
+    descriptor.write(text);
+    descriptor.sync();
+    require(::rename(fresh.c_str(), path.c_str()) == 0, path);
+  } catch (const std::system_error&) {
+    ::unlink(fresh.c_str());
+    throw;
+  }
 }
 
 void settleFile(const std::string& path) {
-  const std::string folder = std::filesystem::absolute(path).parent_path();
+  const std::string folder = folderOf(path);
   Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC), folder).sync();
 }
 

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/job/did_you_mean.h"
 
-#include <cctype>
 #include <cstdlib>
 #include <set>
 #include <utility>
@@ -68,11 +67,8 @@ FlatFile::FlatFile(const std::string& text, std::string name, std::string kind, 
 }
 
 void FlatFile::fail(int line, std::string what) {
-  for (char& c : what) {
-    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = '?';
-  }
   if (what.size() > kMaxError) what.replace(kMaxError, std::string::npos, "...");
-  add(name_ + ":" + std::to_string(line) + ": " + what);
+  add(name_ + ":" + std::to_string(line) + ": " + escaped(what));
 }
 
 void FlatFile::add(const std::string& errors) {

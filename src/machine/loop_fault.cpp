@@ -11,7 +11,8 @@ Reason reasonOf(const LoopFault& fault) {
   reason.kind = row.reason;
   reason.axis = fault.axis;
   reason.detail = toString(fault.interlock);
-  if (!fault.drive_text.view().empty()) reason.detail = ": " + std::string(fault.drive_text.view());
+  const std::string words = fault.drive_text.text();
+  if (!words.empty()) reason.detail = ": " + words;
   reason.unit = row.unit == Unit::kMetre ? unitOf(fault.axis, 0) : row.unit;
   reason.value = fault.value;
   reason.limit = fault.limit;

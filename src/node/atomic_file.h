@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/job/escaped.h"
+
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -8,10 +10,11 @@
 
 namespace grinder {
 
-/// An atomic file that cannot be read or written; what() names it and the reason.
+/// An atomic file that cannot be read or written; what() names it and the reason, and is escaped(): a damaged file may
+/// have anything.
 class AtomicFileError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit AtomicFileError(const std::string& text) : std::runtime_error(escaped(text)) {}
 };
 
 /// An atomic file that was read, and is not as it was written.

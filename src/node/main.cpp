@@ -1,4 +1,5 @@
 #include "flute_grinder/control/realtime.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/network/init_ros.h"
 #include "flute_grinder/network/master_watch.h"
@@ -80,7 +81,8 @@ int main(int argc, char** argv) {
     }
     spinner.stop();
   } catch (const std::exception& error) {
-    ROS_FATAL_STREAM(error.what());
+    // Drives and files have their say in it.
+    ROS_FATAL_STREAM(grinder::escaped(error.what(), "\n"));
     return 1;
   }
   ros::shutdown();

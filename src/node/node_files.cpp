@@ -12,8 +12,8 @@ std::string filePath(const std::string& parameter, const std::string& node, cons
 }  // namespace
 
 NodeFiles readNodeFiles(const ParameterReader& parameters, const std::string& node) {
-  return {filePath(parameters.text("journal"), node, ".journal"),
-          filePath(parameters.text("offsets"), node, ".offsets"), filePath(parameters.text("history"), node, "/")};
+  return {filePath(parameters.path("journal"), node, ".journal"),
+          filePath(parameters.path("offsets"), node, ".offsets"), filePath(parameters.path("history"), node, "/")};
 }
 
 }  // namespace grinder

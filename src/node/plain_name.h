@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
-#include <cctype>
+#include "flute_grinder/job/escaped.h"
+
 #include <cstddef>
 #include <string>
 
@@ -9,17 +9,14 @@ namespace grinder {
 
 constexpr std::size_t kMaxName = 255;  ///< of a job, or of who sets an offset
 
-/// Whether a name from a peer may be kept and shown. Control characters are refused, since names are printed on
-/// terminals.
-inline bool isPlainName(const std::string& name) {
-  const auto controls = [](unsigned char c) { return std::iscntrl(c) != 0; };
-  return name.size() <= kMaxName && std::none_of(name.begin(), name.end(), controls);
-}
+/// Whether a name from a peer may be kept and shown. What would have to be escaped() is refused, since names are
+/// printed on terminals.
+inline bool isPlainName(const std::string& name) { return name.size() <= kMaxName && escaped(name) == name; }
 
 /// Why a name is refused.
 inline std::string nameRefusal(const std::string& field, const std::string& name) {
   return field + " has " + std::to_string(name.size()) + " characters; allowed: up to " + std::to_string(kMaxName) +
-         ", and none that controls a terminal";
+         ", in UTF-8, and none that controls a terminal";
 }
 
 }  // namespace grinder

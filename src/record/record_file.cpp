@@ -2,6 +2,9 @@
 
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/regular_file.h"
+#include "flute_grinder/job/yaml_text.h"
+#include "record/record_shape.h"
 #include "record/record_summary.h"
 
 #include <algorithm>
@@ -21,6 +24,7 @@ constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
 constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
 
 std::string textOf(const std::string& path) {
+  requireRegularFile(path);
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   std::string text(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
   if (!file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()))) {
@@ -29,23 +33,42 @@ std::string textOf(const std::string& path) {
   return text;
 }
 
-/// @throw FileError
-Json recordIn(const std::string& path, Json (*parse)(const std::string&)) {
-  Json record;
+/// What the library says, without its own numbers.
+std::string wordsOf(const std::exception& error) {
+  const std::string words = error.what();
+  const bool numbered = words.rfind("[json.exception", 0) == 0;
+  return numbered ? words.substr(words.find("] ") + 2) : words;
+}
+
+/// As summaryOf(). What is JSON, but has something else where the scanner looks for an object or a list, is named by
+/// its key.
+Json namedSummaryOf(const std::string& text) {
   try {
-    record = parse(textOf(path));
+    return summaryOf(text);
+  } catch (const std::invalid_argument&) {
+    Json whole = Json::accept(text) ? Json::parse(text) : Json();
+    if (whole.is_object()) checkRecord(whole, false);
+    throw;
+  }
+}
+
+/// @throw FileError
+Json recordIn(const std::string& path, bool summary) {
+  try {
+    const std::string text = textOf(path);
+    Json record = summary ? namedSummaryOf(text) : Json::parse(text);
+    if (!record.is_object() || record.value("record", Json()) != 1) {
+      throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
+    }
+    checkRecord(record, summary);
+    return record;
   } catch (const FileError&) {
     throw;
+  } catch (const JobFileError&) {
+    throw;
   } catch (const std::exception& error) {
-    throw FileError(path + ": is no record of a job: " + error.what());
+    throw FileError(path + ": is no record of a job: " + wordsOf(error));
   }
-  if (!record.is_object() || record.value("record", Json()) != 1)
-    throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
-  for (const char* key : {"machine", "job", "wheel", "passes", "started", "ended", "outcome", "setpoints",
-                          "late_cycles", "strokes", "holds", "overrides"}) {
-    if (!record.contains(key)) throw FileError(path + ": is no complete record of a job: " + key + " is missing");
-  }
-  return record;
 }
 
 }  // namespace
@@ -102,10 +125,8 @@ RecordFiles recordFilesIn(const std::string& folder) {
   return files;
 }
 
-Json readRecord(const std::string& path) {
-  return recordIn(path, [](const std::string& text) { return Json::parse(text); });
-}
+Json readRecord(const std::string& path) { return recordIn(path, false); }
 
-Json readRecordSummary(const std::string& path) { return recordIn(path, summaryOf); }
+Json readRecordSummary(const std::string& path) { return recordIn(path, true); }
 
 }  // namespace grinder

@@ -2,12 +2,15 @@
 """Shows what `grind table`, `grind plan` and wrong usage print, and the exit status: 0 done, 1 the job said no, 2 wrong usage or an
 unreadable file."""
 
+import contextlib
 import io
 import math
 import os
 import pathlib
 import pty
 import re
+import shutil
+import stat
 import subprocess
 import sys
 import xml.etree.ElementTree
@@ -277,7 +280,66 @@ class TestGoal(CommandLine):
 
 
 class TestOutput(CommandLine):
-    """A disk that is full, and a pipe that nobody reads."""
+    """What is written and printed: into files, onto a disk that is full, and into a pipe that nobody reads."""
+
+    def test_no_file_that_a_command_reads_is_written(self):
+        job, table = self.job_with_wheel(), self.path('table.csv')
+        self.grind(0, 'table', job, '--step-length', '0.2', '--csv', table)
+        wheel, linked, machine = self.path('wheel.yaml'), self.path('linked'), self.path('machine.yaml')
+        os.link(job, linked)
+        shutil.copy(gc.package_file('config/grinder.yaml'), machine)
+        os.symlink('wheel.yaml', self.path('job.yaml.before'))
+        before = self.contents()
+        for output, *arguments in ((job, 'plan', job, '--csv', job), (linked, 'plan', job, '--csv', linked),
+                                   (wheel, 'plan', job, '--csv', wheel),
+                                   (machine, 'plan', job, '--machine', machine, '--csv', machine),
+                                   (job, 'table', job, '--step-length', '0.2', '--csv', job),
+                                   (job, 'simulate', job, '--stl', job), (wheel, 'simulate', job, '--svg', wheel),
+                                   (table, 'report', table, '-o', table), (table, 'report', table, '--pdf', table),
+                                   (job + '.before', 'setup', job, '--write')):
+            self.assertEqual(self.grind(2, *arguments).stderr,
+                             output + ': cannot be written: the command reads it; allowed: a file that it does not read\n')
+        both = self.path('both')
+        self.assertEqual(self.grind(2, 'simulate', job, '--csv', both, '--stl', both).stderr,
+                         both + ': cannot be written: another option writes it; allowed: a file of its own for each\n')
+        self.assertEqual(self.contents(), before)
+
+    def job_with_wheel(self):
+        """A job in the test's folder, with a wheel file beside it."""
+        shutil.copy(gc.package_file('wheels/straight_d125_w2.yaml'), self.path('wheel.yaml'))
+        text = pathlib.Path(PAPER_JOB).read_text()
+        return self.write('job.yaml', re.sub(r'(?ms)^  wheel:.*?^(?=\S|  \w)', '  wheel:\n    file: wheel.yaml\n', text))
+
+    def contents(self):
+        return {path.name: path.read_bytes() for path in pathlib.Path(self.folder).iterdir()}
+
+    def test_file_is_replaced_in_one_step(self):
+        real, link = self.path('real.csv'), self.path('link.csv')
+        for there in (False, True):
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(link)
+            os.symlink('real.csv', link)
+            self.grind(0, 'plan', PAPER_JOB, '--csv', link)
+            self.assertTrue(os.path.islink(link))
+            self.assertEqual(stat.S_IMODE(os.stat(real).st_mode), 0o640 if there else 0o644)
+            self.assertEqual(self.csv(real)[0]['cycle'], '0')
+            os.chmod(real, 0o640)
+        # A drawing that ends early leaves it.
+        before = self.contents()
+        broken = gc.temp_folder(self.addCleanup)
+        table = os.path.join(broken, 'table.csv')
+        self.grind(0, 'table', PAPER_JOB, '--step-length', '0.2', '--csv', table)
+        pathlib.Path(broken, 'matplotlib.py').write_text('raise SystemExit(3)')
+        for arguments in (['simulate', PAPER_JOB, '--svg'], ['report', table, '-o']):
+            self.assertEqual(gc.grind(*arguments, link, environment={'PYTHONPATH': broken}).returncode, 3)
+        self.assertEqual(self.contents(), before)
+
+    def test_file_of_the_standard_output(self):
+        printed = self.grind(0, 'plan', PAPER_JOB).stdout
+        self.grind(0, 'plan', PAPER_JOB, '--csv', self.path('plan.csv'))
+        with open(self.path('all'), 'w') as output:
+            gc.grind('plan', PAPER_JOB, '--csv', '/dev/stdout', stdout=output)
+        self.assertEqual(pathlib.Path(self.path('all')).read_text(), pathlib.Path(self.path('plan.csv')).read_text() + printed)
 
     def test_file_on_a_full_disk(self):
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2', '--csv'], ['plan', PAPER_JOB, '--csv'],
@@ -296,6 +358,19 @@ class TestOutput(CommandLine):
 
 
 class TestUsage(CommandLine):
+    def test_number_is_named_with_what_is_allowed(self):
+        wheel = gc.package_file('wheels/straight_d125_w2.yaml')
+        for arguments, said in ((['wheel', 'measure', wheel, '--diameter', '124,7'], '--diameter = 124,7'),
+                                (['simulate', PAPER_JOB, '--at', '1.5,b'], '--at = 1.5,b'),
+                                (['simulate', PAPER_JOB, '--sections', '3.5'], '--sections = 3.5'),
+                                (['jog', 'x', '1,5\x1b[2J'], 'DISTANCE = 1,5\\x1b[2J')):
+            self.assertEqual(self.grind(2, *arguments).stderr.splitlines()[0], said +
+                             '; allowed: a number, with a point as in 124.7, or a whole one where it counts')
+
+    def test_texts_of_files_control_no_terminal(self):
+        bad = self.write('bad.yaml', 'cutter: "\\\x1b[2J"\n')
+        self.assertEqual(self.grind(2, 'plan', bad).stderr, bad + ':1: unknown escape character: \\x1b\n')
+
     def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['table', PAPER_JOB, '--step-length', '0.2'], ['table', PAPER_JOB, '--step-length', '2', '--json'],
                           ['plan', PAPER_JOB], ['plan', PAPER_JOB, '--json'], ['completion', 'bash'], ['goal', PAPER_JOB], ['--help'],

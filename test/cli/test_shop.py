@@ -86,6 +86,13 @@ class TestShop(CommandLine):
                                  '--until 2026-11-22 is before --since 2026-11-23; allowed: the same or later')):
             self.assertIn(said, self.grind(2, 'history', '--from', *self.folders, *arguments).stderr)
 
+    def test_no_record_is_written_over(self):
+        record = next(pathlib.Path(self.path('old')).iterdir())
+        before = record.read_bytes()
+        self.assertIn(str(record) + ': cannot be written: the command reads it',
+                      self.grind(2, 'history', '--from', self.path('old'), '--csv', str(record)).stderr)
+        self.assertEqual(record.read_bytes(), before)
+
     def test_csv_has_what_the_json_has(self):
         listed, _ = self.json(2, 'history', '--from', *self.folders, '--csv', self.path('list.csv'))
         with open(self.path('list.csv'), newline='') as file:

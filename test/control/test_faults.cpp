@@ -39,6 +39,11 @@ std::vector<FaultCase> faultCases() {
         d.status.fault = true;
         d.status.fault_text = "overcurrent in X (code 12)";
       });
+  add("DriveFaultThatControlsATerminal", FaultKind::kDriveFault, {"the drive reports a fault: \\x1b[2J\\t\\xff"},
+      [](FakeDrive& d) {
+        d.status.fault = true;
+        d.status.fault_text = "\x1b[2J\t\xff";
+      });
   add("ReadThrows", FaultKind::kDriveFault, {"the drive reports a fault: no answer (thrown by its read())"},
       [](FakeDrive&) { throw Thrown("no answer"); });
   add("ReadThrowsAnything", FaultKind::kDriveFault,
@@ -125,7 +130,7 @@ TEST(ControlLoopFault, OfADriveThatThrowsWithoutPowerRefusesThePower) {
   rig.run(3);
   EXPECT_EQ(rig.drive.writes, 0) << "before the first reading 0 is no position";
   EXPECT_EQ(rig.last().state, S::kDisabled);
-  EXPECT_EQ(rig.last().drive.fault_text.view(), "no answer (thrown by its read())");
+  EXPECT_EQ(rig.last().drive.fault_text.text(), "no answer (thrown by its read())");
   EXPECT_EQ(rig.ask(E::kEnable).text,
             "enable refused: the drive reports a fault: no answer (thrown by its read()); reset it first");
   rig.drive.on_read = nullptr;
@@ -153,12 +158,12 @@ TEST(FaultText, CutsOffWhatIsTooLong) {
   FaultText text;
   text = "one";
   text += ", two";
-  EXPECT_EQ(text.view(), "one, two");
+  EXPECT_EQ(text.text(), "one, two");
   text = std::string(FaultText::kMost - 1, 'x');
   text += "yz";
-  EXPECT_EQ(text.view(), std::string(FaultText::kMost - 1, 'x') + "y");
+  EXPECT_EQ(text.text(), std::string(FaultText::kMost - 1, 'x') + "y");
   text = "";
-  EXPECT_TRUE(text.view().empty());
+  EXPECT_TRUE(text.text().empty());
 }
 
 TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {

@@ -57,7 +57,7 @@ TEST_F(ControlLoopThread, GoesOnWhenTheDriveThrows) {
   CycleSample sample;
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(popInTime(sample));
-    EXPECT_EQ(sample.drive.fault_text.view(), "no clock (thrown by its wait())");
+    EXPECT_EQ(sample.drive.fault_text.text(), "no clock (thrown by its wait())");
     EXPECT_GT(sample.period, 0);
   }
   loop_->stopThread();

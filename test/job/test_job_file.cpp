@@ -240,7 +240,7 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
       {"depth_mm: 1.5", "depth_mm: &deep 1.5", "job.yaml:18 ... anchor ... allowed: none"},
       {"cutter:", "cutter: &cutter", "job.yaml: ... anchor ... allowed: none"},
       {"depth_mm: 1.5", "depth_mm: *deep", "job.yaml:18 ... anchor"},
-      {"pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass?major"},
+      {"pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass\\nmajor"},
       {"depth_mm: 1.5", "depth_mm: .nan", "job.yaml:18 ... process.depth_mm ... nan ... 0.001 to 50 mm"},
       {"depth_mm: 1.5", "depth_mm: 1e999", "job.yaml:18 ... process.depth_mm ... 0.001 to 50 mm"},
       {"  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",

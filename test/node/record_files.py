@@ -36,7 +36,7 @@ def record_of(file, started, ended, outcome='done', complete=(True,), setpoints=
     stroke = {'tooth': 1, 'pass': 1, 'depth_mm': 1, 'started_s': 0, 'duration_s': 1, 'feed_min_mm_min': 600,
               'feed_max_mm_min': 600, 'feed_min_x_mm': 0, 'deviation_um': 0, 'deviation_x_mm': 0,
               'following_error': {'x_um': 0, 'y_um': 0, 'z_um': 0, 'a_mdeg': 0}}
-    return {'record': 1, 'machine': {'period_ms': 1}, 'job': {'name': name, 'digest': '', 'file': file},
+    return {'record': 1, 'machine': {'software': '0.1.0', 'period_ms': 1}, 'job': {'name': name, 'digest': '', 'file': file},
             'started': started, 'ended': ended, 'outcome': outcome, 'reason': '', 'first': {'tooth': 1, 'pass': 1},
             'passes': len(complete), 'wheel': {'name': wheel, 'dressed': dressed},
             'planned': {'feed_limits': []}, 'setpoints': {'written': setpoints, 'lost': 0},

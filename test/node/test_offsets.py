@@ -214,7 +214,7 @@ class TestZeroPoints(OffsetsTest):
 
         run = self.client.send(gc.SHORT, wheel_name='\x1b[2J').wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))
-        self.assertIn('wheel_name has 4 characters; allowed: up to 255, and none that controls a terminal', run.text)
+        self.assertIn('wheel_name has 4 characters; allowed: up to 255, in UTF-8, and none that controls a terminal', run.text)
 
         d6 = gc.job_file(os.path.join(self.folder, 'd6.yaml'), end_diameter_mm=6)
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))

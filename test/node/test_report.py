@@ -592,7 +592,7 @@ class TestVerdict(ReportCase):
         self.assertEqual(self.report(self.path('changed.json')).rows['1, 1'][5], '-, -, -')
 
     def test_record_that_is_not_complete(self):
-        for text, reason in (('{"record": 1}', 'is no complete record of a job: machine is missing'),
+        for text, reason in (('{"record": 1}', 'is no record of a job: machine is missing'),
                              ('{"record": 2}', 'is no record of a job that this program knows; allowed: "record": 1'),
                              ('{', 'is no record of a job: .*')):
             pathlib.Path(self.path('bad.json')).write_text(text)

@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -321,6 +323,15 @@ class SchemaOfParameters : public ::testing::TestWithParam<Section> {
 
   static std::string type(const YAML::Node& entry) { return entry["type"] ? entry["type"].as<std::string>() : ""; }
 
+  /// What is allowed of a type, as messages have it.
+  static std::string words(const YAML::Node& entry) {
+    static const std::map<std::string, std::string> words{{"", "a number"},
+                                                          {"flag", "true or false"},
+                                                          {"text", "a text"},
+                                                          {"path", "an absolute path, or one that begins with ~/"}};
+    return words.at(type(entry));
+  }
+
   /// Whether the range of another parameter ends at this one.
   static bool isLimit(const std::string& path) {
     const std::string name = std::regex_replace(path, std::regex("axis_[xyza]"), "<joint>");
@@ -351,7 +362,7 @@ TEST_P(SchemaOfParameters, EachIsMissed) {
     if (type(entry) == "flag") {
       EXPECT_TRUE(begins(error, missing)) << error;
     } else {
-      EXPECT_EQ(error, missing + "; allowed: " + (type(entry) == "text" ? "a text" : "a number"));
+      EXPECT_EQ(error, missing + "; allowed: " + words(entry));
     }
   });
 }
@@ -367,10 +378,31 @@ TEST_P(SchemaOfParameters, AMisspelledOneIsNamedWithTheRightOne) {
   });
 }
 
+TEST_P(SchemaOfParameters, APathDoesNotDependOnWhereTheNodeWasStarted) {
+  forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
+    if (type(entry) != "path") return;
+    for (const std::string& relative : {"fg/", "./fg/", "../fg", "~other/fg/", "$HOME/fg"}) {
+      EXPECT_EQ(refusal(with(good_, path, relative)),
+                full + " = \"" + relative + "\"; allowed: an absolute path, or one that begins with ~/");
+    }
+    EXPECT_EQ(refusal(with(good_, path, "~/fg/")), "");
+  });
+}
+
+TEST(NodeFilesOfPaths, AreBelowTheHomeFolder) {
+  YAML::Node good = goodParameters(false);
+  good["journal"] = "~/fg/";
+  good["offsets"] = "~/offsets";
+  const std::string home = std::getenv("HOME");
+  const NodeFiles own = readNodeFiles(ParameterReader(test_support::toXmlRpc(good), "/a"), "/a/b");
+  EXPECT_EQ(own.journal, home + "/fg/a/b.journal");
+  EXPECT_EQ(own.offsets, home + "/offsets");
+}
+
 TEST_P(SchemaOfParameters, TheWrongTypeIsRefused) {
   forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
     const std::string wrong = type(entry).empty() ? "fast" : "7";
-    const std::string allowed = type(entry).empty() ? "a number" : type(entry) == "text" ? "a text" : "true or false";
+    const std::string allowed = words(entry);
     const std::string shown = wrong == "fast" ? "\"fast\"" : wrong;
     EXPECT_EQ(refusal(with(good_, path, wrong)), full + " = " + shown + "; allowed: " + allowed);
   });

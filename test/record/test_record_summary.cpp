@@ -20,7 +20,7 @@ const Tolerances kTolerances{0.5, 0.02, 50, 5, 1};
 /// Without strokes. The texts have what a scanner may stumble on.
 Json document() {
   return Json::parse(R"({
-    "record": 1, "machine": {"name": "}]\\", "period_ms": 1, "max_velocity": {"x_mm_s": 1}},
+    "record": 1, "machine": {"name": "}]\\", "software": "", "period_ms": 1, "max_velocity": {"x_mm_s": 1}},
     "job": {"name": "a \"job\" {[,", "digest": "", "file": {
       "cutter": {"end_diameter_mm": 10, "cone_angle_deg": 5, "flute_length_mm": 20, "rake_angle_deg": 8,
                  "rake_tolerance_deg": 0.5, "chordal_rake_tolerance_deg": 4, "core_tolerance_mm": 0.25,
@@ -85,6 +85,57 @@ TEST_F(RecordSummary, CountsStrokesAndHolds) {
   EXPECT_EQ(summary["complete_strokes"], 2);
   EXPECT_EQ(summary["holds"], 2);
   EXPECT_EQ(summary["job"]["name"], record["job"]["name"]);
+}
+
+/// What is said of a record; empty if nothing is.
+template <typename Read>
+std::string refusal(const std::string& path, const Json& record, const Read& read) {
+  std::ofstream(path) << record.dump();
+  try {
+    read(path);
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(RecordSummary, OfAValueOfAnotherTypeIsNone) {
+  const std::string path = folder_.path() / "20261122T170413.123Z.json", begin = path + ": is no record of a job: ";
+  Json good = document();
+  good["holds"] = {{{"at_s", 1}, {"duration_s", 2}, {"reason", "by \x1b[2J"}}};
+  good["reason"] = "\t";
+  std::mt19937 engine(1);
+  Json stroke = randomStroke(engine);
+  stroke.update(Json{{"depth_mm", nullptr}, {"started_s", 0}, {"duration_s", 1}, {"feed_min_x_mm", 0}});
+  stroke["following_error"]["z_um"] = 0;
+  good["strokes"] = {stroke};
+  EXPECT_EQ(refusal(path, good, readRecord), "");
+  EXPECT_EQ(readRecord(path)["holds"][0]["reason"], "by \\x1b[2J");
+  EXPECT_EQ(refusal(path, good, readRecordSummary), "");
+  EXPECT_EQ(readRecordSummary(path)["reason"], "\\t");
+  const struct {
+    const char* key;
+    Json value;
+    const char* said;
+  } rows[]{{"/passes", -1, "passes = -1; allowed: a whole number from 0"},
+           {"/job", 7, "job = 7; allowed: an object"},
+           {"/job/name", nullptr, "job.name = null; allowed: a text"},
+           {"/job/file/cutter/rake_angle_deg", "8", "job.file.cutter.rake_angle_deg = \"8\"; allowed: a number"},
+           {"/setpoints/written", "many", "setpoints.written = \"many\"; allowed: a whole number from 0"},
+           {"/late_cycles/longest_ms", true, "late_cycles.longest_ms = true; allowed: a number, or null"},
+           {"/outcome", Json::array(), "outcome = []; allowed: a text"}};
+  for (const auto& row : rows) {
+    Json record = good;
+    record[Json::json_pointer(row.key)] = row.value;
+    EXPECT_EQ(refusal(path, record, readRecord), begin + row.said);
+    EXPECT_EQ(refusal(path, record, readRecordSummary), begin + row.said);
+  }
+  Json record = good;
+  record["strokes"][0]["depth_mm"] = "1";
+  EXPECT_EQ(refusal(path, record, readRecord), begin + "strokes[0].depth_mm = \"1\"; allowed: a number, or null");
+  record = good;
+  record["holds"][0].erase("at_s");
+  EXPECT_EQ(refusal(path, record, readRecord), begin + "holds[0].at_s is missing");
 }
 
 TEST_F(RecordSummary, OfATextThatIsCutOffIsNone) {

@@ -48,6 +48,9 @@ class ParameterReader {
   /// @param others those that other programs read, with all that is below them.
   /// @throw ParameterError naming the first such parameter, and the nearest that is known.
   void refuseUnknown(const std::vector<std::string>& others = {}) const;
+  /// A file or a folder, with a leading `~` replaced by HOME. @throw ParameterError unless the parameter is then an
+  /// absolute path: what is relative would depend on where the program was started.
+  std::string path(const std::string& path) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace grinder {
@@ -23,7 +24,8 @@ class FaultText {
     size_ = static_cast<unsigned char>(size_ + count);
     return *this;
   }
-  std::string_view view() const noexcept { return {text_.data(), size_}; }
+  /// The only way to read it, since it comes from a drive: escaped(), for people. Not real-time safe.
+  std::string text() const;
 
  private:
   std::array<char, kMost> text_{};

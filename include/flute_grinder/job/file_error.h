@@ -1,13 +1,16 @@
 #pragma once
 
+#include "flute_grinder/job/escaped.h"
+
 #include <stdexcept>
+#include <string>
 
 namespace grinder {
 
-/// A file that cannot be opened, read or written; what() names it.
+/// A file that cannot be opened, read or written; what() names it, and is escaped() but for the ends of its lines.
 class FileError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit FileError(const std::string& text) : std::runtime_error(escaped(text, "\n")) {}
 };
 
 /// A file that could be opened, but not written to its end.

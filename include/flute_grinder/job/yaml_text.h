@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/job/escaped.h"
+
 #include <yaml-cpp/yaml.h>
 
 #include <cstddef>
@@ -9,10 +11,10 @@
 namespace grinder {
 
 /// A job, wheel or machine file that cannot be read; what() has one line per error: file, line, key, value and the
-/// allowed values.
+/// allowed values, and is escaped() but for the ends of its lines.
 class JobFileError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit JobFileError(const std::string& text) : std::runtime_error(escaped(text, "\n")) {}
 };
 
 constexpr std::size_t kMaxYamlFile = 65536;   ///< longest YAML file [bytes]

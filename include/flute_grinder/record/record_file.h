@@ -37,7 +37,8 @@ struct RecordFiles {
 /// @throw std::filesystem::filesystem_error if the folder cannot be read.
 RecordFiles recordFilesIn(const std::string& folder);
 
-/// The record in a file. @throw FileError if it cannot be read, is no record, or lacks a part.
+/// The record in a file, with its texts escaped(). @throw FileError if it cannot be read, is no record, or lacks a part
+/// or has one of another type; with the key, its value and what is allowed.
 Json readRecord(const std::string& path);
 
 /// What a list of many records needs of one, and verdictOnRecord() for the same verdict, several times as fast. It is

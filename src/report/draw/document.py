@@ -29,10 +29,17 @@ def writing(path):
         raise Failure('%s: cannot be written: %s' % (path, reason))
 
 
-def write(path, text):
-    """@raise Failure"""
-    with writing(path), open(path, 'w', encoding='utf-8') as file:
-        file.write(text)
+class Output:
+    """A file that `grind` has opened, which gives it its name when all is written: 'DESCRIPTOR:PATH'."""
+
+    def __init__(self, word):
+        descriptor, self.path = word.split(':', 1)
+        self.descriptor = int(descriptor)
+
+    def write(self, content):
+        """@raise Failure"""
+        with writing(self.path), open(self.descriptor, 'wb') as file:
+            file.write(content)
 
 
 def run(draw):

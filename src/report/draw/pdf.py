@@ -5,33 +5,27 @@ import shutil
 import subprocess
 import tempfile
 
-from document import Failure, write, writing
+from document import Failure, writing
 
 TIMEOUT = 300  # [s]
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
-def print_pdf(text, path):
-    """By a browser without a window, on A4 as the page's style sheet says. @raise Failure"""
+def find_browser(output):
+    """@raise Failure"""
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if not browser:
-        raise Failure(path + ': cannot be printed without a browser; install chromium, or print the HTML file with another')
-    # Fail before the browser does, which says less.
-    was_there = os.path.exists(path)
-    with writing(path), open(path, 'ab'):
-        pass
-    try:
-        print_page(browser, text, path)
-    except Failure:
-        if not was_there:
-            os.remove(path)
-        raise
+        raise Failure(output.path +
+                      ': cannot be printed without a browser; install chromium, or print the HTML file with another')
+    return browser
 
 
-def print_page(browser, text, path):
-    with writing(path), tempfile.TemporaryDirectory() as folder:
+def print_pdf(browser, text, output):
+    """By a browser without a window, on A4 as the page's style sheet says. @raise Failure"""
+    with writing(output.path), tempfile.TemporaryDirectory() as folder:
         page, made = os.path.join(folder, 'report.html'), os.path.join(folder, 'report.pdf')
-        write(page, text)
+        with open(page, 'w', encoding='utf-8') as file:
+            file.write(text)
         # The page is our own file and loads nothing; root, as in a container, has no sandbox.
         sandbox = ['--no-sandbox'] if os.geteuid() == 0 else []
         command = [browser, '--headless=new', '--disable-gpu', *sandbox, '--no-pdf-header-footer',
@@ -40,7 +34,8 @@ def print_page(browser, text, path):
             done = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True,
                                   timeout=TIMEOUT)
         except subprocess.TimeoutExpired:
-            raise Failure('%s: %s does not end within %d s' % (path, browser, TIMEOUT))
+            raise Failure('%s: %s does not end within %d s' % (output.path, browser, TIMEOUT))
         if not os.path.exists(made):
-            raise Failure('%s: %s printed nothing: %s' % (path, browser, done.stderr.strip()[-500:]))
-        shutil.copyfile(made, path)
+            raise Failure('%s: %s printed nothing: %s' % (output.path, browser, done.stderr.strip()[-500:]))
+        with open(made, 'rb') as file:
+            output.write(file.read())

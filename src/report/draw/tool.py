@@ -7,7 +7,7 @@ import sys
 import numpy as np
 from matplotlib.figure import Figure
 
-from document import run, write
+from document import Output, run
 from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
 
 # Key, asked key, title; of the section or of each tooth.
@@ -195,4 +195,4 @@ def draw_file(tool):
 
 
 if __name__ == '__main__':
-    run(lambda tool: write(sys.argv[1], draw_file(tool)))
+    run(lambda tool: Output(sys.argv[1]).write(draw_file(tool).encode()))

@@ -65,6 +65,7 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
 void ControlLoop::readDrive(const DriveCycle& cycle) {
   callDrive("read()", [&] { drive_.read(cycle, feedback_); });
   const std::uint64_t last_feedback = sample_.drive.feedback_count;
+  const double last_y = sample_.position[kY], elapsed = sample_.feedback_age + sample_.period;
   touched_ = sample_.drive.probe_contact;
   sample_.drive = feedback_.status;
   if (has_thrown_) {
@@ -88,7 +89,25 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
     history_.clear();
   }
   sample_.command_in_effect = history_.empty() ? command_ : history_.inEffect(sample_.drive.commands_waiting).command;
+  judgeY(last_y, elapsed);
   readSwivel();
+}
+
+/// Once Y was read where it cannot have come to, it counts as not homed until it is: where the axis is, nobody knows.
+/// @param last reading [m]. @param elapsed since then [s].
+void ControlLoop::judgeY(double last, double elapsed) {
+  const bool was_homed = y_homed_;
+  y_homed_ = state_ != MachineState::kHoming && sample_.drive.homed && has_positions_;
+  if (state_ == MachineState::kHoming) return;
+  // A drive that does not home gives no better reading than the one after a lift.
+  if (!capabilities_.homing && !wheel_.wheel().in_work) wheel_.doubtY(false);
+  const double slack = config_.following_error[kY];
+  // What moved unseen for longer is not believed.
+  const double most = slack + config_.machine.limits.max_velocity[kY] * std::min(elapsed, config_.feedback_timeout);
+  const bool credible = isPowered(state_) ? sample_.followingError(kY) <= slack  // not of NaN
+                                          : !was_homed || std::abs(sample_.position[kY] - last) <= most;
+  if (y_homed_ && !credible) wheel_.doubtY(true);
+  sample_.drive.homed = sample_.drive.homed && !wheel_.wheel().y_doubted;
 }
 
 void ControlLoop::readSwivel() {
@@ -111,7 +130,7 @@ void ControlLoop::trackMotion() {
   } else if (state_ != MachineState::kLifting) {
     std::optional<double> y;
     if (sample_.drive.homed && next_status_.position_valid) y = sample_.position[kY];
-    wheel_.observePosition(y, config_.machine.period);
+    wheel_.observePosition(y, isPowered(state_), config_.machine.period);
   }
 }
 
@@ -179,7 +198,10 @@ void ControlLoop::awaitHoming() {
   waited_ += sample_.period;
   homing_seen_ |= sample_.drive.homing;
   const bool over = homing_seen_ && !sample_.drive.homing;
-  if (over && sample_.drive.homed) return apply(MachineEvent::kDone);
+  if (over && sample_.drive.homed) {
+    wheel_.doubtY(false);
+    return apply(MachineEvent::kDone);
+  }
   if (!over && waited_ <= config_.homing_timeout) return;
   LoopFault fault;
   fault.kind = FaultKind::kHoming;

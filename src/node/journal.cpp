@@ -31,6 +31,7 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("wheel_in_work", progress.wheel.in_work);
   visit("clear_y_m", progress.wheel.clear_y);
   visit("lift_m", progress.wheel.lift);
+  visit("y_doubted", progress.wheel.y_doubted);
   visit("offset_x_m", progress.offset[kX]);
   visit("offset_y_m", progress.offset[kY]);
   visit("offset_z_m", progress.offset[kZ]);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace grinder {
 
@@ -121,7 +122,8 @@ void ProgressTracker::update(const LoopStatus& status) {
     changed_ = running_;
   }
   if (running_) updatePlace(status);
-  if (!running_ && progress_.wheel.in_work != status.wheel.in_work) {
+  const auto known = [](const Wheel& wheel) { return std::pair(wheel.in_work, wheel.y_doubted); };
+  if (!running_ && known(progress_.wheel) != known(status.wheel)) {
     progress_.wheel = status.wheel;
     write();
   }

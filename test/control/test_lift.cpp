@@ -1,11 +1,25 @@
 #include "control/paper_job.h"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
 namespace grinder::test_support {
 namespace test_lift {
+
+/// Turns Y by hand, without power.
+void turnTo(Rig<FakeDrive>& rig, double y) {
+  constexpr double kWay = 1e-3;
+  double& at = rig.drive.position[kY];
+  while (at != y) {
+    at += std::clamp(y - at, -kWay, kWay);
+    if (std::abs(at - y) < 1e-12) at = y;
+    rig.cycle();
+  }
+}
 
 class InTheWork : public testing::Test {
  protected:
@@ -45,20 +59,138 @@ TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
 TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
   const auto seeAt = [&](double y, bool homed, int cycles) {
-    rig_.drive.position[kY] = y;
     rig_.drive.status.homed = homed;
+    turnTo(rig_, y);
     return rig_.run(cycles).wheel_in_work;
   };
   EXPECT_TRUE(seeAt(kClearanceHeight - 1e-9, true, 200));
   EXPECT_TRUE(seeAt(0.05, false, 200)) << "the position means nothing";
-  EXPECT_TRUE(seeAt(std::numeric_limits<double>::quiet_NaN(), true, 200));
-  EXPECT_TRUE(seeAt(std::numeric_limits<double>::infinity(), true, 200));
+  EXPECT_TRUE(seeAt(kClearanceHeight - 1e-4, false, 1));
   for (int i = 0; i < 20; ++i) {
-    EXPECT_TRUE(seeAt(0.05, true, 10)) << "readings may be wrong";
-    EXPECT_TRUE(seeAt(0, true, 1));
+    EXPECT_TRUE(seeAt(kClearanceHeight + 1e-4, true, 10)) << "readings may be wrong";
+    EXPECT_TRUE(seeAt(kClearanceHeight - 1e-4, true, 1));
   }
   EXPECT_FALSE(seeAt(0.05, true, 200));
   EXPECT_FALSE(seeAt(0, true, 200)) << "and nothing brings it back but a job";
+}
+
+/// How Y comes to be read a turn of its screw too high.
+struct Jump {
+  const char* name;
+  std::function<void(Rig<FakeDrive>&)> happen;
+};
+
+const std::vector<Jump>& jumps() {
+  constexpr double kTurn = 0.01;
+  const auto in_one_cycle = [](Rig<FakeDrive>& rig, const std::function<void(FakeDrive&)>& reading) {
+    rig.drive.on_read = reading;
+    rig.cycle();
+    rig.drive.on_read = nullptr;
+  };
+  static const std::vector<Jump> all{
+      {"with power", [=](auto& rig) { in_one_cycle(rig, [](FakeDrive& d) { d.position[kY] += kTurn; }); }},
+      {"with X, which comes first",
+       [=](auto& rig) { in_one_cycle(rig, [](FakeDrive& d) { d.position[kX] += kTurn, d.position[kY] += kTurn; }); }},
+      {"seen by the drive itself",
+       [=](auto& rig) {
+         in_one_cycle(rig, [](FakeDrive& d) { d.position[kY] += kTurn, d.status.emergency_stop = true; });
+       }},
+      {"without power",
+       [=](auto& rig) {
+         breakDown(rig);
+         rig.run(50);
+         rig.drive.position[kY] += kTurn;
+       }},
+      {"unseen",
+       [=](auto& rig) {
+         breakDown(rig);
+         rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
+         rig.run(500);
+         rig.drive.on_read = nullptr;
+         rig.drive.position[kY] += kTurn;
+       }},
+      {"after no number", [=](auto& rig) {
+         in_one_cycle(rig, [](FakeDrive& d) { d.position[kY] = std::numeric_limits<double>::quiet_NaN(); });
+         rig.drive.position[kY] = rig.log[rig.log.size() - 2].position[kY] + kTurn;
+       }}};
+  return all;
+}
+
+TEST(YThatWasReadWhereItCannotBe, LeavesTheLiftAloneAndThenHoming) {
+  for (const MoveKind move : {MoveKind::kStroke, MoveKind::kApproach}) {
+    for (const Jump& jump : jumps()) {
+      SCOPED_TRACE(std::string(jump.name) + " in " + toString(move));
+      Rig<FakeDrive> rig;
+      rig.startPaper();
+      ASSERT_NO_FATAL_FAILURE(rig.runTo(move));
+      rig.run(10);
+      jump.happen(rig);
+      rig.run(500);
+      rig.drive.status.emergency_stop = false;
+      EXPECT_TRUE(rig.last().wheel_in_work);
+      EXPECT_FALSE(rig.last().drive.homed);
+      ASSERT_NO_FATAL_FAILURE(rig.recover());
+      rig.run(200);
+      EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel is in the work; lift it first");
+      EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
+      for (const int axis : {kX, kY}) {
+        EXPECT_EQ(rig.jog({axis, false, 1e-3, 0.01}).text, "jog refused: the axes are not homed");
+      }
+      const double from = rig.last().command[kY];
+      ASSERT_NO_FATAL_FAILURE(rig.lift());
+      EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
+      EXPECT_FALSE(rig.run(200).wheel_in_work);
+      EXPECT_EQ(rig.askToStartPaper().text, "start refused: the axes are not homed");
+      ASSERT_TRUE(rig.ask(E::kHome).accepted);
+      rig.run(3);
+      rig.drive.on_read = [](FakeDrive& d) { d.status.homing = false, d.position[kY] = 0.05; };
+      rig.cycle();
+      rig.drive.on_read = nullptr;
+      EXPECT_TRUE(rig.cycle().drive.homed);
+      EXPECT_TRUE(rig.askToStartPaper().accepted);
+    }
+  }
+}
+
+TEST(YThatWasReadWhereItCannotBe, IsBelievedOnceLiftedWhereTheDriveDoesNotHome) {
+  Rig<FakeDrive> rig(machineConfig(), [](FakeDrive& d) {
+    d.place(machineConfig().machine.park);
+    d.can.homing = false;
+  });
+  rig.startPaper();
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+  jumps().front().happen(rig);
+  EXPECT_TRUE(rig.run(500).wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig.recover());
+  EXPECT_FALSE(rig.last().drive.homed);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_TRUE(rig.cycle().drive.homed);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
+TEST(YThatWasReadWhereItCannotBe, IsNotBelievedAfterARestart) {
+  Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift, true});
+  EXPECT_TRUE(rig.run(500).wheel_in_work);
+  EXPECT_FALSE(rig.last().drive.homed);
+  EXPECT_TRUE(rig.loop->status().wheel.y_doubted);
+}
+
+TEST(WheelInTheWork, IsOneThatComesToRestThereOnItsApproach) {
+  Rig<FakeDrive> rig;
+  rig.startPaper();
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kApproach));
+  while (rig.last().command[kY] > kClearanceHeight + 5e-4) rig.cycle();
+  breakDown(rig);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+  turnTo(rig, kClearanceHeight - 1e-4);
+  EXPECT_TRUE(rig.run(1).wheel_in_work);
+  turnTo(rig, kClearanceHeight + 1e-4);
+  EXPECT_FALSE(rig.run(200).wheel_in_work);
+  turnTo(rig, kClearanceHeight - 1e-4);
+  rig.recover();
+  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_EQ(rig.last().command[kY], rig.loop->status().wheel.clear_y);
 }
 
 TEST(WheelInTheWork, IsNotOverByReadingsFromBeforeTheJobAndOneAfterAFault) {

@@ -73,6 +73,7 @@ inline Progress someProgress() {
   p.wheel.in_work = true;
   p.wheel.clear_y = 0.0125;
   p.wheel.lift = 0.005;
+  p.wheel.y_doubted = true;
   p.offset << 0.11, -0.0225, 1.0 / 7, -3;
   return p;
 }
@@ -96,6 +97,7 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.wheel.in_work, b.wheel.in_work);
   EXPECT_EQ(a.wheel.clear_y, b.wheel.clear_y);
   EXPECT_EQ(a.wheel.lift, b.wheel.lift);
+  EXPECT_EQ(a.wheel.y_doubted, b.wheel.y_doubted);
   EXPECT_TRUE((a.offset == b.offset).all()) << a.offset.transpose() << " and " << b.offset.transpose();
 }
 

@@ -220,6 +220,9 @@ TEST_F(ProgressTrackerTest, TheWheelIsEnteredWithoutAJobToo) {
   status_.wheel.in_work = false;
   tracker_.update(status_);
   EXPECT_FALSE(onDisk().wheel.in_work);
+  status_.wheel.y_doubted = true;
+  tracker_.update(status_);
+  EXPECT_TRUE(onDisk().wheel.y_doubted);
 }
 
 }  // namespace test_progress_tracker

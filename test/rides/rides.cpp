@@ -39,6 +39,7 @@ constexpr int kMostBuffered = 50;
 constexpr double kJogTimeout = 0.05;  ///< [s]
 /// Cycles in which the spindle runs up, and in which it is still at speed once it was switched off.
 constexpr int kRunUp = 20, kRunDown = 100;
+constexpr double kTurn = 10e-3;  ///< of Y's screw [m]
 
 /// Axes that reach every command at once, or after some that wait before it, and what can go wrong with them.
 class RideDrive : public Drive {
@@ -49,6 +50,7 @@ class RideDrive : public Drive {
     kFault,
     kJump,
     kGlitch,
+    kTurn,  ///< from then on Y counts so much too high or too low, until it is homed
     kNan,
     kStale,
     kThrow,
@@ -74,7 +76,7 @@ class RideDrive : public Drive {
     status.enabled = sent_.enable && !status.emergency_stop;
     status.homing = status.enabled && sent_.home && ++homed_for_ < 4;
     if (!sent_.home) homed_for_ = 0;
-    if (homed_for_ == 4) lost_ = false;
+    if (homed_for_ == 4) findReference();
     if (fails(Failure::kReference)) lost_ = true;
     status.homed = !lost_ && !status.homing;
     runs_up_ = sent_.spindle ? std::min(runs_up_ + 1, kRunUp) : 0;
@@ -86,8 +88,9 @@ class RideDrive : public Drive {
     double& at = at_[static_cast<std::size_t>(axis_)];
     if (fails(Failure::kJump)) at = away(at);
     feedback.position = at_;
+    feedback.position[kY] += off_;
     double& read = feedback.position[static_cast<std::size_t>(axis_)];
-    if (fails(Failure::kGlitch)) read = away(at);
+    if (fails(Failure::kGlitch)) read = away(read);
     if (fails(Failure::kNan)) read = std::numeric_limits<double>::quiet_NaN();
     if (!fails(Failure::kStale)) ++status.feedback_count;
   }
@@ -95,6 +98,7 @@ class RideDrive : public Drive {
 
   bool isCommandedOn() const { return sent_.enable; }
   double y() const { return at_[kY]; }
+  double yOff() const { return commands_off_; }
   void setUp(const Machine& machine, std::size_t buffer) {
     limits_ = machine.limits;
     buffer_ = buffer;
@@ -104,6 +108,7 @@ class RideDrive : public Drive {
     failure_ = failure;
     axis_ = axis;
     left_ = cycles + 1;
+    if (failure == Failure::kTurn) off_ += axis < kZ ? kTurn : -kTurn;
   }
 
  private:
@@ -111,16 +116,25 @@ class RideDrive : public Drive {
 
   /// One command per period, once the buffer has been full; when the computer is late, those that wait.
   void play(const DriveCycle& cycle, DriveStatus& status) {
-    if (!status.enabled || !sent_.enable) waiting_.clear();
+    const bool follows = status.enabled && sent_.enable && !sent_.home;
+    if (!follows) waiting_.clear();
     full_ = full_ && !waiting_.empty();
     status.commands_waiting = 0;
-    if (!status.enabled || !sent_.enable) return;
+    if (!follows) {
+      commands_off_ = off_;
+      return;
+    }
     waiting_.push_back(sent_.position);
     full_ = full_ || waiting_.size() > buffer_;
     const long periods = full_ ? std::lround(cycle.period.toSec() / cycle.nominal.toSec()) : 0;
     for (long i = 0; i < periods && waiting_.size() > 1; ++i) waiting_.pop_front();
     at_ = waiting_.front();
+    at_[kY] -= commands_off_;
     status.commands_waiting = static_cast<std::uint32_t>(waiting_.size() - 1);
+  }
+  void findReference() {
+    lost_ = false;
+    off_ = commands_off_ = 0;
   }
   /// Within the limits, beyond which nobody turns an axis.
   double away(double at) const {
@@ -132,6 +146,8 @@ class RideDrive : public Drive {
   std::deque<AxisValues> waiting_;  ///< the first of them has been reached
   bool full_ = false;
   AxisValues at_{};
+  double off_ = 0,
+         commands_off_ = 0;  ///< what Y reads and is commanded too high; an axis under power does not jump [m]
   DriveCommand sent_;
   Failure failure_ = Failure::kNone;
   int axis_ = 0, left_ = 0, homed_for_ = 0;
@@ -216,7 +232,8 @@ class Ride {
   }
 
   void cycle() {
-    if (result_.events < kMostEvents && flip(random_, 1 / event_every_)) happen();
+    // What happens before the first reading nobody can see.
+    if (result_.cycles > 0 && result_.events < kMostEvents && flip(random_, 1 / event_every_)) happen();
     if (result_.events >= kMostEvents || flip(random_, 1 / recover_every_)) recover();
     keepJogging();
     const bool late = periods_ > 1;
@@ -264,6 +281,7 @@ class Ride {
     row.tooth = sample_.setpoint.tooth;
     row.pass = sample_.setpoint.pass;
     row.y = drive_.y();
+    row.y_off = drive_.yOff();
     row.rises = sample_.state == S::kRetracting || sample_.state == S::kLifting;
     row.lifts = sample_.setpoint.move == MoveKind::kLift;
     row.in_stroke = sample_.setpoint.step != StepKind::kNone;
@@ -321,7 +339,7 @@ class Ride {
       case 1: periods_ = 20; return;
       case 2: return drive_.fail(F::kEmergencyStop, axis, some);
       case 3: return drive_.fail(F::kFault, axis, some);
-      case 4: return drive_.fail(flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
+      case 4: return drive_.fail(flip(random_, 0.3) ? F::kTurn : flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);
       case 9: return drive_.fail(F::kGlitch, axis, 1 + some / 10);
       case 5: return drive_.fail(F::kStale, axis, some);
       case 6: return drive_.fail(F::kThrow, axis, 2);

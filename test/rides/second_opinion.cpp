@@ -111,9 +111,9 @@ void Watch::checkMotion(const Row& row) {
   for (int i = 0; i < 4; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     const Real noise = noiseOf(i);
-    if (!(row.at[axis] >= asked_.low[axis] - noise && row.at[axis] <= asked_.high[axis] + noise)) {
-      throw Violation(
-          text("place", i, row.at[axis], row.at[axis] < asked_.low[axis] ? asked_.low[axis] : asked_.high[axis]));
+    const double place = row.at[axis] - (i == 1 ? row.y_off : 0);
+    if (!(place >= asked_.low[axis] - noise && place <= asked_.high[axis] + noise)) {
+      throw Violation(text("place", i, place, place < asked_.low[axis] ? asked_.low[axis] : asked_.high[axis]));
     }
     const Real velocity = (Real(row.at[axis]) - last_.at[axis]) / t;
     if (!(std::abs(velocity) <= asked_.velocity[axis] * (1 + 1e-9L) + noise / t)) {
@@ -156,7 +156,7 @@ Real Watch::clearHeight() const {
 /// Whatever a job leaves in the work goes up, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
   if (!row.moves && !row.free) return;
-  if ((row.free ? row.y : row.at[1]) - asked_.offset_y >= clearHeight() - noiseOf(1)) {
+  if ((row.free ? row.y : row.at[1] - row.y_off) - asked_.offset_y >= clearHeight() - noiseOf(1)) {
     progress_.in_work = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);

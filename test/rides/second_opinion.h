@@ -52,6 +52,7 @@ struct Row {
   bool late = false;    ///< the axes stood still before it, since the computer did
   bool free = false;    ///< without power, or homing: the command follows the positions
   double y = 0;         ///< where the axis really is [m]
+  double y_off = 0;     ///< by which the drive reads it too high, and thus takes a command for [m]
   bool rises = false;   ///< the wheel is to be lifted: nothing else moves
   std::uint64_t cycle = 0;
   bool in_stroke = false;

@@ -86,6 +86,7 @@ class ControlLoop : public RequestBox {
 
   void readDrive(const DriveCycle& cycle);
   void readSwivel();
+  void judgeY(double last, double elapsed);
   void trackMotion();
   void checkDrive();
   void writeDrive(const DriveCycle& cycle);
@@ -169,6 +170,7 @@ class ControlLoop : public RequestBox {
   FaultText thrown_;            ///< by the drive, since the last readDrive()
   bool has_thrown_ = false;     ///< the drive
   bool has_positions_ = false;  ///< all have been finite once
+  bool y_homed_ = false;        ///< as the drive says, and it is not homing
   DriveFeedback feedback_;
   Axes command_ = Axes::Zero();
   CommandHistory history_;

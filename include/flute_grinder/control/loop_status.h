@@ -29,6 +29,8 @@ struct Wheel {
   bool in_work = false;
   double clear_y = 0;  ///< Y at which the wheel is clear of the last job's workpiece [m]
   double lift = 0;     ///< distance from the deepest point of that job to clear_y [m]
+  /// Y has been read where the axis cannot have been: until it is homed, its reading proves nothing.
+  bool y_doubted = false;
 };
 
 /// The lift needed to clear the workpiece of a program; the wheel is not in the workpiece yet.

@@ -15,20 +15,29 @@ class WheelWatch {
   const Wheel& wheel() const noexcept { return wheel_; }
 
   /// To be called when a job starts.
-  void startJob(const Wheel& wheel) noexcept { wheel_ = wheel; }
+  void startJob(const Wheel& wheel) noexcept {
+    wheel_ = wheel;
+    left_by_job_ = false;
+  }
   /// To be called when a job has commanded the axes to this Y [m].
   void followJob(double y) noexcept {
     wheel_.in_work = y < wheel_.clear_y;
     seen_clear_ = 0;
+    left_by_job_ = true;
   }
   /// To be called in every cycle in which no job moves the axes; the drive or an operator may have moved the wheel
-  /// clear of the workpiece. A reading or two may be wrong.
+  /// clear of the workpiece. A reading or two may be wrong. What a job has left without power may also rest in it.
   /// @param y position relative to the machine's reference, if that is known [m].
+  /// @param powered whether the axes have power.
   /// @param period of the control loop [s].
-  void observePosition(const std::optional<double>& y, double period) noexcept {
+  void observePosition(const std::optional<double>& y, bool powered, double period) noexcept {
+    left_by_job_ = left_by_job_ && !powered;
     seen_clear_ = y && *y >= wheel_.clear_y ? seen_clear_ + period : 0;
     if (seen_clear_ >= kSeenClear) wheel_.in_work = false;
+    if (left_by_job_ && (wheel_.y_doubted || (y && *y < wheel_.clear_y))) wheel_.in_work = true;
   }
+  /// To be called when Y was read where it cannot have been, and once it is homed.
+  void doubtY(bool doubted) noexcept { wheel_.y_doubted = doubted; }
   /// To be called when a lift without a job begins.
   /// @param target of it, see liftTarget() [m].
   void beginLift(double target) noexcept { last_target_ = target; }
@@ -50,7 +59,8 @@ class WheelWatch {
   static constexpr double kSeenClear = 0.1;  ///< [s]
 
   Wheel wheel_;
-  double seen_clear_ = 0;  ///< for so long [s]
+  double seen_clear_ = 0;     ///< for so long [s]
+  bool left_by_job_ = false;  ///< where it is; not moved with power since
   std::optional<double> last_target_;
 };
 

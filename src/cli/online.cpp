@@ -17,6 +17,7 @@
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/wheel_known.h"
 
 #include <actionlib_msgs/GoalID.h>
 #include <ros/service_manager.h>
@@ -118,8 +119,7 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
                                                                 : "not at speed");
   std::printf("coolant         %s\n", state.coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state.emergency_stop ? "pressed" : "released");
-  const bool known = state.journal_error.empty() || !state.progress.job_digest.empty();
-  std::printf("wheel in work   %s\n", state.wheel_in_work ? "yes" : known ? "no" : "not known");
+  std::printf("wheel in work   %s\n", isWheelUnknown(state) ? "not known" : state.wheel_in_work ? "yes" : "no");
   std::printf("swivel          %s\n", swivelText(state).c_str());
   printPosition("work position", state.work_position);
   printPosition("of the machine", state.position);

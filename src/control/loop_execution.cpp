@@ -118,7 +118,7 @@ Refusal ControlLoop::spindleOn() {
 
 /// @param commanded spindle_ or coolant_. A wheel that starts in the work breaks.
 Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
-  if (on && wheel_.wheel().in_work) return Refusal::kInWork;
+  if (const Refusal refusal = refusalOfWheel(); on && refusal != Refusal::kNone) return refusal;
   commanded = on;
   switched_by_hand_ = true;
   return Refusal::kNone;
@@ -174,16 +174,22 @@ Refusal ControlLoop::reset() {
 // Motion
 
 Refusal ControlLoop::home() {
-  if (wheel_.wheel().in_work) return Refusal::kInWork;
+  if (const Refusal refusal = refusalOfWheel(); refusal != Refusal::kNone) return refusal;
   homing_seen_ = false;
   waited_ = 0;
   apply(MachineEvent::kHome);
   return Refusal::kNone;
 }
 
+/// @return why nothing but the lift may move the wheel; kNone if anything may.
+Refusal ControlLoop::refusalOfWheel() const {
+  if (!wheel_.wheel().in_work) return Refusal::kNone;
+  return wheel_.wheel().known ? Refusal::kInWork : Refusal::kMayBeInWork;
+}
+
 Refusal ControlLoop::beginJob(const JobStart& job) {
   if (!after(state_, MachineEvent::kStart)) return Refusal::kState;
-  if (wheel_.wheel().in_work) return Refusal::kInWork;
+  if (const Refusal refusal = refusalOfWheel(); refusal != Refusal::kNone) return refusal;
   if (!sample_.drive.homed) return Refusal::kInterlock;
   const GrindProgram& program = job.stream->program();
   if (!sample_.swivel.isAt(program.swivel())) return Refusal::kSwivel;

@@ -54,7 +54,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   if (const Refusal refusal = refusalOfPosition(answer); refusal != Refusal::kNone) return refusal;
   const double way = jog.continuous ? jog.velocity : jog.distance;
   const bool raises = jog.axis == kY && way > 0;
-  if (wheel_.wheel().in_work && !raises) return Refusal::kInWork;
+  if (const Refusal refusal = refusalOfWheel(); !raises && refusal != Refusal::kNone) return refusal;
 
   const double from = command_[jog.axis];
   answer.limit = way < 0 ? lowestJog(jog.axis) : config_.machine.limits.max_position[jog.axis];

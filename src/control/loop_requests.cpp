@@ -50,6 +50,7 @@ RequestReply Answer::reply() const {
     case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;
     case Refusal::kWithdrawn: text << "disable came before the power"; break;
     case Refusal::kInWork: text << "the wheel is in the work; lift it first"; break;
+    case Refusal::kMayBeInWork: text << "it is not known whether the wheel is in the work; lift it first"; break;
     case Refusal::kNotInWork: text << "the wheel is not in the work"; break;
     // In shop units, because only people read them: the answer to a request has no fields for data.
     case Refusal::kTooFar:

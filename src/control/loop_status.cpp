@@ -14,4 +14,9 @@ Wheel wheelOf(const GrindProgram& program) {
   return {false, clear_y, program.clearanceHeight() - deepest};
 }
 
+Wheel unknownWheel(const AxisLimits& limits) {
+  const double top = limits.max_position[kY];
+  return {true, top, top - limits.min_position[kY], false, false};
+}
+
 }  // namespace grinder

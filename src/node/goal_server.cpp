@@ -161,6 +161,7 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
   if (status.state != MachineState::kReady) {
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
   }
+  if (!status.wheel.known) return "it is not known whether the wheel is in the work; lift it first";
   if (status.wheel.in_work) return "the wheel is in the work of the last job; lift it first";
   return tracker_.refusal(digest, {goal.first_tooth, goal.first_pass}, goal.discard != 0);
 }

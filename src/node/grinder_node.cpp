@@ -105,7 +105,9 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const std::string unknown = offsets_->unknown();
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
   const JournalWriter::Status journal = journal_->status();
-  if (!journal.error.empty()) ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued");
+  if (!journal.error.empty()) {
+    ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued, and the wheel may be in the work");
+  }
   history_ = std::make_unique<History>(files.history, own.history_limit);
   loadDrive(own.drive, parameters);
   initDrive(own.drive, signals);
@@ -117,7 +119,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
                              << boost::algorithm::trim_copy(configuration));
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
   machine_.publish(toMessage(machine, can, config.jog_timeout));
-  loop_ = std::make_unique<ControlLoop>(*drive_, config, journal.on_disk.wheel);
+  const Wheel wheel = journal.error.empty() ? journal.on_disk.wheel : unknownWheel(config.machine.limits);
+  loop_ = std::make_unique<ControlLoop>(*drive_, config, wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(model));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
                                            own.thresholds, model, own.first_view);

@@ -122,6 +122,8 @@ void ProgressTracker::update(const LoopStatus& status) {
     changed_ = running_;
   }
   if (running_) updatePlace(status);
+  // What the file kept of the wheel is not written over by a guess.
+  if (!status.wheel.known) return;
   const auto known = [](const Wheel& wheel) { return std::pair(wheel.in_work, wheel.y_doubted); };
   if (!running_ && known(progress_.wheel) != known(status.wheel)) {
     progress_.wheel = status.wheel;

@@ -4,6 +4,7 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/wheel_known.h"
 
 #include <cmath>
 
@@ -13,14 +14,16 @@ namespace {
 
 using namespace units;
 
-const char* wheelInWork(MachineState state) {
-  switch (state) {
-    case MachineState::kFault: return "The wheel is in the work: reset, enable, then lift it.";
-    case MachineState::kDisabled: return "The wheel is in the work: enable, then lift it.";
+std::string wheelInWork(const flute_grinder::GrinderState& state) {
+  const std::string wheel =
+      isWheelUnknown(state) ? "It is not known whether the wheel is in the work" : "The wheel is in the work";
+  switch (static_cast<MachineState>(state.state)) {
+    case MachineState::kFault: return wheel + ": reset, enable, then lift it.";
+    case MachineState::kDisabled: return wheel + ": enable, then lift it.";
     case MachineState::kHeld: return "The job is held with the wheel in the work. Resume continues; Retract lifts it.";
-    case MachineState::kLifting: return "The wheel is in the work: it is being lifted; no job runs.";
-    case MachineState::kJogging: return "The wheel is in the work: it is being jogged off, in Y.";
-    default: return "The wheel is in the work: lift it.";
+    case MachineState::kLifting: return wheel + ": it is being lifted; no job runs.";
+    case MachineState::kJogging: return wheel + ": it is being jogged off, in Y.";
+    default: return wheel + ": lift it.";
   }
 }
 
@@ -55,7 +58,7 @@ std::string describe(const flute_grinder::GrinderState& state) {
   if (is_lifted && !state.spindle_commanded) text += "The spindle is off: switch it on first. ";
   if (is_lifted && !state.coolant_commanded) text += "The coolant is off: switch it on first. ";
   // In the other states of a job it belongs there.
-  if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(machine);
+  if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(state);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";
   if (machine == MachineState::kRunning && state.override == 0)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 // The wheel in the work: how it is detected, what is refused until the wheel is lifted, and the lift without a job.
@@ -257,6 +259,47 @@ class WithoutTheReference {
 
   Rig<SimulatedDrive> rig;
 };
+
+const Wheel kUnknownWheel = unknownWheel(machineConfig().machine.limits);
+
+TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsMovedUpAloneToTheTop) {
+  const double top = machineConfig().machine.limits.max_position[kY];
+  Rig<FakeDrive> rig(machineConfig(), kUnknownWheel);
+  rig.enable();
+  rig.run(500);
+  const std::string refused = " refused: it is not known whether the wheel is in the work; lift it first";
+  EXPECT_EQ(rig.askToStartPaper().text, "start" + refused);
+  for (const E event : {E::kHome, E::kSpindleOn, E::kCoolantOn}) {
+    EXPECT_EQ(rig.ask(event).text, toString(event) + refused);
+  }
+  for (const auto& [axis, way] : {std::pair(kX, 1e-3), std::pair(kX, -1e-3), std::pair(kY, -1e-3)}) {
+    EXPECT_EQ(rig.jog({axis, false, way, 0.01}).text, "jog" + refused);
+  }
+  EXPECT_TRUE(rig.jog({kY, false, 1e-3, 0.01}).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_TRUE(rig.last().wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_EQ(rig.last().command[kY], top);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+  EXPECT_TRUE(rig.loop->status().wheel.known);
+  EXPECT_TRUE(rig.ask(E::kHome).accepted);
+}
+
+TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsLiftedToTheTopWithoutTheReferenceToo) {
+  const double top = machineConfig().machine.limits.max_position[kY];
+  for (const double above : {0.0, 1e-3}) {
+    Rig<FakeDrive> rig(machineConfig(), kUnknownWheel);
+    rig.drive.status.homed = false;
+    rig.drive.position[kY] = above == 0 ? 0 : top + above;
+    rig.enable();
+    const RequestReply reply = rig.ask(E::kLift);
+    EXPECT_EQ(reply.accepted, above == 0) << reply.text;
+    if (!reply.accepted) continue;
+    rig.runUntil(S::kReady);
+    EXPECT_EQ(rig.last().command[kY], top);
+    EXPECT_FALSE(rig.last().wheel_in_work);
+  }
+}
 
 TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
   WithoutTheReference machine(kLift);

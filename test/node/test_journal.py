@@ -266,10 +266,15 @@ class TestDamagedJournal(JournalTest):
         Reports(self.addCleanup, self.node.name).wait('Journal', DiagnosticStatus.ERROR, 'journal ' + self.journal)
         self.assertRegex(self.said('status'), r'(?m)^wheel in work +not known$')
         self.assertRegex(self.grind(1, 'run', self.job_path, '--continue').stderr, r'^there is no job to continue')
-        with open(self.journal, 'rb') as file:
-            self.assertEqual(file.read(), b'nothing of a journal', 'it is left as it is until the next job')
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
+        unknown = 'it is not known whether the wheel is in the work; lift it first'
+        self.assertEqual(self.client.send(self.job).wait().text, unknown)
+        self.assertEqual(self.grind(1, 'home').stderr, 'home refused: %s\n' % unknown)
+        self.grind(0, 'lift')
+        self.assertRegex(self.said('status'), r'(?m)^wheel in work +no$')
+        with open(self.journal, 'rb') as file:
+            self.assertEqual(file.read(), b'nothing of a journal', 'it is left as it is until the next job')
         self.assertRegex(self.client.send(self.job, discard=False).wait().text, 'its checksum is missing; .*, or discard it$')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
         self.check_reported(self.wait_finished())

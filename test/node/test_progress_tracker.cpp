@@ -165,11 +165,19 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   const std::string path = folder_.path() / "damaged";
   std::ofstream(path) << "nothing of a journal";
   JournalWriter writer(path, "/test");
-  const ProgressTracker tracker(writer);
+  ProgressTracker tracker(writer);
   EXPECT_EQ(
       tracker.refusal("job", kFirst),
       "journal " + path + ": its checksum is missing; what job it kept is unknown; restore the file, or discard it");
   EXPECT_EQ(tracker.refusal("job", kFirst, true), "");
+  // What is done about the wheel leaves it, for whoever can restore it.
+  for (const bool known : {false, true}) {
+    status_.wheel = unknownWheel(test_support::machineConfig().machine.limits);
+    status_.wheel.in_work = !(status_.wheel.known = known);
+    tracker.update(status_);
+    EXPECT_TRUE(tracker.upToDate());
+    EXPECT_NE(writer.status().damage, "");
+  }
 }
 
 TEST_F(ProgressTrackerTest, AJournalThatCannotBeReadIsInTheWayEvenIfDiscardedUntilItIsGone) {

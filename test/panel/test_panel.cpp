@@ -360,6 +360,12 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
     stage.be(row.state);
     WAIT_FOR(panel.label("meaning") == row.meaning);
   }
+  stage.change([&] {
+    stage.state.progress = flute_grinder::JobProgress();
+    stage.state.journal_error = "journal /j: its checksum is wrong";
+  });
+  stage.be("disabled");
+  WAIT_FOR(panel.label("meaning") == "It is not known whether the wheel is in the work: enable, then lift it.");
 }
 
 TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {

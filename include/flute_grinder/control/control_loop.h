@@ -110,6 +110,7 @@ class ControlLoop : public RequestBox {
   Refusal retract();
   Refusal lift();
   double liftTarget() const;
+  Refusal refusalOfWheel() const;
   Refusal setSwivel(double angle);
   Refusal spindleOn();
   Refusal switchByHand(bool& commanded, bool on);

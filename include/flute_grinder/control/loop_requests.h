@@ -34,6 +34,7 @@ enum class Refusal : std::uint8_t {
   kFeedback,
   kWithdrawn,       ///< an enable that was followed by a disable
   kInWork,          ///< the wheel is in the workpiece
+  kMayBeInWork,     ///< nobody knows whether the wheel is in a workpiece
   kNotInWork,       ///< the wheel is not in the workpiece
   kSwivel,          ///< not at the angle of the job that was to start
   kSwivelMeasured,  ///< by the drive, so that it cannot be confirmed

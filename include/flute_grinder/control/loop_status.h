@@ -31,10 +31,14 @@ struct Wheel {
   double lift = 0;     ///< distance from the deepest point of that job to clear_y [m]
   /// Y has been read where the axis cannot have been: until it is homed, its reading proves nothing.
   bool y_doubted = false;
+  bool known = true;  ///< else `in_work` says that it may be
 };
 
 /// The lift needed to clear the workpiece of a program; the wheel is not in the workpiece yet.
 Wheel wheelOf(const GrindProgram& program);
+
+/// Of a wheel that may be in the workpiece of any job: it is clear at the top of Y's travel.
+Wheel unknownWheel(const AxisLimits& limits);
 
 /// How a job ended.
 enum class JobEnd : std::uint8_t {

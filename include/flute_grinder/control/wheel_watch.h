@@ -33,7 +33,7 @@ class WheelWatch {
   void observePosition(const std::optional<double>& y, bool powered, double period) noexcept {
     left_by_job_ = left_by_job_ && !powered;
     seen_clear_ = y && *y >= wheel_.clear_y ? seen_clear_ + period : 0;
-    if (seen_clear_ >= kSeenClear) wheel_.in_work = false;
+    if (seen_clear_ >= kSeenClear) clear();
     if (left_by_job_ && (wheel_.y_doubted || (y && *y < wheel_.clear_y))) wheel_.in_work = true;
   }
   /// To be called when Y was read where it cannot have been, and once it is homed.
@@ -42,7 +42,7 @@ class WheelWatch {
   /// @param target of it, see liftTarget() [m].
   void beginLift(double target) noexcept { last_target_ = target; }
   /// To be called when a lift without a job is complete.
-  void finishLift() noexcept { wheel_.in_work = false; }
+  void finishLift() noexcept { clear(); }
   /// To be called when Y may no longer count from where it did when the last lift began: without power, or when the
   /// reference is found.
   void forgetLift() noexcept { last_target_.reset(); }
@@ -52,10 +52,17 @@ class WheelWatch {
   ///        lift that was stopped continues.
   /// @param y current Y of the wheel [m].
   double liftTarget(bool homed, double y) const noexcept {
-    return homed ? wheel_.clear_y : last_target_.value_or(y + wheel_.lift);
+    // Of an unknown job, the top of the travel is all there is; it is none above it.
+    const bool to_top = !wheel_.known && y < wheel_.clear_y;
+    return homed ? wheel_.clear_y : last_target_.value_or(to_top ? wheel_.clear_y : y + wheel_.lift);
   }
 
  private:
+  void clear() noexcept {
+    wheel_.in_work = false;
+    wheel_.known = true;
+  }
+
   static constexpr double kSeenClear = 0.1;  ///< [s]
 
   Wheel wheel_;

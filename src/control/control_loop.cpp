@@ -1,7 +1,10 @@
 #include "flute_grinder/control/control_loop.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <exception>
 
 // The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
@@ -23,6 +26,7 @@ void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
 }
 
 ros::Duration ControlLoop::awaitCycle() noexcept {
+  constexpr std::int32_t kLongest = 3600;  // a computer that was suspended may count that [s]
   const ros::Duration nominal(config_.machine.period);
   ros::Duration period = nominal;
   bool waited = false;
@@ -30,7 +34,16 @@ ros::Duration ControlLoop::awaitCycle() noexcept {
     period = drive_.wait(nominal);
     waited = true;
   });
-  return waited ? period : drive_.Drive::wait(nominal);
+  if (waited && period >= ros::Duration() && period <= ros::Duration(kLongest, 0)) return period;
+  if (waited) {
+    std::array<char, 12> seconds{};
+    std::to_chars(seconds.begin(), seconds.end() - 1, period.sec);
+    thrown_ = "its wait() has returned ";
+    thrown_ += seconds.data();
+    thrown_ += " s; allowed: 0 to 3600 s";
+    has_thrown_ = true;
+  }
+  return drive_.Drive::wait(nominal);
 }
 
 void ControlLoop::writeOff(const DriveCycle& cycle) noexcept {

@@ -5,9 +5,22 @@
 #include <pthread.h>
 
 #include <chrono>
+#include <cstdint>
+#include <limits>
 
 // Construction and the thread; the cycle is in control_loop.cpp.
 namespace grinder {
+
+namespace {
+
+/// A stamp, as far as there are any: up to 2106. @param period not negative.
+ros::Time after(const ros::Time& time, const ros::Duration& period) noexcept {
+  const ros::Time last(std::numeric_limits<std::uint32_t>::max(), 0);
+  const bool is_last = last.toNSec() - time.toNSec() < static_cast<std::uint64_t>(period.toNSec());
+  return is_last ? last : time + period;
+}
+
+}  // namespace
 
 ControlLoop::ControlLoop(Drive& drive, const LoopConfig& config, const Wheel& wheel)
     : RequestBox(config.enable_timeout),
@@ -51,7 +64,7 @@ void ControlLoop::run() {
   while (running_) {
     const ros::Duration period = awaitCycle();
     const Clock::time_point begin = Clock::now();
-    time += period;
+    time = after(time, period);
     cycle(time, period);
     sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }

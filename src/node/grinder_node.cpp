@@ -2,6 +2,7 @@
 
 #include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/drive/export_drive.h"
+#include "flute_grinder/job/fault_text.h"
 #include "node/crash_guard.h"
 #include "node/node_files.h"
 #include "node/plugin_abi.h"
@@ -166,7 +167,7 @@ void GrinderNode::initDrive(const std::string& type, const EndSignals& signals) 
   try {
     drive_->init(private_nh_, hardware_nh);
   } catch (const std::exception& error) {
-    throw ParameterError("the drive " + type + ": " + error.what());
+    throw ParameterError("the drive " + type + ": " + std::string(textOrNone(error.what())));
   } catch (...) {
     throw ParameterError("the drive " + type + ": init() has thrown what is no std::exception");
   }

@@ -1,5 +1,6 @@
 #include "flute_grinder/control/realtime.h"
 #include "flute_grinder/job/escaped.h"
+#include "flute_grinder/job/fault_text.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/network/init_ros.h"
 #include "flute_grinder/network/master_watch.h"
@@ -82,7 +83,7 @@ int main(int argc, char** argv) {
     spinner.stop();
   } catch (const std::exception& error) {
     // Drives and files have their say in it.
-    ROS_FATAL_STREAM(grinder::escaped(error.what(), "\n"));
+    ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error.what()), "\n"));
     return 1;
   }
   ros::shutdown();

@@ -12,6 +12,7 @@
 #include <atomic>
 #include <cstring>
 #include <functional>
+#include <optional>
 #include <string>
 
 // A machine and two drives for the tests of the control loop.
@@ -95,7 +96,7 @@ class FakeDrive : public Drive {
   ros::Duration wait(const ros::Duration& nominal) override {
     if (!on_wait) return Drive::wait(nominal);
     on_wait();
-    return sinceLastCycle(nominal);
+    return waited ? *waited : sinceLastCycle(nominal);
   }
 
   void prepare() override {
@@ -117,7 +118,8 @@ class FakeDrive : public Drive {
   std::function<void(FakeDrive&)> on_read;  ///< has the last word on what is read
   std::function<void()> on_write;           ///< before what is written takes effect
   std::function<void()> on_prepare;
-  std::function<void()> on_wait;  ///< in place of the wait
+  std::function<void()> on_wait;        ///< in place of the wait
+  std::optional<ros::Duration> waited;  ///< what that returns, in place of the time since the last cycle
 
   int writes = 0;
   std::atomic<bool> power_off{false};  ///< by powerOff()

@@ -46,6 +46,13 @@ std::vector<FaultCase> faultCases() {
       });
   add("ReadThrows", FaultKind::kDriveFault, {"the drive reports a fault: no answer (thrown by its read())"},
       [](FakeDrive&) { throw Thrown("no answer"); });
+  add("ReadThrowsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text (thrown by its read())"},
+      [](FakeDrive&) { throw Thrown(nullptr); });
+  add("DriveFaultIsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text"}, [](FakeDrive& d) {
+    const char* none = nullptr;
+    d.status.fault = true;
+    d.status.fault_text = none;
+  });
   add("ReadThrowsAnything", FaultKind::kDriveFault,
       {"the drive reports a fault: an exception that is no std::exception (thrown by its read())"},
       [](FakeDrive&) { throw 7; });

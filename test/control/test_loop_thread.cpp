@@ -9,7 +9,10 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
+#include <limits>
+#include <string>
 #include <thread>
 
 // The thread.
@@ -62,6 +65,34 @@ TEST_F(ControlLoopThread, GoesOnWhenTheDriveThrows) {
   }
   loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
+}
+
+TEST_F(ControlLoopThread, GoesOnWhenTheDriveReturnsATimeThatCannotHavePassed) {
+  const std::int32_t least = std::numeric_limits<std::int32_t>::min(), most = std::numeric_limits<std::int32_t>::max();
+  for (const std::int32_t seconds : {least, -1, 3601, most}) {
+    drive_.on_wait = [] {};
+    drive_.waited = ros::Duration(seconds, 0);
+    ControlLoop loop(drive_, machineConfig());
+    loop.startThread();
+    CycleSample sample;
+    for (int i = 0; i < 20; ++i) {
+      ASSERT_TRUE(test_support::soon([&] { return loop.pop(sample); }));
+      EXPECT_EQ(sample.drive.fault_text.text(),
+                "its wait() has returned " + std::to_string(seconds) + " s; allowed: 0 to 3600 s");
+      EXPECT_GT(sample.period, 0);
+      EXPECT_LT(sample.period, 10);
+    }
+  }
+}
+
+TEST_F(ControlLoopThread, StampsEndWithTheClock) {
+  drive_.on_wait = [] {};
+  drive_.waited = ros::Duration(3600, 0);
+  loop_->startThread();
+  // The samples are too many for the queue.
+  EXPECT_TRUE(soon([&] { return loop_->status().time == std::numeric_limits<std::uint32_t>::max(); }));
+  const std::uint64_t cycles = loop_->status().cycles;
+  EXPECT_TRUE(soon([&] { return loop_->status().cycles > cycles + 10; }));
 }
 
 TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {

@@ -79,7 +79,8 @@ class ControlLoop : public RequestBox {
   /// Calls the drive; what it throws becomes a fault of the drive in the next readDrive().
   template <typename Call>
   void callDrive(const char* function, const Call& call) noexcept;
-  /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails. @return time since the last one.
+  /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails, which becomes a fault of the drive
+  /// too. @return time since the last one.
   ros::Duration awaitCycle() noexcept;
   /// Tells the drive to switch the power off, when no cycle follows.
   void writeOff(const DriveCycle& cycle) noexcept;

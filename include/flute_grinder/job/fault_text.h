@@ -8,6 +8,9 @@
 
 namespace grinder {
 
+/// What a drive's plugin gives as a text, which may be null.
+inline std::string_view textOrNone(const char* text) noexcept { return text ? text : "no text"; }
+
 /// A short text that is copied without the heap; what is too long is cut off. Real-time safe.
 class FaultText {
  public:
@@ -18,6 +21,8 @@ class FaultText {
     size_ = 0;
     return *this += text;
   }
+  FaultText& operator=(const char* text) noexcept { return *this = textOrNone(text); }
+  FaultText& operator+=(const char* text) noexcept { return *this += textOrNone(text); }
   FaultText& operator+=(std::string_view text) noexcept {
     const std::size_t count = std::min(text.size(), kMost - size_);
     std::copy_n(text.begin(), count, text_.begin() + size_);

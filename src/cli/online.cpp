@@ -112,7 +112,9 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
                 const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   std::printf("grinder         %s\n", node.c_str());
   std::printf("state           %s\n", state.state_name.c_str());
-  std::printf("enabled         %s\n", state.enabled ? "yes" : "no");
+  std::printf("enabled         %s\n", state.power_stays_on ? "yes, though it was switched off"
+                                      : state.enabled      ? "yes"
+                                                           : "no");
   std::printf("homed           %s\n", state.homed ? "yes" : "no");
   std::printf("spindle         %s\n", state.spindle_at_speed    ? "at speed"
                                       : state.spindle_commanded ? "on, not at speed"

@@ -86,6 +86,8 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
     sample_.drive.fault_text = thrown_;
     has_thrown_ = false;
   }
+  unwanted_power_ = sample_.drive.enabled && !drive_command_.enable ? unwanted_power_ + sample_.period : 0;
+  sample_.power_stays = !(unwanted_power_ <= config_.enable_timeout);
   drive_checks_.observe(sample_);
   sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
   std::copy(feedback_.position.begin(), feedback_.position.end(), sample_.position.data());

@@ -229,7 +229,10 @@ void RosControlDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
 void RosControlDrive::readStatus(DriveStatus& status) {
   const Clock::time_point now = Clock::now();
   status.emergency_stop = signals_.emergency_stop->at(now);
-  status.enabled = mode_.isOn() && !power_off_ && signals_.enabled->at(now);
+  // The axes do not follow without the mode, but the power that is commanded off may be on.
+  const bool may_stay =
+      !sent_.enable && commands_.power && (!signals_.enabled->topic().empty() || commands_.power->hasFailed());
+  status.enabled = (mode_.isOn() || may_stay) && !power_off_ && signals_.enabled->at(now);
   status.homed = signals_.homed->at(now);
   // Reported in at least one reading, however soon the service answers; its answer may overtake the topic of `homed`.
   status.homing = sent_.home && commands_.home &&

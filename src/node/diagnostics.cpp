@@ -180,6 +180,9 @@ void Diagnostics::reportDrive(Status& status) {
   const FaultKind reported = drive_.loop_fault.kind;
   status.summary(DiagnosticStatus::OK, last_.drive.enabled ? "enabled" : "disabled");
   if (reported != FaultKind::kNone) status.mergeSummary(DiagnosticStatus::ERROR, drive_.loop_fault.text());
+  if (last_.power_stays) {
+    status.mergeSummary(DiagnosticStatus::ERROR, "the drive still reports power, though it was switched off");
+  }
   if (drive_.emergency_stop && reported != FaultKind::kEmergencyStop) {
     status.mergeSummary(DiagnosticStatus::ERROR, "emergency stop");
   }

@@ -311,6 +311,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.state = static_cast<std::uint8_t>(sample_.state);
   message.state_name = toString(sample_.state);
   message.enabled = sample_.drive.enabled;
+  message.power_stays_on = static_cast<std::uint8_t>(sample_.power_stays);
   message.homed = sample_.drive.homed;
   message.spindle_at_speed = sample_.drive.spindle_at_speed;
   message.coolant_on = sample_.drive.coolant_on;

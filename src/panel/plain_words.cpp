@@ -51,6 +51,8 @@ std::string describe(const flute_grinder::GrinderState& state) {
   // In states other than a fault it says why the last job did not begin.
   if (!state.fault.empty()) text = "Fault: " + state.fault + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
+  if (state.power_stays_on)
+    return text + "The drive still reports power, though it was switched off: press the emergency stop.";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
   if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
   // Switched off while the wheel is lifted, they keep the job from being resumed.

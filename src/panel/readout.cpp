@@ -23,6 +23,7 @@ constexpr const char* kBlue = "#1a5fb4";
 
 /// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const flute_grinder::GrinderState& grinder) {
+  if (grinder.power_stays_on) return kWrong;
   switch (rowOf(static_cast<MachineState>(grinder.state)).group) {
     case StateGroup::kReady: return grinder.wheel_in_work || grinder.spindle_commanded ? kAmber : kGreen;
     case StateGroup::kActive: return kBlue;

@@ -97,7 +97,7 @@ TEST(StatusJson, CountsFromOneAndInShopUnits) {
     EXPECT_EQ(json[set], true) << set;
   }
   for (const char* unset :
-       {"spindle_at_speed", "coolant_on", "spindle_commanded", "emergency_stop", "swivel_measured"}) {
+       {"spindle_at_speed", "coolant_on", "spindle_commanded", "emergency_stop", "swivel_measured", "power_stays_on"}) {
     EXPECT_EQ(json[unset], false) << unset;
   }
   EXPECT_EQ(json["machine"]["x_mm"], 1);

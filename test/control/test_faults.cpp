@@ -293,6 +293,24 @@ TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
   EXPECT_EQ(rig.last().state, S::kReady);
 }
 
+TEST(PowerThatStaysOn, IsReportedAfterTheTimeInWhichItComesOn) {
+  for (const S state : {S::kDisabled, S::kFault}) {
+    SCOPED_TRACE(toString(state));
+    RigIn rig(S::kReady);
+    rig.drive.on_read = [=](FakeDrive& d) { d.status.enabled = true, d.status.emergency_stop = state == S::kFault; };
+    if (state == S::kDisabled) rig.loop->postStop(E::kDisable);
+    ASSERT_EQ(rig.cycle().state, state);
+    // Powered for 10.5 periods at most.
+    EXPECT_FALSE(rig.run(10).power_stays);
+    EXPECT_TRUE(rig.run(1).power_stays);
+    EXPECT_TRUE(rig.run(100).power_stays);
+    rig.drive.on_read = nullptr;
+    EXPECT_FALSE(rig.cycle().power_stays);
+  }
+  RigIn rig(S::kReady);
+  EXPECT_FALSE(rig.run(100).power_stays);
+}
+
 TEST(FaultIn, AnyStateEndsTheJobAndNothingMovesUntilResetEnableAndStart) {
   for (const S state : {S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
                         S::kRetracted, S::kResuming, S::kCanceling, S::kLifting}) {

@@ -172,6 +172,11 @@ TEST_F(DiagnosticsTest, DriveIsOkWhenHomedAndItsInterlocksAreClosed) {
   watch();
   const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "disabled");
   EXPECT_EQ(value(status, "Enabled"), "False");
+  sample_.power_stays = true;
+  watch();
+  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR,
+         "the drive still reports power, though it was switched off");
+  sample_.power_stays = false;
   sample_.drive.homed = false;
   watch();
   expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "not homed");

@@ -366,6 +366,9 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
   });
   stage.be("disabled");
   WAIT_FOR(panel.label("meaning") == "It is not known whether the wheel is in the work: enable, then lift it.");
+  stage.change([&] { stage.state.power_stays_on = 1; });
+  WAIT_FOR(panel.label("meaning") ==
+           "The drive still reports power, though it was switched off: press the emergency stop.");
 }
 
 TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {

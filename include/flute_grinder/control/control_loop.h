@@ -187,6 +187,7 @@ class ControlLoop : public RequestBox {
   bool switched_by_hand_ = false;  ///< either of them, since the job began or was resumed
   double waited_ = 0;              ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
+  double unwanted_power_ = 0;  ///< for so long the drive has reported power that is commanded off [s]
   bool homing_seen_ = false;
   CycleSample sample_;
   LoopStatus next_status_;  ///< published at the end of the cycle

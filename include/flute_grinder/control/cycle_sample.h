@@ -20,6 +20,7 @@ struct CycleSample {
   double busy = 0;    ///< how much of it the previous cycle took, without the wait for this one; 0 in the first [s]
   MachineState state = MachineState::kDisabled;
   DriveStatus drive;
+  bool power_stays = false;      ///< the drive still reports power, for enable_timeout after it was commanded off
   double feedback_age = 0;       ///< time since the drive last delivered fresh positions [s]
   Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
   Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]

@@ -381,7 +381,7 @@ TEST_P(SchemaOfParameters, AMisspelledOneIsNamedWithTheRightOne) {
 TEST_P(SchemaOfParameters, APathDoesNotDependOnWhereTheNodeWasStarted) {
   forEach([&](const std::string& path, const std::string& full, const YAML::Node& entry, Range) {
     if (type(entry) != "path") return;
-    for (const std::string& relative : {"fg/", "./fg/", "../fg", "~other/fg/", "$HOME/fg"}) {
+    for (const char* relative : {"fg/", "./fg/", "../fg", "~other/fg/", "$HOME/fg"}) {
       EXPECT_EQ(refusal(with(good_, path, relative)),
                 full + " = \"" + relative + "\"; allowed: an absolute path, or one that begins with ~/");
     }

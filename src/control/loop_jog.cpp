@@ -10,7 +10,9 @@ namespace grinder {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// As silence of a client, a cycle counts at most so many periods.
+/// A cycle that is later than this, in periods, has heard nobody meanwhile.
+constexpr double kStall = 20;
+/// As silence of a client, one that is late counts at most so many periods.
 constexpr double kMostPeriods = 2;
 
 }  // namespace
@@ -111,8 +113,14 @@ double ControlLoop::lowestJog(int axis) const {
 }
 
 void ControlLoop::watchClients() {
-  // A loop that comes late has not heard them meanwhile.
-  const double unheard = std::min(sample_.period, kMostPeriods * config_.machine.period);
+  // A loop that comes late has not heard them meanwhile. After a stall of the whole process what they sent still waits
+  // to be read, by threads that have to get a processor first.
+  const double periods = sample_.period / config_.machine.period;
+  if (periods > kStall) {
+    dead_man_.forgive();
+    client_.forgive();
+  }
+  const double unheard = std::min(periods, kMostPeriods) * config_.machine.period;
   dead_man_.wait(unheard);
   client_.wait(unheard);
   const std::uint32_t keep_alives = keepAlives();

@@ -5,8 +5,11 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstddef>
+#include <fstream>
 #include <system_error>
 
 namespace grinder {
@@ -21,6 +24,7 @@ constexpr std::size_t kStack = std::size_t{256} * 1024;
 /// Far more than any thread of the node uses.
 constexpr std::size_t kThreadStack = std::size_t{512} * 1024;
 constexpr std::size_t kPage = 4096;
+constexpr std::size_t kSpare = std::size_t{2} << 30;
 
 /// With memory that is locked on first access, the stack must be accessed before the first cycle.
 __attribute__((noinline)) void touchStack() {
@@ -38,6 +42,19 @@ void boundThreadStacks() {
   const int error = pthread_setattr_default_np(&attributes);
   pthread_attr_destroy(&attributes);
   if (error != 0) throw std::system_error(error, std::generic_category(), "the size of threads' stacks");
+}
+
+void boundAddressSpace() {
+#ifndef __SANITIZE_ADDRESS__  // which has terabytes of them
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  rlimit limit{};
+  const bool known = pages > 0 && getrlimit(RLIMIT_AS, &limit) == 0;
+  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, pages * kPage + kSpare);
+  if (!known || setrlimit(RLIMIT_AS, &limit) != 0) {
+    throw std::system_error(errno, std::generic_category(), "the limit of the address space");
+  }
+#endif
 }
 
 bool lockMemory() {

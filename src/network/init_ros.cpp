@@ -2,9 +2,35 @@
 
 #include <ros/init.h>
 
+#include <cstdlib>
+#include <cstring>
+#include <regex>
+#include <stdexcept>
+
 namespace grinder {
 
+namespace {
+
+/// roscpp ends the program by a trap for a master that it cannot read.
+void requireMaster(int argc, char** argv) {
+  constexpr const char* argument = "__master:=";
+  std::string name = "ROS_MASTER_URI";
+  const char* uri = std::getenv(name.c_str());
+  for (int i = 1; i < argc; ++i) {
+    if (std::strncmp(argv[i], argument, std::strlen(argument)) != 0) continue;
+    name = "__master";
+    uri = argv[i] + std::strlen(argument);
+  }
+  const std::string allowed = "; allowed: http://HOST:PORT, as http://localhost:11311";
+  if (!uri) throw std::invalid_argument(name + " is not set" + allowed);
+  static const std::regex form("http://[^:/ ]+:[0-9]{1,5}/?");
+  if (!std::regex_match(uri, form)) throw std::invalid_argument(name + " = " + uri + allowed);
+}
+
+}  // namespace
+
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options) {
+  requireMaster(argc, argv);
   // With a log file named, none is looked for; it is never opened. First, so that one on the command line counts.
   static char no_log[] = "__log:=/dev/null";
   std::vector<char*> arguments{no_log};

@@ -10,10 +10,12 @@
 #include "node/grinder_node.h"
 #include "node/output.h"
 
+#include <ros/network.h>
 #include <ros/ros.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
@@ -33,6 +35,19 @@ bool waitForMaster(const grinder::EndSignals& signals) {
     if (signals.await(kLook)) return false;
   }
   return true;
+}
+
+/// The address of a node by this one's name, which the master would end for this one; empty if none answers.
+std::string runningNode() {
+  const std::atomic<bool> never{false};
+  const auto uri = grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "lookupNode",
+                                       {ros::this_node::getName()}, never);
+  std::string host;
+  std::uint32_t port = 0;
+  if (!uri || uri->getType() != XmlRpc::XmlRpcValue::TypeString) return "";
+  std::string address = XmlRpc::XmlRpcValue(*uri);
+  if (!ros::network::splitURI(address, host, port)) return "";
+  return grinder::callRosApi(host, port, "getPid", {}, never) ? address : "";
 }
 
 /// Waits for a signal that ends the program, or until ROS is shut down by other means.
@@ -60,13 +75,24 @@ int main(int argc, char** argv) {
   grinder::dropBlockedOutput();
   grinder::boundThreadStacks();
 
-  grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  try {
+    grinder::initRos(argc, argv, "grinder", ros::init_options::NoSigintHandler);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", grinder::escaped(error.what()).c_str());
+    return 2;
+  }
   const std::string refusal = grinder::ownAddressRefusal();
   if (!refusal.empty()) {
     ROS_FATAL_STREAM(refusal);
     return 1;
   }
   if (!waitForMaster(signals)) return 0;
+  const std::string other = runningNode();
+  if (!other.empty()) {
+    ROS_FATAL_STREAM("a node " << ros::this_node::getName() << " runs already, at " << other
+                               << "; allowed: one by each name");
+    return 1;
+  }
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
   try {
@@ -74,6 +100,7 @@ int main(int argc, char** argv) {
     ros::AsyncSpinner spinner(1);
     spinner.start();
     grinder::GrinderNode node(nh, ros::NodeHandle("~"), signals);
+    grinder::boundAddressSpace();
     const grinder::MasterWatch master_watch(services());
     waitForEnd(signals);
     if (!node.shutDown()) {

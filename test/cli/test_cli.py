@@ -160,6 +160,14 @@ class TestPlan(CommandLine):
             'the package flute_grinder is not found, nor its config/grinder.yaml; source build/devel/setup.bash of the clone '
             'in this shell\n'), done.stderr)
 
+    def test_master_that_ros_cannot_read(self):
+        for uri in ('localhost:11311', 'http://localhost', '', 'http://:11311'):
+            for program in ('grind', 'grinder'):
+                done = subprocess.run([gc.program(program), '--version'], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                      env=dict(os.environ, ROS_MASTER_URI=uri), universal_newlines=True)
+                self.assertEqual((done.returncode, done.stderr), (2, 'ROS_MASTER_URI = %s; allowed: http://HOST:PORT, as '
+                                                                     'http://localhost:11311\n' % uri))
+
     def test_yaml_is_no_urdf(self):
         self.assertEqual(self.grind(2, 'plan', PAPER_JOB, '--urdf', PAPER_JOB).stderr,
                          PAPER_JOB + ' is not a URDF, by line 1 (XML_ERROR_PARSING_TEXT); allowed: XML with the root <robot>\n')

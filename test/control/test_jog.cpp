@@ -431,6 +431,21 @@ TEST(Jog, FromOutsideTheLimitsIsRefused) {
   EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z is at -51 mm, outside its limit -50 mm");
 }
 
+TEST(Jog, AfterAStallOfTheProcessItsMessagesAreWaitedForOnce) {
+  LoopConfig config = machineConfig();
+  config.late_slow_down = config.late_fault = 1e6;
+  RigIn rig(S::kReady, config);
+  ASSERT_TRUE(rig.jog(on(kX, 0.01)).accepted);
+  rig.run(kTimeoutCycles - 10);
+  rig.cycle(300);
+  rig.run(kTimeoutCycles - 10);
+  EXPECT_NEAR(rig.last().setpoint.velocity[kX], 0.01, 1e-9);
+  rig.cycle(300);
+  const double at = rig.last().command[kX];
+  rig.runUntil(S::kReady);
+  EXPECT_LE(rig.last().command[kX] - at, 0.01 * 0.001 * (10 + 3) + brakingDistance(kX, 0.01));
+}
+
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
   Rig<FakeDrive> rig;
   rig.enable();

@@ -285,6 +285,11 @@ class TestOwner(JournalTest):
 
     def test_second_node_is_refused(self):
         self.start_ready()
+        # By the same name it is refused before it registers, which would end this one.
+        again = gc.NodeProcess(self.node.name, quick_machine(self.journal))
+        self.addCleanup(again.close)
+        self.assertEqual(again.end(), 1)
+        self.assertRegex(again.output, 'a node /%s runs already, at http://[^ ]+; allowed: one by each name' % self.node.name)
         second = gc.NodeProcess('second', quick_machine(self.journal))
         self.addCleanup(second.close)
         self.assertEqual(second.end(), 1)

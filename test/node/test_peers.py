@@ -133,6 +133,19 @@ class TestPeers(Attacked):
                 connect().sendall(struct.pack('<I', size))
             self.check()
 
+    def test_request_whose_counts_are_forged(self):
+        """roscpp makes room for what a count announces before it looks whether it is there."""
+        request = PlanRequest(gc.goal_of(gc.paper(tooth_angles=[0.125] * 4)))
+        text = io.BytesIO()
+        request.serialize(text)
+        angles = struct.pack('<I4d', 4, *request.goal.cutter.tooth_angles)
+        self.assertEqual(text.getvalue().count(angles), 1)
+        forged = text.getvalue().replace(angles, struct.pack('<I', 0x7fffffff) + angles[4:])
+        connection = self.connect_to_plan()
+        connection.sendall(struct.pack('<I', len(forged)) + forged)
+        self.assertEqual(gc.receive(connection, 1), b'\x00')
+        self.check()
+
     def test_what_follows_a_message_that_is_too_long_arrives(self):
         cancels = gc.publisher(self.addCleanup, '/attacked/grind/cancel', GoalID)
         goals = gc.publisher(self.addCleanup, '/attacked/grind/goal', GrindActionGoal)

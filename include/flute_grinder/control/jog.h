@@ -30,13 +30,23 @@ class SilenceTimer {
   /// To be called in every cycle. @param period since the previous cycle [s].
   void wait(double period) noexcept { age_ += period; }
   /// A message has come.
-  void restart() noexcept { age_ = 0; }
+  void restart() noexcept {
+    age_ = 0;
+    forgiven_ = false;
+  }
+  /// The whole process was stalled, so that a message may still wait to be read: once, until the next one, the count
+  /// begins anew.
+  void forgive() noexcept {
+    if (!forgiven_ && !expired()) age_ = 0;
+    forgiven_ = true;
+  }
 
   bool expired() const noexcept { return !(age_ <= timeout_); }
 
  private:
   double timeout_;
   double age_ = std::numeric_limits<double>::infinity();  ///< of the last message [s]
+  bool forgiven_ = false;
 };
 
 /// The dead man's switch of a continuous jog. Once the jog was stopped or refused, or its messages have failed to come,
@@ -60,6 +70,8 @@ class DeadMansSwitch {
     silence_.wait(period);
     if (state_ == State::kPressed && silence_.expired()) state_ = State::kTimedOut;
   }
+  /// The whole process was stalled, see SilenceTimer.
+  void forgive() noexcept { silence_.forgive(); }
   /// A message that moves has come. @return whether it is for the switch's axis; one for another axis changes nothing.
   bool press(int axis) noexcept {
     if (state_ == State::kReleased) {

@@ -9,6 +9,11 @@ namespace grinder {
 /// @throw std::system_error
 void boundThreadStacks();
 
+/// Lets the process take 2 GB of addresses beside those that it has: a few bytes from a peer can announce more, and
+/// must end in std::bad_alloc, not in the system's choice of a process to kill.
+/// @throw std::system_error
+void boundAddressSpace();
+
 /// Makes all of the process's memory resident, so that the control loop meets no page fault: the code of all libraries,
 /// stacks, and whatever the loop and the drive have allocated so far. Memory that is taken later becomes resident when
 /// it is first accessed. None of it is swapped out.

@@ -10,7 +10,8 @@ namespace grinder {
 /// where that cannot be made.
 /// @param name of the node. @param options as of ros::init().
 /// @return the arguments without ROS's own, with a null pointer at the end, as main() gets them.
-/// @throw ros::Exception if the command line or the environment has an invalid name.
+/// @throw std::invalid_argument if no ROS master is named, or not as roscpp reads it; ros::Exception if the command
+/// line or the environment has an invalid name.
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options);
 
 }  // namespace grinder

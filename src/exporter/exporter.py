@@ -35,7 +35,7 @@ CALLER = '/flute_grinder_exporter'  # what the master and the grinder are told; 
 SILENCE = 5  # [s] after which one that says something ten times a second does not answer
 WINDOW = 60  # [s] over which the worst figure is shown: longer than Prometheus leaves between two scrapes
 LONGEST = 1 << 18  # [bytes] of a message
-RECORD = re.compile(r'\d{8}T\d{6}\.\d{3}Z\.json')
+RECORD = re.compile(r'\d{10}_\d{8}T\d{6}\.\d{3}Z\.json')
 
 
 def constants(kind):

@@ -146,7 +146,7 @@ class TestPlan(CommandLine):
             with self.subTest(arguments):
                 self.assertIn(said, self.grind(2, *arguments).stderr)
         os.mkdir(self.path('history'))
-        for make, name in ((os.mkfifo, '20261122T170413.000Z.json'), (os.mkdir, '20261122T170413.001Z.json')):
+        for make, name in ((os.mkfifo, '0000000001_20261122T170413.000Z.json'), (os.mkdir, '0000000002_20261122T170413.001Z.json')):
             make(self.path('history/' + name))
         done = self.grind(0, 'history', '--from', self.path('history'))
         self.assertRegex(done.stderr, r'(.*\d\d[01]Z\.json: skipped: named like a record, but not a regular file\n){2}$')

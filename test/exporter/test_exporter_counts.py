@@ -27,7 +27,10 @@ import exporter  # noqa: E402
 import grinder_client as gc  # noqa: E402
 from record_files import job_of, record_of  # noqa: E402
 
-NAME = '20261122T17%02d00.000Z.json'
+
+def name_of(minute, number=None):
+    """Of a record of a job that started at a minute; by default that is its number too."""
+    return '%010d_20261122T17%02d00.000Z.json' % (minute if number is None else number, minute)
 
 
 class Folder(unittest.TestCase):
@@ -46,17 +49,18 @@ class Folder(unittest.TestCase):
     def value(self, name, **labels):
         return self.registry.get_sample_value('flute_grinder_' + name, labels)
 
-    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None, **wheel):
+    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None, number=None,
+              **wheel):
         """A record of a job that started at a minute."""
         file = file or job_of('test/jobs/paper.yaml')
         file['process']['wheel']['wear_mm'] = wear
         record = record_of(file, '2026-11-22T17:%02d:00.000Z' % minute, '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds), outcome,
                            [True] * complete + [False] * broken_off, setpoints, **wheel)
-        with open(os.path.join(self.folder, NAME % minute), 'w') as text:
+        with open(os.path.join(self.folder, name_of(minute, number)), 'w') as text:
             json.dump(record, text)
 
     def remove(self, minute):
-        os.remove(os.path.join(self.folder, NAME % minute))
+        os.remove(os.path.join(self.folder, name_of(minute)))
 
 
 class TestRecords(Folder):
@@ -90,12 +94,13 @@ class TestRecords(Folder):
     def test_of_a_clock_that_was_set_back_count(self):
         self.write(9, setpoints=5)
         self.assertEqual(self.value('setpoints_total'), 5)
-        self.write(8, setpoints=7)
-        self.assertEqual(self.value('setpoints_total'), 12)
+        self.write(8, setpoints=7, number=10)
+        self.write(7, wear=0.25, number=11)
+        self.assertEqual((self.value('setpoints_total'), self.value('wheel_wear_meters', wheel='wheel.yaml')), (12, 0.25e-3))
 
     def test_that_are_none_do_not_count(self):
         self.write(1, setpoints=5)
-        for name, text in ((NAME % 2, '{"record": 1'), (NAME % 3, '[]'), (NAME % 4 + '.new', ''), ('notes.json', 'mine')):
+        for name, text in ((name_of(2), '{"record": 1'), (name_of(3), '[]'), (name_of(4) + '.new', ''), ('notes.json', 'mine')):
             (pathlib.Path(self.folder) / name).write_text(text)
         self.assertEqual((self.value('setpoints_total'), self.value('jobs_total', outcome='done')), (5, 1))
         self.write(5, setpoints=7)
@@ -104,28 +109,28 @@ class TestRecords(Folder):
     def test_that_are_no_files_are_skipped_and_said_once(self):
         self.write(1, setpoints=5)
         folder = pathlib.Path(self.folder)
-        (folder / (NAME % 2)).mkdir()
-        (folder / (NAME % 3)).symlink_to('nowhere')
-        os.mkfifo(str(folder / (NAME % 4)))
+        (folder / name_of(2)).mkdir()
+        (folder / name_of(3)).symlink_to('nowhere')
+        os.mkfifo(str(folder / name_of(4)))
         with mock.patch.object(exporter, 'say') as say:
             self.assertEqual(self.value('setpoints_total'), 5)
             self.write(5, setpoints=7)
             self.assertEqual(self.value('setpoints_total'), 12)
-        self.assertEqual(say.mock_calls, [mock.call(folder / (NAME % minute), 'skipped: named like a record, but not a regular file')
+        self.assertEqual(say.mock_calls, [mock.call(folder / name_of(minute), 'skipped: named like a record, but not a regular file')
                                           for minute in (2, 3, 4)])
 
     def test_that_cannot_be_added_do_not_count(self):
         nested = '[' * 100000 + ']' * 100000
         for minute, (old, new) in enumerate((('"overrides": []', '"overrides": ' + nested), ('"operations": [', '"operations": [], "o": ['))):
             self.write(minute, setpoints=3, file=job_of('jobs/taper_reamer_d6_t6.yaml', 0))
-            file = pathlib.Path(self.folder) / (NAME % minute)
+            file = pathlib.Path(self.folder) / name_of(minute)
             text = file.read_text()
             self.assertIn(old, text)
             file.write_text(text.replace(old, new))
         self.write(3, setpoints=5)
         with mock.patch.object(exporter, 'say') as say:
             self.assertEqual((self.value('setpoints_total'), self.value('jobs_total', outcome='done')), (5, 1))
-        self.assertEqual([call[1][0].name for call in say.mock_calls], [NAME % 0, NAME % 1])
+        self.assertEqual([call[1][0].name for call in say.mock_calls], [name_of(0), name_of(1)])
 
     def damage(self, file, content):
         """Puts a text, or what a function makes, in the place of the sums."""

@@ -25,7 +25,7 @@ MESSAGES = {
     'src/cli/csv.cpp': (),
     'src/cli/machine_file.cpp': ('a drive, as flute_grinder/SimulatedDrive',),
     'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'on, not at speed', 'work position', 'of the machine', 'to go',
-                           'the power is on', 'the fault is reset; the power is commanded off'),
+                           'the power is on', 'the fault is reset; the power is commanded off', 'held because', 'no journal', 'it ended'),
     'src/cli/probe.cpp': ('work offset',),
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
     'src/cli/state_watch.cpp': (),

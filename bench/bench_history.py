@@ -31,7 +31,7 @@ def keep_copies(folders, count, records):
         record, start = records[i % len(records)], datetime.datetime(2020, 1, 1) + datetime.timedelta(minutes=i)
         record.update(started=utc(start), ended=utc(start + datetime.timedelta(seconds=50)))
         record['job']['file']['process']['wheel']['wear_mm'] = i * 1e-6
-        name = start.strftime('%Y%m%dT%H%M%S.000Z.json')
+        name = '%010d_' % (i + 1) + start.strftime('%Y%m%dT%H%M%S.000Z.json')
         (folders[i % len(folders)] / name).write_text(json.dumps(record, separators=(',', ':')))
 
 

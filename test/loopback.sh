@@ -67,7 +67,7 @@ launch_grinder() {
   [[ " ${variables[*]} " == *ROS_IPV6=on* ]] && address=localhost
   [[ " ${variables[*]} " == *"ROS_IP=$own"* ]] && address=$own
   export ROS_MASTER_URI=http://$address:$port
-  with_hosts env "${variables[@]}" roslaunch -p "$port" flute_grinder grinder.launch bag:=true bag_file:="$folder/bag.bag" \
+  with_hosts env "${variables[@]}" roslaunch -p "$port" flute_grinder grinder.launch bag:=true bag_file:="$folder/$port.bag" \
     journal:="$folder/journal" "$@" >"$folder/log" 2>&1 &
   launch=$!
   await_grinder with_hosts env "${variables[@]}"

@@ -74,16 +74,16 @@ class Filter {
  public:
   explicit Filter(const HistoryOptions& options)
       : options_(options),
-        first_(options.since.empty() ? "" : recordName(timeOfDate(options.since, false))),
-        last_(options.until.empty() ? "~" : recordName(timeOfDate(options.until, true))) {
+        first_(options.since.empty() ? "" : startText(timeOfDate(options.since, false))),
+        last_(options.until.empty() ? "~" : startText(timeOfDate(options.until, true))) {
     if (first_ > last_) {
       throw std::invalid_argument("--until " + options.until + " is before --since " + options.since +
                                   "; allowed: the same or later");
     }
   }
 
-  /// By its file's name, which is its start.
-  bool takes(std::string_view name) const { return first_ <= name && name <= last_; }
+  /// By the start in its file's name.
+  bool takes(std::string_view path) const { return first_ <= startOf(path) && startOf(path) <= last_; }
   bool takesTool(const Entry& entry) const {
     return options_.tool.empty() || contains(entry.job) || contains(entry.tool);
   }
@@ -268,8 +268,7 @@ std::vector<std::string> pathsIn(const std::string& folder) {
 struct Record {
   std::string path;
   const std::string* grinder;  ///< outlives this
-
-  std::string_view name() const { return std::string_view(path).substr(path.rfind('/') + 1); }
+  std::string place;           ///< its start, or that of one written after it by the same grinder, if that is earlier
 };
 
 struct Folder {
@@ -296,18 +295,25 @@ std::vector<Folder> foldersOf(const std::string& node, const HistoryOptions& opt
   return folders;
 }
 
-/// The records of all folders, the newest last. Prints why a folder cannot be read. @return whether all could.
+/// The records of all folders, the newest last: those of a folder in their order, also if the clock was once ahead.
+/// Prints why a folder cannot be read. @return whether all could.
 bool findRecords(const std::vector<Folder>& folders, std::vector<Record>& records) {
   bool good = true;
   for (const Folder& folder : folders) {
     try {
-      for (std::string& path : pathsIn(folder.path)) records.push_back({std::move(path), &folder.grinder});
+      const std::size_t first = records.size();
+      for (const std::string& path : pathsIn(folder.path)) {
+        records.push_back({path, &folder.grinder, std::string(startOf(path))});
+      }
+      for (std::size_t i = records.size(); i-- > first + 1;) {
+        records[i - 1].place = std::min(records[i - 1].place, records[i].place);
+      }
     } catch (const FileError& error) {
       std::fprintf(stderr, "%s\n", error.what());
       good = false;
     }
   }
-  const auto older = [](const Record& a, const Record& b) { return a.name() < b.name(); };
+  const auto older = [](const Record& a, const Record& b) { return a.place < b.place; };
   std::stable_sort(records.begin(), records.end(), older);
   return good;
 }
@@ -408,7 +414,7 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
   if (status != 0 && folders.size() == 1) return status;
   std::string none = records.empty() ? "no records in" : "no such records in";
   for (const Folder& folder : folders) none += (&folder == &folders.front() ? " " : ", ") + folder.path;
-  const auto is_other = [&](const Record& record) { return !filter.takes(record.name()); };
+  const auto is_other = [&](const Record& record) { return !filter.takes(record.path); };
   records.erase(std::remove_if(records.begin(), records.end(), is_other), records.end());
   readAll(
       records, [&](const Record& record) { return readOne(record, tolerances, filter, listing); },

@@ -1,11 +1,15 @@
 #include "cli/machine_file.h"
 
+#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/yaml_text.h"
 
 #include <ros/package.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <limits>
 #include <regex>
@@ -91,7 +95,26 @@ MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const 
   return {model, readMachineConfig(model, ParameterReader(values, name), drives)};
 }
 
+namespace {
+
+/// rosbag writes over whatever is there, and ends only once it has started.
+void requireNewBag(const std::string& path) {
+  const std::filesystem::path bag(path);
+  if (!bag.is_absolute()) throw FileError("bag = " + path + "; allowed: an absolute path, or one that begins with ~/");
+  for (const std::string& file : {path, path + ".active"}) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(file))) {
+      throw FileError(file + ": is already there; allowed: a bag of another name, or move this one elsewhere");
+    }
+  }
+  if (::access(bag.parent_path().c_str(), W_OK | X_OK) != 0) {
+    throw FileError(path + ": cannot be written: " + std::strerror(errno));
+  }
+}
+
+}  // namespace
+
 int runMachine(const MachineOptions& options) {
+  if (!options.bag.empty()) requireNewBag(options.bag);
   const MachineFiles files = readMachineFiles(options.parameters, options.urdf);
   std::string names;
   for (const std::string& file : options.parameters) names += std::filesystem::absolute(file).string() + ", ";

@@ -23,9 +23,11 @@ MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const 
 struct MachineOptions {
   std::vector<std::string> parameters;
   std::string urdf;
+  std::string bag;  ///< file that the launch will have written; empty for none
 };
 
-/// Reads and checks the files, and prints in a line which drive they name and where they are. @return the exit status.
+/// Reads and checks the files, and prints in a line where they are. @return the exit status. @throw FileError if the
+/// bag cannot be written, or would replace another.
 int runMachine(const MachineOptions& options);
 
 /// A file of this package, as `config/grinder.yaml`. @throw JobFileError if the shell does not know the package.

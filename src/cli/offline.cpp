@@ -6,6 +6,7 @@
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_sheet.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <cstdio>
@@ -115,8 +116,8 @@ void printChecks(const GrindJob& job, const CutterFigures& ground, const std::op
                 complete->to / kMillimetre);
   }
   if (closest) {
-    std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", closest->first.c_str(), closest->second.c_str(),
-                closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
+    std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", escaped(closest->first).c_str(),
+                escaped(closest->second).c_str(), closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
   }
   const double cut = shankCut(job.cutter);
   if (cut > 0) {

@@ -9,6 +9,7 @@
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
@@ -110,18 +111,18 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
     const auto i = static_cast<std::size_t>(axis);
     std::printf("%c     %12.4f  %12.4f  %12.4f %-4s", "XYZA"[i], toShop(axis, offsets.values[i]),
                 toShop(axis, state.position[i]), toShop(axis, state.work_position[i]), axis == kA ? "deg" : "mm");
-    const std::string basis = basisText(axis, all.axes[i]);
+    const std::string basis = escaped(basisText(axis, all.axes[i]));
     if (offsets.set_at[i].isZero()) {
       std::printf("  %s\n", basis.c_str());
     } else {
-      std::printf("  set by %s, %s; %s\n", offsets.set_by[i].c_str(),
+      std::printf("  set by %s, %s; %s\n", escaped(offsets.set_by[i]).c_str(),
                   timeText(offsets.set_at[i].toSec(), false).c_str(), basis.c_str());
     }
   }
-  std::printf("wheel on the spindle: %s\n", mountedText(all.wheel).c_str());
-  std::printf("tool in the collet: %s\n", toolText(all.tool).c_str());
+  std::printf("wheel on the spindle: %s\n", escaped(mountedText(all.wheel)).c_str());
+  std::printf("tool in the collet: %s\n", escaped(toolText(all.tool)).c_str());
   if (!state.homed) std::printf("the axes are not homed: their positions mean nothing yet\n");
-  if (!offsets.error.empty()) std::printf("%s\n", offsets.error.c_str());
+  if (!offsets.error.empty()) std::printf("%s\n", escaped(offsets.error).c_str());
 }
 
 /// Whether a state is not from before the last change of the offsets, which it would contradict.

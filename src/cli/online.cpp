@@ -13,6 +13,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/job/escaped.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
@@ -86,6 +87,9 @@ bool isNew() {
   return std::all_of(topics.begin(), topics.end(), is_log);
 }
 
+/// @param text from a peer.
+void printLine(const char* name, const std::string& text) { std::printf("%-15s %s\n", name, escaped(text).c_str()); }
+
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
   std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
               axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
@@ -101,17 +105,17 @@ void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const WorkOffsets all = offsets ? fromMessage(*offsets) : WorkOffsets();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string basis = basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
-    std::printf("zero point %c    %s\n", "XYZA"[axis], offsets ? basis.c_str() : "not known");
+    printLine(format("zero point %c", "XYZA"[axis]).c_str(), offsets ? basis : "not known");
   }
-  std::printf("wheel           %s\n", offsets ? mountedText(all.wheel).c_str() : "not known");
-  std::printf("tool            %s\n", offsets ? toolText(all.tool).c_str() : "not known");
+  printLine("wheel", offsets ? mountedText(all.wheel) : "not known");
+  printLine("tool", offsets ? toolText(all.tool) : "not known");
 }
 
 /// @param node resolved name. @param offsets null if they are not known.
 void printState(const std::string& node, const flute_grinder::GrinderState& state,
                 const flute_grinder::WorkOffsets::ConstPtr& offsets) {
-  std::printf("grinder         %s\n", node.c_str());
-  std::printf("state           %s\n", state.state_name.c_str());
+  printLine("grinder", node);
+  printLine("state", state.state_name);
   std::printf("enabled         %s\n", state.power_stays_on ? "yes, though it was switched off"
                                       : state.enabled      ? "yes"
                                                            : "no");
@@ -130,12 +134,12 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
   std::printf("feed            %.1f mm/min, override %.0f %%\n", state.feed / units::kMillimetrePerMinute,
               state.override * 100);
   if (inJob(state)) std::printf("tooth, pass     %d, %d\n", state.tooth + 1, state.pass + 1);
-  if (!state.hold_reason.empty()) std::printf("held because    %s\n", state.hold_reason.c_str());
-  if (!state.fault.empty()) std::printf("fault           %s\n", state.fault.c_str());
-  if (!state.journal_error.empty()) std::printf("no journal      %s\n", state.journal_error.c_str());
+  if (!state.hold_reason.empty()) printLine("held because", state.hold_reason);
+  if (!state.fault.empty()) printLine("fault", state.fault);
+  if (!state.journal_error.empty()) printLine("no journal", state.journal_error);
   if (state.progress.job_digest.empty()) return;
-  std::printf("last job        %s\n", lastJob(state.progress).c_str());
-  if (!inJob(state)) std::printf("it ended        %s\n", endText(state.progress).c_str());
+  printLine("last job", lastJob(state.progress));
+  if (!inJob(state)) printLine("it ended", endText(state.progress));
 }
 
 /// Waits until the machine leaves the state of a motion that was started.
@@ -162,7 +166,7 @@ int fail(const std::string& text) {
 }
 
 int succeed(const std::string& text) {
-  std::printf("%s\n", text.c_str());
+  std::printf("%s\n", escaped(text, "\n").c_str());
   return 0;
 }
 

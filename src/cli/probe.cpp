@@ -7,6 +7,7 @@
 #include "cli/zeros.h"
 #include "flute_grinder/ProbeAction.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -72,7 +73,7 @@ bool awaitCycle(ProbeClient::GoalHandle& cycle, const StateWatch& watch) {
 void printFigures(const flute_grinder::ProbeResult& result) {
   for (const flute_grinder::ProbedFigure& figure : result.figures) {
     const bool angle = figure.angle != 0;
-    std::printf("%-15s %s", figure.name.c_str(), shown(figure.value, angle).c_str());
+    std::printf("%-15s %s", escaped(figure.name).c_str(), shown(figure.value, angle).c_str());
     if (!std::isnan(figure.spread)) std::printf(", spread %s", shown(figure.spread, angle).c_str());
     std::printf("\n");
   }

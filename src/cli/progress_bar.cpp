@@ -1,6 +1,7 @@
 #include "cli/progress_bar.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/format.h"
 
 #include <sys/ioctl.h>
@@ -71,7 +72,7 @@ std::vector<Part> partsOf(const flute_grinder::GrindFeedback& f, int teeth, int 
   if (planning(f)) return {room_for_bar, {0, format("planning %.0f %%", f.planned * 100)}};
   return {room_for_bar,
           {0, format("%3.0f %%", f.job_fraction * 100)},
-          {1, f.state},
+          {1, escaped(f.state)},
           {2, format("tooth %d/%d", f.tooth + 1, teeth)},
           {3, format("pass %d/%d", f.pass + 1, passes)},
           {6, format("X %7.3f mm", f.x / units::kMillimetre)},
@@ -121,7 +122,7 @@ void ProgressBar::draw() {
 void ProgressBar::printLine(const std::string& text) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const bool drawn = terminal_ && begun_ && !ended_;
-  std::fprintf(stderr, "%s%s\n", drawn ? kClearLine : "", text.c_str());
+  std::fprintf(stderr, "%s%s\n", drawn ? kClearLine : "", escaped(text).c_str());
   if (drawn) draw();
 }
 

@@ -9,6 +9,7 @@
 #include "cli/stream_watch.h"
 #include "flute_grinder/GrindAction.h"
 #include "flute_grinder/Plan.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/continue_job.h"
@@ -137,7 +138,7 @@ int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& strea
   const flute_grinder::GrindResultConstPtr result = goal.result();
   if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   if (result) {
-    for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", escaped(warning).c_str());
   }
   printStream(stream, result ? result->setpoints_written : 0);
   if (!connected) return fail(kLinkLost);

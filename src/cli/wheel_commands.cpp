@@ -62,6 +62,8 @@ void addMachineFile(Commands& commands) {
       ->required()
       ->type_name(kYamlFile);
   command.add_option("--urdf", options->urdf, "robot description")->required()->type_name(kUrdfFile);
+  command.add_option("--bag", options->bag, "bag that the launch is to have written: refused if it is there already")
+      ->type_name(kAnyFile);
 }
 
 }  // namespace

@@ -170,7 +170,7 @@ MachineConfig readMachineConfig(const MachineModel& model, const ParameterReader
   config.thresholds = readDiagnosticThresholds(p);
   config.first_view = readFirstView(p);
   config.drive = p.text("hardware/type", drives);
-  p.refuseUnknown({"hardware", "journal", "offsets", "history", "configuration", "diagnostic_period"});
+  p.refuseUnknown({"hardware", "journal", "offsets", "history", "configuration", "recorder", "diagnostic_period"});
   return config;
 }
 

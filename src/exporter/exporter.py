@@ -6,6 +6,7 @@ once the master has been restarted. This program asks the master where the grind
 whenever a connection ends. It registers nothing, and listens on no port but that for Prometheus."""
 
 import argparse
+import copy
 import functools
 import json
 import math
@@ -14,6 +15,7 @@ import pathlib
 import re
 import shutil
 import socket
+import stat
 import struct
 import subprocess
 import sys
@@ -33,7 +35,7 @@ CALLER = '/flute_grinder_exporter'  # what the master and the grinder are told; 
 SILENCE = 5  # [s] after which one that says something ten times a second does not answer
 WINDOW = 60  # [s] over which the worst figure is shown: longer than Prometheus leaves between two scrapes
 LONGEST = 1 << 18  # [bytes] of a message
-RECORD = re.compile(r'\d{8}T\d{6}\.\d{3}Z\.json')
+RECORD = re.compile(r'\d{10}_\d{8}T\d{6}\.\d{3}Z\.json')
 
 
 def constants(kind):
@@ -112,6 +114,17 @@ def ends_tool(file):
     return file.get('operation') == last.get('relief', last['kind'])
 
 
+def like(value, model):
+    """Whether a value of a JSON file has the type of a model, or is of it, with the same keys; numbers not negative, and finite."""
+    if isinstance(model, type):
+        return isinstance(value, model)
+    if isinstance(model, dict):
+        return isinstance(value, dict) and value.keys() == model.keys() and all(like(value[key], model[key]) for key in model)
+    if isinstance(model, str):
+        return isinstance(value, str)
+    return type(value) in (int, float) and 0 <= value <= sys.float_info.max
+
+
 class Records:
     """What the records of a folder add up to, with those that are no longer there.
 
@@ -124,19 +137,31 @@ class Records:
         self.sums = {'jobs': {'done': 0, 'canceled': 0, 'fault': 0}, 'verdicts': {'passed': 0, 'incomplete': 0, 'failed': 0},
                      'tools': 0, 'strokes': 0, 'setpoints': 0, 'seconds': 0, 'wheels': {}}
         self.counted = set()
+        self.skipped = set()
         try:
-            kept = json.loads(self.file.read_text())
-            self.sums.update(kept['sums'])
-            self.counted.update(kept['counted'])
+            self.sums, self.counted = self.kept()
         except FileNotFoundError:
             pass
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            say(self.file, 'the counters begin with the records that are there: %r' % error)
+        except (OSError, ValueError, RecursionError) as error:
+            say(self.file, 'the counters begin with the records that are there: %s' % error)
+
+    def kept(self):
+        """The sums in the file, and the records that are in them."""
+        # A FIFO would block its reader.
+        if not stat.S_ISREG(self.file.stat().st_mode):
+            raise OSError('no regular file')
+        kept = json.loads(self.file.read_bytes().decode())
+        wheel = {'dressed': '', 'tools': 0, 'wear': 0}
+        if not (like(kept, {'sums': dict(self.sums, wheels=dict), 'counted': list})
+                and all(like(of_one, wheel) for of_one in kept['sums']['wheels'].values())
+                and all(like(name, '') for name in kept['counted'])):
+            raise ValueError('not the sums of records')
+        return kept['sums'], set(kept['counted'])
 
     def update(self):
         """Adds the records that are new."""
         try:
-            names = set(filter(RECORD.fullmatch, os.listdir(str(self.folder))))
+            names = self.names()
         except FileNotFoundError:
             return  # before the first job
         if names <= self.counted:
@@ -145,23 +170,40 @@ class Records:
         # One that cannot be read is not tried again.
         self.counted = names
         for entry in entries:
+            before = copy.deepcopy(self.sums)
             try:
                 self.add(entry)
-            except (KeyError, TypeError) as error:
-                say(entry.get('file'), 'not counted: %r' % error)
+            # A file of this name may have anything in it.
+            except Exception as error:
+                self.sums = before
+                say(self.folder / entry['name'], 'not counted: %r' % error)
         self.save()
+
+    def names(self):
+        """Of the records. Says once what is skipped."""
+        named = [file for file in os.scandir(str(self.folder)) if RECORD.fullmatch(file.name)]
+        names = {file.name for file in named if file.is_file(follow_symlinks=False)}
+        others = {file.name for file in named} - names
+        for name in sorted(others - self.skipped):
+            say(self.folder / name, 'skipped: named like a record, but not a regular file')
+        self.skipped = others
+        return names
 
     def judged(self, names):
         """What `grind history` lists of records, the oldest first."""
         with tempfile.TemporaryDirectory() as folder:
             for name in names:
-                shutil.copy(str(self.folder / name), folder)
+                try:
+                    shutil.copy(str(self.folder / name), folder)
+                except OSError as error:
+                    say(self.folder / name, 'not counted: %s' % error)
             listed = subprocess.run([str(job.GRIND), 'history', '--from', folder, '--json'], stdout=subprocess.PIPE)
             for entry in json.loads(listed.stdout.decode()):
-                yield dict(entry, record=json.loads(pathlib.Path(entry['file']).read_text()))
+                file = pathlib.Path(entry['file'])
+                yield dict(entry, name=file.name, text=file.read_bytes())
 
     def add(self, entry):
-        record, sums = entry['record'], self.sums
+        record, sums = json.loads(entry['text'].decode()), self.sums
         file = record['job']['file']
         sums['jobs'][entry['outcome']] += 1
         sums['verdicts'][entry['verdict']] += 1
@@ -181,7 +223,10 @@ class Records:
     def save(self):
         new = self.file.with_suffix('.new')
         try:
-            with new.open('w') as file:
+            # What a power failure has left; and what else has the name is neither waited for nor written into.
+            if os.path.lexists(str(new)):
+                new.unlink()
+            with new.open('x') as file:
                 json.dump({'sums': self.sums, 'counted': sorted(self.counted)}, file)
                 file.flush()
                 os.fsync(file.fileno())
@@ -299,7 +344,7 @@ class Grinder:
                     {name: wheel['wear'] for name, wheel in wheels.items()}, 'wheel')
         yield gauge('wheel_tools_since_dressing', 'Tools ground to their end since the wheel was dressed, or first used',
                     {name: wheel['tools'] for name, wheel in wheels.items()}, 'wheel')
-        if folder.is_dir():
+        if os.path.isdir(str(folder)):
             disk = os.statvfs(str(folder))
             yield gauge('records_free_bytes', 'Free on the disk of the records', disk.f_bavail * disk.f_frsize)
 

@@ -1,6 +1,7 @@
 #include "flute_grinder/messages/json.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
@@ -120,6 +121,12 @@ Json toJson(const GrindJob& job) {
     file["operations"].push_back(operationOf(job.ofOperation(i)));
   }
   return file;
+}
+
+void escapeTexts(Json& json) {
+  if (json.is_string()) json = escaped(json.get_ref<const std::string&>());
+  if (!json.is_structured()) return;
+  for (auto& item : json) escapeTexts(item);
 }
 
 std::string text(const Json& json, int indent) { return json.dump(indent, ' ', false, Json::error_handler_t::replace); }

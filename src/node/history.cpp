@@ -53,7 +53,8 @@ struct History::Folder {
     if (!failure.empty() || drops == dropped) error = failure;
   }
 
-  void removeOldest(const fs::path& but) const;
+  void keep(double start, const std::string& text) const;
+  void removeOldest() const;
 
   const fs::path path;
   const std::uint64_t limit;
@@ -63,17 +64,25 @@ struct History::Folder {
   std::string error;
 };
 
-/// @param but the record just written: the clock may have been set back, so that it looks the oldest.
-/// @throw std::exception if one cannot be removed, and naming what is skipped, once the limit is held.
-void History::Folder::removeOldest(const fs::path& but) const {
+/// @throw std::exception if it cannot be kept, or an older one not be removed; naming what is skipped, once the limit
+/// is held.
+void History::Folder::keep(double start, const std::string& text) const {
+  fs::create_directories(path);
+  const fs::path file = path / recordName(start, recordFilesIn(path));
+  writeFile(file, text);
+  settleFile(file);
+  removeOldest();
+}
+
+void History::Folder::removeOldest() const {
   RecordFiles found = recordFilesIn(path);
   std::vector<std::string>& files = found.records;
   files.insert(files.end(), found.unfinished.begin(), found.unfinished.end());
   std::sort(files.begin(), files.end());
   std::uint64_t size = 0;
   for (const std::string& file : files) size += fs::file_size(file);
-  for (std::size_t i = 0; i < files.size() && size > limit; ++i) {
-    if (fs::path(files[i]) == but) continue;
+  // The last one is the record just written.
+  for (std::size_t i = 0; i + 1 < files.size() && size > limit; ++i) {
     size -= fs::file_size(files[i]);
     fs::remove(files[i]);
   }
@@ -84,7 +93,7 @@ History::History(const std::string& folder, std::uint64_t limit) : folder_(std::
   thread_.post([at = folder_] { at->attempt(0, [&] { fs::create_directories(at->path); }); });
 }
 
-void History::keep(const std::string& name, std::function<std::string()> text) {
+void History::keep(double start, std::function<std::string()> text) {
   std::uint64_t drops = 0;
   {
     const std::lock_guard<std::mutex> lock(folder_->mutex);
@@ -97,14 +106,8 @@ void History::keep(const std::string& name, std::function<std::string()> text) {
     ++folder_->waiting;
     drops = folder_->dropped;
   }
-  thread_.post([at = folder_, drops, name, text = std::move(text)] {
-    at->attempt(drops, [&] {
-      fs::create_directories(at->path);
-      const fs::path file = at->path / name;
-      writeFile(file, text());
-      settleFile(file);
-      at->removeOldest(file);
-    });
+  thread_.post([at = folder_, drops, start, text = std::move(text)] {
+    at->attempt(drops, [&] { at->keep(start, text()); });
     const std::lock_guard<std::mutex> lock(at->mutex);
     --at->waiting;
   });

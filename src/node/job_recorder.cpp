@@ -1,7 +1,5 @@
 #include "node/job_recorder.h"
 
-#include "flute_grinder/record/record_file.h"
-
 #include <utility>
 
 namespace grinder {
@@ -35,7 +33,7 @@ void JobRecorder::keepIfComplete(std::uint64_t number) {
 
 void JobRecorder::keep(const std::shared_ptr<const JobRecord>& record) {
   if (!record->moved()) return;
-  history_.keep(recordName(record->started()), [record, grinder = grinder_, machine = machine_] {
+  history_.keep(record->started(), [record, grinder = grinder_, machine = machine_] {
     return text(record->json(grinder, machine), -1) + "\n";
   });
 }

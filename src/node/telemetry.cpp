@@ -55,6 +55,12 @@ flute_grinder::JobProgress toMessage(const Progress& progress) {
   return m;
 }
 
+/// The node that records a bag of this one; empty if none was asked for.
+std::string recorderOf(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
+  const auto name = private_nh.param<std::string>("recorder", "");
+  return name.empty() ? name : nh.resolveName(name);
+}
+
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
@@ -70,6 +76,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
                      return Scheduling{loop.realtimeScheduling(), loop.memoryLocked()};
                    }),
       diagnostic_updater_(nh, private_nh),
+      recorder_watch_(recorderOf(nh, private_nh)),
       robot_status_(nh),
       frames_(model, first_view),
       scene_(private_nh, first_view),
@@ -78,12 +85,22 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
   ros::NodeHandle node(nh), own(private_nh);
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   state_ = own.advertise<flute_grinder::GrinderState>("state", 10, true);
-  setpoints_ = own.advertise<flute_grinder::SetpointBatch>("setpoints", 1000);
+  own.setCallbackQueue(thread_.queue());
+  setpoints_ = own.advertise<flute_grinder::SetpointBatch>(
+      "setpoints", 1000, [this](const auto& peer) { recorder_watch_.connect(peer.getSubscriberName()); },
+      [this](const auto& peer) { recorder_watch_.disconnect(peer.getSubscriberName()); });
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
+  recorder_watch_.addTo(diagnostic_updater_);
   diagnostics_period_ = ros::WallDuration(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0));
   next_diagnostics_ = ros::SteadyTime::now() + diagnostics_period_;
   batch_.period = loop.config().machine.period;
+}
+
+Telemetry::~Telemetry() {
+  thread_.stop();
+  // Its peers are reported to the thread's queue.
+  setpoints_.shutdown();
 }
 
 void Telemetry::show(std::shared_ptr<const PlannedJob> plan) {
@@ -131,6 +148,7 @@ void Telemetry::tick() {
   readRecords();
   if (samples_read_ == 0) return;
   logHang();
+  recorder_watch_.look(ros::SteadyTime::now());
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
     showJob(*job->plan);

@@ -11,6 +11,7 @@
 #include "node/job_recorder.h"
 #include "node/journal_writer.h"
 #include "node/offset_store.h"
+#include "node/recorder_watch.h"
 #include "node/robot_status.h"
 #include "node/served_queue.h"
 
@@ -39,6 +40,7 @@ class Telemetry {
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
             const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
             const DiagnosticThresholds& thresholds, const MachineModel& model, const FirstView& first_view);
+  ~Telemetry();
 
   /// Starts publishing. @param watchdog must outlive this object.
   void start(const LoopWatchdog& watchdog) {
@@ -112,6 +114,7 @@ class Telemetry {
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
   ros::Publisher joint_states_, state_, setpoints_;
+  RecorderWatch recorder_watch_;
   RobotStatus robot_status_;
   Frames frames_;
   Scene scene_;

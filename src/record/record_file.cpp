@@ -20,8 +20,14 @@ namespace {
 
 // As hasForm() takes them.
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
-constexpr std::string_view kNameForm = "00000000T000000.000Z.json";
-constexpr std::string_view kUnfinishedForm = "00000000T000000.000Z.json.new";  ///< see writeFile()
+constexpr std::string_view kStartForm = "00000000T000000.000Z";
+constexpr std::string_view kNameForm = "0000000000_00000000T000000.000Z.json";
+constexpr std::string_view kUnfinishedForm = "0000000000_00000000T000000.000Z.json.new";  ///< see writeFile()
+constexpr std::size_t kDigits = kNameForm.find('_');
+constexpr std::uint64_t kMostRecords = 9999999999;  ///< of so many digits
+
+/// Without the folder.
+std::string_view nameIn(std::string_view path) { return path.substr(path.rfind('/') + 1); }
 
 std::string textOf(const std::string& path) {
   requireRegularFile(path);
@@ -100,10 +106,14 @@ double timeOf(const std::string& utc) {
   return time;
 }
 
-std::string recordName(double start) {
-  std::string name = utcText(start);
-  name.erase(std::remove_if(name.begin(), name.end(), [](char c) { return c == '-' || c == ':'; }), name.end());
-  return name + ".json";
+std::string startText(double time) {
+  std::string text = utcText(time);
+  text.erase(std::remove_if(text.begin(), text.end(), [](char c) { return c == '-' || c == ':'; }), text.end());
+  return text;
+}
+
+std::string_view startOf(std::string_view record_name) {
+  return nameIn(record_name).substr(kDigits + 1, kStartForm.size());
 }
 
 bool isRecordName(std::string_view name) { return hasForm(name, kNameForm); }
@@ -123,6 +133,18 @@ RecordFiles recordFilesIn(const std::string& folder) {
   }
   for (auto* list : {&files.records, &files.unfinished, &files.others}) std::sort(list->begin(), list->end());
   return files;
+}
+
+std::string recordName(double start, const RecordFiles& before) {
+  std::uint64_t number = 0;
+  for (const auto* list : {&before.records, &before.unfinished, &before.others}) {
+    if (list->empty()) continue;
+    const std::string_view name = nameIn(list->back());
+    number = std::max<std::uint64_t>(number, std::stoull(std::string(name.substr(0, kDigits))));
+    if (number == kMostRecords) throw std::runtime_error(list->back() + ": has the greatest number; move it elsewhere");
+  }
+  return format("%0*llu_", static_cast<int>(kDigits), static_cast<unsigned long long>(number + 1)) + startText(start) +
+         ".json";
 }
 
 Json readRecord(const std::string& path) { return recordIn(path, false); }

@@ -1,7 +1,5 @@
 #include "record/record_shape.h"
 
-#include "flute_grinder/job/escaped.h"
-
 #include <stdexcept>
 #include <string>
 
@@ -94,12 +92,6 @@ void checkValue(const Json& value, const Json& shape, const std::string& key) {
   const bool or_null = type.back() == '?';
   if (or_null) type.pop_back();
   if (!(or_null && value.is_null()) && !isOfType(value, type)) refuse(key, value, shape);
-}
-
-void escapeTexts(Json& json) {
-  if (json.is_string()) json = escaped(json.get_ref<const std::string&>());
-  if (!json.is_structured()) return;
-  for (auto& item : json) escapeTexts(item);
 }
 
 }  // namespace

@@ -100,6 +100,7 @@ Json Survey::plots() const { return plots_->json(); }
 Json Survey::findings(const ReportContext& context) const {
   Json data = headOf(run_.kind(), context);
   data.update(run_.head());
+  escapeTexts(data);
   if (run_.job()) {
     data["job"] = {{"name", data.value("job_name", "")}, {"file", toJson(**run_.job())}};
     data.erase("job_name");

@@ -146,7 +146,7 @@ class TestPlan(CommandLine):
             with self.subTest(arguments):
                 self.assertIn(said, self.grind(2, *arguments).stderr)
         os.mkdir(self.path('history'))
-        for make, name in ((os.mkfifo, '20261122T170413.000Z.json'), (os.mkdir, '20261122T170413.001Z.json')):
+        for make, name in ((os.mkfifo, '0000000001_20261122T170413.000Z.json'), (os.mkdir, '0000000002_20261122T170413.001Z.json')):
             make(self.path('history/' + name))
         done = self.grind(0, 'history', '--from', self.path('history'))
         self.assertRegex(done.stderr, r'(.*\d\d[01]Z\.json: skipped: named like a record, but not a regular file\n){2}$')
@@ -199,23 +199,41 @@ class TestPlan(CommandLine):
         self.check_machine('jog_timeout', 'jog_timeout', 'parameter {0}, {1}/jog_timeout = 9; allowed: 0.05 to 1',
                            self.write('more.yaml', 'jog_timeout: 9\n'))
 
-    def launch(self, *arguments):
+    def launch(self, *arguments, **environment):
         return subprocess.run(['roslaunch', '--dump-params', 'flute_grinder', 'grinder.launch', *arguments], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True)
+                              stderr=subprocess.PIPE, universal_newlines=True, env=dict(os.environ, **environment))
 
     def test_launch_file_takes_what_it_declares_and_no_more(self):
         files = {'config': 'config/grinder.yaml', 'hal_config': 'config/hal.yaml', 'urdf': 'urdf/grinder.urdf'}
         values = dict({name: gc.package_file(file) for name, file in files.items()}, name='other', hardware='hal', loopback_only='true',
-                      **{name: 'false' for name in ('rviz', 'required', 'bag')},
-                      **{name: '/tmp/' for name in ('journal', 'offsets', 'history', 'bag_file')})
+                      rviz='false', required='false', bag='true',
+                      bag_file=self.path('a bag'), **{name: '/tmp/' for name in ('journal', 'offsets', 'history')})
         tree = xml.etree.ElementTree.parse(gc.package_file('launch/grinder.launch'))
         self.assertEqual({arg.get('name') for arg in tree.iter('arg') if 'default' in arg.keys()}, set(values))
-        self.assertIn('/other/journal: /tmp/', self.launch(*('%s:=%s' % item for item in values.items())).stdout)
+        said = self.launch(*('%s:=%s' % item for item in values.items())).stdout
+        for parameter in ('/other/journal: /tmp/', '/other/recorder: other_bag'):
+            self.assertIn(parameter, said)
         said = self.launch('hardwear:=hal')
         self.assertNotIn('control_rate', said.stdout)
         self.assertIn("unknown arguments: ['hardwear']", said.stdout + said.stderr)
         wrong = self.write('machine.yaml', 'control_rate: 1000\ncontrol_rate: 500\n')
         self.assertIn(wrong + ':2: control_rate appears twice\n', self.launch('config:=' + wrong).stderr)
+
+    def test_launch_writes_over_no_bag(self):
+        there = self.write('a bag.bag', 'mine')
+        unfinished = self.write('b.bag.active', 'mine')
+        os.symlink('nowhere', self.path('c.bag'))
+        taken = '%s: is already there; allowed: a bag of another name, or move this one elsewhere\n'
+        for asked, said in ((there, taken % there), (there[:-4], taken % there), (unfinished[:-7], taken % unfinished),
+                            (self.path('c.bag'), taken % self.path('c.bag')),
+                            ('a.bag', 'bag = a.bag; allowed: an absolute path, or one that begins with ~/\n'),
+                            (self.path('none/a.bag'), self.path('none/a.bag') + ': cannot be written: No such file or directory\n')):
+            done = self.launch('bag:=true', 'bag_file:=' + asked)
+            self.assertIn(said, done.stderr)
+            self.assertNotIn('control_rate', done.stdout)
+        said = self.launch('bag_file:=' + self.path('d.bag'))
+        self.assertIn('d.bag without bag:=true; allowed: both, or none', said.stdout + said.stderr)
+        self.assertIn("'%s'" % there, str(self.launch('bag:=true', 'bag_file:=~/a bag', HOME=self.folder).stderr))
 
     def test_machine_file_of_two_documents(self):
         with open(gc.package_file('config/grinder.yaml')) as file:

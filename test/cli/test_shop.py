@@ -15,6 +15,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 from grind_command import CommandLine  # noqa: E402
 from record_files import job_of, record_of  # noqa: E402
 
+NAME = '00000000{0:02}_20261122T{0:02}0000.000Z.json'
+
 
 class TestShop(CommandLine):
     """Three grinders: `left` and `right` grind in turn, `old` has a broken record beside a good one."""
@@ -34,7 +36,7 @@ class TestShop(CommandLine):
 
     def keep(self, grinder, hour, text):
         os.makedirs(self.path(grinder), exist_ok=True)
-        self.write('%s/20261122T%02d0000.000Z.json' % (grinder, hour), text)
+        self.write('%s/%s' % (grinder, NAME.format(hour)), text)
 
     def hours(self, status, *arguments):
         """Of the records that are listed."""
@@ -44,7 +46,7 @@ class TestShop(CommandLine):
     def test_all_are_in_one_list_by_time_and_what_is_broken_is_named(self):
         self.folders.append(self.path('none'))
         self.write('old/notes.json', 'not ours')
-        with open(self.path('old/20261122T070000.000Z.json')) as file:
+        with open(self.path('old/' + NAME.format(7))) as file:
             other = file.read().replace('"cutter"', '"knife"')
         for text, reason in (('{"record": 1, "machine": {', 'is no record of a job: it is cut off'), ('', 'is no record of a job: '),
                              ('[]', 'is no record of a job: '), (other, 'is no record of a job: '),
@@ -54,8 +56,18 @@ class TestShop(CommandLine):
                 hours, said = self.hours(2)
                 self.assertEqual(hours, [7, 8, 9, 10])
                 broken, missing = sorted(said.splitlines(), reverse=True)
-                self.assertIn(self.path('old/20261122T060000.000Z.json') + ': ' + reason, broken)
+                self.assertIn(self.path('old/' + NAME.format(6)) + ': ' + reason, broken)
                 self.assertIn(self.path('none') + ': cannot be read: No such file or directory', missing)
+
+    def test_those_of_a_grinder_are_in_its_order_whatever_its_clock_was(self):
+        for number, hour in ((11, 20), (12, 1), (13, 11)):  # ahead, then not set
+            record = record_of(job_of('test/jobs/paper.yaml'), '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T23:00:00.000Z')
+            self.write('left/grinder/00000000%d_20261122T%02d0000.000Z.json' % (number, hour), json.dumps(record))
+        self.assertEqual(self.hours(0, '--grinder', 'left')[0], [8, 10, 20, 1, 11])
+        hours, _ = self.hours(2)
+        self.assertEqual(sorted(hours), [1, 7, 8, 9, 10, 11, 20])
+        self.assertEqual([hour for hour in hours if hour not in (7, 9)], [8, 10, 20, 1, 11])
+        self.assertEqual(self.hours(0, '--since', '2026-11-22T10:00Z')[0], [10, 20, 11])
 
     def test_table_says_whose_it_is(self):
         lines = self.grind(2, 'history', '--from', *self.folders).stdout.splitlines()

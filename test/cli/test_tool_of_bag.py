@@ -35,12 +35,15 @@ class Bag:
     def write(self, topic, message):
         self.bag.write('/grinder/' + topic, message, rospy.Time.from_sec(self.now))
 
-    def add(self, job, operation, rows, ahead=0.0, first=(0, 0), **cutter):
-        """A run of an operation from its rows, all of them or those from a pass `first` on, with A `ahead` of its setpoints."""
+    def add(self, job, operation, rows, ahead=0.0, first=(0, 0), text=None, **cutter):
+        """A run of an operation from its rows, all of them or those from a pass `first` on, with A `ahead` of its setpoints.
+
+        @param text in place of the job's name, and of what the result says."""
         self.goals += 1
         goal = GrindActionGoal(goal=job_file.goal(job, operation))
         goal.goal_id.id = 'goal %d' % self.goals
         goal.goal.first_tooth, goal.goal.first_pass = first
+        goal.goal.job_name = text or goal.goal.job_name
         for name, value in cutter.items():
             setattr(goal.goal.cutter, name, value)
         self.write('grind/goal', goal)
@@ -62,6 +65,7 @@ class Bag:
             self.write('setpoints', batch)
         result = GrindActionResult()
         result.status.goal_id.id, result.status.status = goal.goal_id.id, GoalStatus.SUCCEEDED
+        result.result.error_string = text or ''
         self.write('grind/result', result)
 
     @staticmethod
@@ -147,6 +151,10 @@ class TestToolOfBag(unittest.TestCase):
         self.assertIn('rake: not measured', data['verdict_because'])
         for taken in self.radius_taken(data['tool']):
             self.assertAlmostEqual(taken, 0, delta=0.5e-3)
+
+    def test_texts_are_escaped(self):
+        data = self.report(self.bag(('flute', {'text': 'a\x1b[2J'})))
+        self.assertEqual((data['job']['name'], data['reason']), ('a\\x1b[2J',) * 2)
 
     def test_teeth_that_are_not_in_the_bag_are_reported(self):
         data = self.report(self.bag(('flute', {'rows': [row for row in self.rows['flute'] if int(row['tooth']) < 2]})))

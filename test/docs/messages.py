@@ -5,6 +5,7 @@ in a source. Prints what is not so; exits with 1 if there is something.
 
 On the page, a message is code in a column that is headed as in QUOTING. In it, `<...>` stands for what the program fills in."""
 
+import ast
 import pathlib
 import re
 import sys
@@ -24,7 +25,7 @@ MESSAGES = {
     'src/cli/csv.cpp': (),
     'src/cli/machine_file.cpp': ('a drive, as flute_grinder/SimulatedDrive',),
     'src/cli/online.cpp': ('not confirmed', 'at speed', 'not at speed', 'on, not at speed', 'work position', 'of the machine', 'to go',
-                           'the power is on', 'the fault is reset; the power is commanded off'),
+                           'the power is on', 'the fault is reset; the power is commanded off', 'held because', 'no journal', 'it ended'),
     'src/cli/probe.cpp': ('work offset',),
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
     'src/cli/state_watch.cpp': (),
@@ -114,6 +115,10 @@ def literals(text):
     return found
 
 
+def python_literals(text):
+    return [node.value for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+
+
 def is_phrase(text):
     return re.search(r'[A-Za-z]{2,}\W* \W*[A-Za-z]{2,}', text)
 
@@ -163,8 +168,9 @@ def is_said(text, sources, rest=False):
 
 
 def missing_sources(quoted):
-    files = [path for folder in ('include', 'src') for path in sorted((ROOT / folder).rglob('*')) if path.suffix in ('.h', '.cpp')]
-    sources = '\n'.join(['', *(literal for path in files for literal in literals(path.read_text())), ''])
+    readers = {'.h': literals, '.cpp': literals, '.py': python_literals}
+    files = [path for folder in ('include', 'src') for path in sorted((ROOT / folder).rglob('*')) if path.suffix in readers]
+    sources = '\n'.join(['', *(literal for path in files for literal in readers[path.suffix](path.read_text())), ''])
     for quote in quoted:
         for piece in re.split('<[^>]*>', quote):
             if not is_said(piece.strip(), sources):

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import prometheus_client
 import rostest
@@ -26,7 +27,10 @@ import exporter  # noqa: E402
 import grinder_client as gc  # noqa: E402
 from record_files import job_of, record_of  # noqa: E402
 
-NAME = '20261122T17%02d00.000Z.json'
+
+def name_of(minute, number=None):
+    """Of a record of a job that started at a minute; by default that is its number too."""
+    return '%010d_20261122T17%02d00.000Z.json' % (minute if number is None else number, minute)
 
 
 class Folder(unittest.TestCase):
@@ -45,17 +49,18 @@ class Folder(unittest.TestCase):
     def value(self, name, **labels):
         return self.registry.get_sample_value('flute_grinder_' + name, labels)
 
-    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None, **wheel):
+    def write(self, minute, outcome='done', setpoints=0, complete=1, broken_off=0, seconds=1, wear=0, file=None, number=None,
+              **wheel):
         """A record of a job that started at a minute."""
         file = file or job_of('test/jobs/paper.yaml')
         file['process']['wheel']['wear_mm'] = wear
         record = record_of(file, '2026-11-22T17:%02d:00.000Z' % minute, '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds), outcome,
                            [True] * complete + [False] * broken_off, setpoints, **wheel)
-        with open(os.path.join(self.folder, NAME % minute), 'w') as text:
+        with open(os.path.join(self.folder, name_of(minute, number)), 'w') as text:
             json.dump(record, text)
 
     def remove(self, minute):
-        os.remove(os.path.join(self.folder, NAME % minute))
+        os.remove(os.path.join(self.folder, name_of(minute)))
 
 
 class TestRecords(Folder):
@@ -89,23 +94,89 @@ class TestRecords(Folder):
     def test_of_a_clock_that_was_set_back_count(self):
         self.write(9, setpoints=5)
         self.assertEqual(self.value('setpoints_total'), 5)
-        self.write(8, setpoints=7)
-        self.assertEqual(self.value('setpoints_total'), 12)
+        self.write(8, setpoints=7, number=10)
+        self.write(7, wear=0.25, number=11)
+        self.assertEqual((self.value('setpoints_total'), self.value('wheel_wear_meters', wheel='wheel.yaml')), (12, 0.25e-3))
 
     def test_that_are_none_do_not_count(self):
         self.write(1, setpoints=5)
-        for name, text in ((NAME % 2, '{"record": 1'), (NAME % 3, '[]'), (NAME % 4 + '.new', ''), ('notes.json', 'mine')):
+        for name, text in ((name_of(2), '{"record": 1'), (name_of(3), '[]'), (name_of(4) + '.new', ''), ('notes.json', 'mine')):
             (pathlib.Path(self.folder) / name).write_text(text)
         self.assertEqual((self.value('setpoints_total'), self.value('jobs_total', outcome='done')), (5, 1))
         self.write(5, setpoints=7)
         self.assertEqual(self.value('setpoints_total'), 12)
 
+    def test_that_are_no_files_are_skipped_and_said_once(self):
+        self.write(1, setpoints=5)
+        folder = pathlib.Path(self.folder)
+        (folder / name_of(2)).mkdir()
+        (folder / name_of(3)).symlink_to('nowhere')
+        os.mkfifo(str(folder / name_of(4)))
+        with mock.patch.object(exporter, 'say') as say:
+            self.assertEqual(self.value('setpoints_total'), 5)
+            self.write(5, setpoints=7)
+            self.assertEqual(self.value('setpoints_total'), 12)
+        self.assertEqual(say.mock_calls, [mock.call(folder / name_of(minute), 'skipped: named like a record, but not a regular file')
+                                          for minute in (2, 3, 4)])
+
+    def test_that_cannot_be_added_do_not_count(self):
+        nested = '[' * 100000 + ']' * 100000
+        for minute, (old, new) in enumerate((('"overrides": []', '"overrides": ' + nested), ('"operations": [', '"operations": [], "o": ['))):
+            self.write(minute, setpoints=3, file=job_of('jobs/taper_reamer_d6_t6.yaml', 0))
+            file = pathlib.Path(self.folder) / name_of(minute)
+            text = file.read_text()
+            self.assertIn(old, text)
+            file.write_text(text.replace(old, new))
+        self.write(3, setpoints=5)
+        with mock.patch.object(exporter, 'say') as say:
+            self.assertEqual((self.value('setpoints_total'), self.value('jobs_total', outcome='done')), (5, 1))
+        self.assertEqual([call[1][0].name for call in say.mock_calls], [name_of(0), name_of(1)])
+
+    def damage(self, file, content):
+        """Puts a text, or what a function makes, in the place of the sums."""
+        if file.is_dir():
+            file.rmdir()
+        elif os.path.lexists(str(file)):
+            file.unlink()
+        if callable(content):
+            content(str(file))
+        else:
+            file.write_text(content)
+
     def test_are_counted_anew_if_the_sums_are_damaged(self):
         self.write(1, setpoints=5)
         self.assertEqual(self.value('setpoints_total'), 5)
-        (pathlib.Path(self.folder) / 'exporter.json').write_text('{"sums": {"setpo')
-        self.start()
-        self.assertEqual(self.value('setpoints_total'), 5)
+        file = pathlib.Path(self.folder) / 'exporter.json'
+        good = json.loads(file.read_text())
+
+        def other(**sums):
+            return json.dumps(dict(good, sums=dict(good['sums'], **sums)))
+
+        for content in (os.mkfifo, os.mkdir, '{"sums": {"setpo', '[' * 100000, '[]', 'null', '{}', '{"sums": [], "counted": []}',
+                        '{"sums": {}, "counted": []}', json.dumps(dict(good, counted=[1, 'a'])), json.dumps(dict(good, counted='a')),
+                        other(setpoints='5'), other(setpoints=True), other(setpoints=-1), other(setpoints=math.nan),
+                        other(setpoints=10 ** 400), other(jobs=5), other(jobs={'done': 1}), other(wheels=[]), other(wheels={'a': {}}),
+                        other(wheels={'a': {'dressed': None, 'tools': 1, 'wear': 0}})):
+            with self.subTest(content):
+                self.damage(file, content)
+                with mock.patch.object(exporter, 'say') as say:
+                    self.start()
+                said, = say.mock_calls
+                self.assertEqual(said[1][0], file)
+                self.assertIn('the counters begin with the records that are there: ', said[1][1])
+                self.assertEqual((self.value('setpoints_total'), self.value('wheel_wear_meters', wheel='wheel.yaml')), (5, 0))
+
+    def test_whose_sums_cannot_be_kept_count(self):
+        new = pathlib.Path(self.folder) / 'exporter.new'
+        foreign = pathlib.Path(self.folder) / 'notes.txt'
+        foreign.write_text('mine')
+        for minute, content in enumerate((os.mkfifo, lambda path: os.symlink('notes.txt', path), os.mkdir)):
+            self.damage(new, content)
+            self.write(minute, setpoints=1)
+            with mock.patch.object(exporter, 'say') as say:
+                self.assertEqual(self.value('setpoints_total'), minute + 1)
+        self.assertIn('the counters may fall with the next start: ', say.mock_calls[0][1][1])
+        self.assertEqual(foreign.read_text(), 'mine')
 
     def test_of_no_folder_are_none(self):
         os.rmdir(self.folder)

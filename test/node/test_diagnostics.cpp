@@ -1,6 +1,7 @@
 #include "node/diagnostics.h"
 
 #include "control/fixtures.h"
+#include "node/recorder_watch.h"
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
@@ -423,6 +424,36 @@ TEST_F(DiagnosticsTest, WhatIsAmissWithJournalOrHistoryIsReported) {
   expect(&Diagnostics::reportJournal, DiagnosticStatus::ERROR, "journal /x: No space left on device");
   diagnostics_.setJournalError("");
   EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+}
+
+TEST(RecorderWatch, ReportsARecorderThatHasBeenGoneForSeconds) {
+  RecorderWatch watch("/a_bag");
+  const ros::SteadyTime start(100);
+  const auto level = [&](double time) {
+    watch.look(start + ros::WallDuration(time));
+    diagnostic_updater::DiagnosticStatusWrapper status;
+    watch.report(status);
+    return static_cast<int>(status.level);
+  };
+  EXPECT_EQ(level(0), DiagnosticStatus::OK);
+  watch.connect("/b_bag");
+  EXPECT_EQ(level(4.9), DiagnosticStatus::OK);
+  EXPECT_EQ(level(5.1), DiagnosticStatus::ERROR);
+  watch.connect("/a_bag");
+  EXPECT_EQ(level(6), DiagnosticStatus::OK);
+  watch.disconnect("/b_bag");
+  EXPECT_EQ(level(60), DiagnosticStatus::OK);
+  // One that is back at once, in either order.
+  watch.connect("/a_bag");
+  watch.disconnect("/a_bag");
+  EXPECT_EQ(level(70), DiagnosticStatus::OK);
+  watch.disconnect("/a_bag");
+  EXPECT_EQ(level(71), DiagnosticStatus::OK);
+  watch.connect("/a_bag");
+  EXPECT_EQ(level(77), DiagnosticStatus::OK);
+  watch.disconnect("/a_bag");
+  EXPECT_EQ(level(78), DiagnosticStatus::OK);
+  EXPECT_EQ(level(84), DiagnosticStatus::ERROR);
 }
 
 }  // namespace test_diagnostics

@@ -1,12 +1,16 @@
 """Shows what /diagnostics reports of a running node at rest. Faults, figures and thresholds are gone through in test_diagnostics.cpp."""
 
+import os
+import signal
+import subprocess
+
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 import grinder_client as gc
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffer', 'Journal', 'History']
+NAMES = ['Control loop', 'Drive link', 'Following error', 'Limit margin', 'Buffer', 'Journal', 'Recorder', 'History']
 
 
 class Reports:
@@ -53,3 +57,20 @@ class TestDiagnostics(gc.OwnNode):
                            ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'),
                            ('History', 'kept')):
             self.assertEqual(reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')
+        self.assertEqual(reports.since(mark, 'Recorder'), [])
+
+    def test_a_recorder_that_does_not_start_or_dies_is_named(self):
+        grinder = self.start(dict(gc.machine(), recorder='bag'))
+        reports = Reports(self.addCleanup, self.node.name)
+        said = 'the recorder /bag takes no setpoints: no bag has what the grinder does'
+        reports.wait('Recorder', ERROR, said)
+        bag = os.path.join(gc.temp_folder(self.addCleanup), 'x.bag')
+        recorder = subprocess.Popen(['rosrun', 'rosbag', 'record', '-O', bag, self.node.name + '/setpoints', '__name:=bag'],
+                                    stdout=subprocess.DEVNULL, start_new_session=True)
+        self.addCleanup(recorder.wait)
+        reports.wait('Recorder', OK, 'recording')
+        os.killpg(recorder.pid, signal.SIGKILL)
+        reports.wait('Recorder', ERROR, said)
+        gc.poll(lambda: self.node.output.count(said) == 2, 'the log')
+        # The grinder does not mind.
+        grinder.make_ready()

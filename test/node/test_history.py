@@ -24,7 +24,7 @@ from test_diagnostics import Reports
 FEED = 80  # mm/min
 JOB = gc.paper(flute_length=8 * MM, feed=FEED * MM_MIN, clearance=1 * MM, tooth_angles=[0.0, 2.0], infeed=0.3 * MM,
                cone_angle=8 * DEG)
-NAME = r'\d{8}T\d{6}\.\d{3}Z\.json'
+NAME = r'\d{10}_\d{8}T\d{6}\.\d{3}Z\.json'
 
 
 def seconds(utc):

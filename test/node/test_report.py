@@ -44,7 +44,7 @@ class Recording:
 
     def __init__(self, folder):
         self.folder = folder
-        self.bag = os.path.join(folder, 'record.bag')
+        self.bag = os.path.join(folder, 'a record.bag')
         self.csv = os.path.join(folder, 'run.csv')
         launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=recorded', 'bag:=true',
                                    'bag_file:=' + self.bag, 'journal:=' + os.path.join(folder, 'journal'),

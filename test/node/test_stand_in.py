@@ -127,6 +127,27 @@ class TestStandIn(RunTest):
         self.assertTrue(command.text.endswith('\ncanceled while it was planned (code -11)\n'), command.text)
         self.assertEqual(command.stdout, '')
 
+    def test_texts_of_a_peer_are_shown_escaped(self):
+        bad, shown = 'a\x1b[2J', 'a\\x1b[2J'
+        progress = type(self.node.state.progress)(job_digest='0', job_name=bad)
+        self.node.offsets.publish(WorkOffsets(set_by=[bad] * 4, set_at=[rospy.Time(1)] * 4, error=bad))
+        self.addCleanup(self.node.offsets.publish, WorkOffsets())
+        self.addCleanup(self.node.set, GrinderState.READY, 'ready', hold_reason='', journal_error='')
+        self.node.set(GrinderState.READY, bad, fault=bad, hold_reason=bad, journal_error=bad, progress=progress)
+        gc.poll(lambda: shown in gc.grind('status').stdout, 'the state')
+        for words, times in (('status', 5), ('offsets', 5)):
+            done = gc.grind(words)
+            self.assertNotIn('\x1b', done.stdout + done.stderr)
+            self.assertGreaterEqual(done.stdout.count(shown), times, done.stdout)
+        command, goal = self.start_run()
+        goal.publish_feedback(GrindFeedback(state=bad))
+        command.wait_text('  ' + shown)
+        command.wait_text('held: ' + shown)
+        goal.set_succeeded(GrindResult(warnings=[bad]))
+        self.assertEqual(command.end(), 0, command.text)
+        self.assertIn('warning: ' + shown, command.text)
+        self.assertNotIn('\x1b', command.text)
+
     def test_planning_on_a_terminal(self):
         command, goal = self.start_run('--dry-run', columns=30)
         goal.publish_feedback(GrindFeedback(state='planning', planned=0.5))

@@ -325,7 +325,7 @@ TEST_F(JobRecordTest, OfAJobThatNobodyEndedSaysSo) {
     give(recorder, 7);
   }
   ASSERT_EQ(kept().size(), 1U);
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / recordName(cycles_.front().sample.time)));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / recordName(cycles_.front().sample.time, {})));
   const Json record = kept()[0];
   EXPECT_EQ(record["outcome"], "fault");
   EXPECT_EQ(record["reason"], "the grinder's program ended before the job did");
@@ -356,22 +356,35 @@ TEST_F(JobRecordTest, IsKeptWhicheverComesFirst) {
   for (const Json& record : kept()) EXPECT_EQ(record["reason"], "by hand");
 }
 
-TEST(RecordName, SortsByTimeAndReadsBack) {
+TEST(RecordName, SortsByTheOrderOfWritingAndNamesTheStart) {
+  EXPECT_EQ(recordName(kStart, {}), "0000000001_20261122T170413.123Z.json");
+  RecordFiles before{{"a/0000000009_20360101T000000.000Z.json"},
+                     {"a/0000000041_20261122T170413.123Z.json.new"},
+                     {"a/0000000010_20261122T170413.123Z.json"}};
+  EXPECT_EQ(recordName(kStart, before), "0000000042_20261122T170413.123Z.json");
+  EXPECT_EQ(startOf("a_b/" + recordName(kStart, before)), startText(kStart));
+  before.others.emplace_back("a/9999999998_20261122T170413.123Z.json");
+  EXPECT_EQ(recordName(kStart, before), "9999999999_20261122T170413.123Z.json");
+  before.records.emplace_back("a/9999999999_20261122T170413.123Z.json");
+  EXPECT_THROW(recordName(kStart, before), std::runtime_error);
+  EXPECT_TRUE(isRecordName(recordName(kStart, {})));
+  for (const char* wrong : {"", "0000000001_20261122T170413.123Z.jso", "0000000001_20261122T170413.123Z.json.",
+                            "0000000001_2026112xT170413.123Z.json", "20261122T170413.123Z.json"}) {
+    EXPECT_FALSE(isRecordName(wrong)) << wrong;
+  }
+}
+
+TEST(RecordTime, SortsAndReadsBack) {
   EXPECT_EQ(utcText(kStart), "2026-11-22T17:04:13.123Z");
-  EXPECT_EQ(recordName(kStart), "20261122T170413.123Z.json");
+  EXPECT_EQ(startText(kStart), "20261122T170413.123Z");
   EXPECT_NEAR(timeOf(utcText(kStart)), kStart, 1e-3);
   std::mt19937 engine(1);
   double time = kStart;
   for (int i = 0; i < 10000; ++i) {
     const double later = time + std::exp(std::uniform_real_distribution<>(-6, 15)(engine));
-    EXPECT_LT(recordName(time), recordName(later));
-    EXPECT_TRUE(isRecordName(recordName(later)));
+    EXPECT_LT(startText(time), startText(later));
     EXPECT_NEAR(timeOf(utcText(later)), later, 1.001e-3);
     time = std::uniform_real_distribution<>(0, 4e9)(engine);
-  }
-  for (const char* wrong :
-       {"", "20261122T170413.123Z.jso", "20261122T170413.123Z.json.", "2026112xT170413.123Z.json"}) {
-    EXPECT_FALSE(isRecordName(wrong)) << wrong;
   }
   for (const char* wrong : {"", "2026-11-22", "2026-11-22T17:04:13.12Z", "2026-11-22T17:04:13.123+"}) {
     EXPECT_THROW(timeOf(wrong), std::invalid_argument) << wrong;

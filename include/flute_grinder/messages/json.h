@@ -30,6 +30,9 @@ Json toJson(const std::vector<FeedLimit>& limits);
 /// the job has come from a file. A wheel that has a file of its own is written inline.
 Json toJson(const GrindJob& job);
 
+/// Has all its texts escaped().
+void escapeTexts(Json& json);
+
 /// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.
 std::string text(const Json& json, int indent = 2);
 

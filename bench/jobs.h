@@ -21,9 +21,12 @@ inline GrindJob wholeToolJob() {
   GrindJob job = paperJob(52);
   for (int tooth = 1; tooth < 10; ++tooth) job.tooth_angles.push_back(tooth * 36 * units::kDegree);
   job.process.infeed = job.process.depth / 20;
-  // A wheel that leaves land between ten flutes, whatever rake it grinds. The motion is the same with any wheel.
+  // A wheel that leaves land between ten flutes, whatever tool it grinds. The motion is the same with any wheel.
   job.process.wheel_width = 1.5 * units::kMillimetre;
-  job.cutter.rake_tolerance = 180 * units::kDegree;
+  CutterGeometry& cutter = job.cutter;
+  cutter.rake_tolerance = cutter.chordal_rake_tolerance = cutter.spiral_tolerance = 180 * units::kDegree;
+  cutter.core_tolerance = cutter.end_diameter;
+  job.process.incomplete_ok = true;
   return job;
 }
 

@@ -211,7 +211,8 @@ Axes ControlLoop::distanceToGo() const {
 
 void ControlLoop::awaitHoming() {
   waited_ += sample_.period;
-  homing_seen_ |= sample_.drive.homing;
+  homing_of_before_ &= sample_.drive.homing;
+  homing_seen_ |= sample_.drive.homing && !homing_of_before_;
   const bool over = homing_seen_ && !sample_.drive.homing;
   if (over && sample_.drive.homed) {
     wheel_.doubtY(false);

@@ -104,9 +104,8 @@ Refusal ControlLoop::executeStop(MachineEvent event) {
 Refusal ControlLoop::enable() {
   const Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal != Refusal::kNone || isPowered(state_)) return refusal;
-  if (preparation_ && !preparation_->begin()) return Refusal::kPreparing;
-  drive_command_.enable = !preparation_;
   awaiting_power_ = true;
+  preparation_begun_ = false;
   waited_ = 0;
   return Refusal::kNone;
 }
@@ -127,26 +126,35 @@ Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
   waited_ += sample_.period;
+  const bool on = drive_command_.enable && sample_.drive.enabled;
   Refusal refusal = drive_checks_.powerRefusal(sample_);
-  if (refusal == Refusal::kNone) refusal = awaitPreparation();
+  if (refusal == Refusal::kNone) refusal = commandPower();
+  if (refusal == Refusal::kNone && !on && !(waited_ <= config_.enable_timeout)) refusal = refusalWithoutPower();
   if (refusal != Refusal::kNone) {
     drive_command_.enable = false;
     answerEnable(refusal);
-  } else if (sample_.drive.enabled) {
+  } else if (on) {
     drive_checks_.powerOn(sample_.drive);
     apply(MachineEvent::kEnable);
     answerEnable(Refusal::kNone);
-  } else if (!(waited_ <= config_.enable_timeout)) {
-    const bool prepared = drive_command_.enable;
-    drive_command_.enable = false;
-    answerEnable(prepared ? Refusal::kNoPower : Refusal::kPreparing);
   }
 }
 
-Refusal ControlLoop::awaitPreparation() {
-  if (drive_command_.enable || preparation_->state() == DrivePreparation::State::kPreparing) return Refusal::kNone;
-  drive_command_.enable = preparation_->state() == DrivePreparation::State::kReady;
+/// Once the power of before has gone, which would be taken for the new, and the drive is prepared.
+Refusal ControlLoop::commandPower() {
+  if (drive_command_.enable || sample_.drive.enabled) return Refusal::kNone;
+  if (preparation_ && !preparation_begun_) {
+    if (!preparation_->begin()) return Refusal::kPreparing;
+    preparation_begun_ = true;
+  }
+  if (isPreparing()) return Refusal::kNone;
+  drive_command_.enable = !preparation_ || preparation_->state() == DrivePreparation::State::kReady;
   return drive_command_.enable ? Refusal::kNone : Refusal::kNotPrepared;
+}
+
+Refusal ControlLoop::refusalWithoutPower() const {
+  if (drive_command_.enable) return Refusal::kNoPower;
+  return isPreparing() ? Refusal::kPreparing : Refusal::kPowerStays;
 }
 
 void ControlLoop::answerEnable(Refusal refusal) {
@@ -176,6 +184,7 @@ Refusal ControlLoop::reset() {
 Refusal ControlLoop::home() {
   if (const Refusal refusal = refusalOfWheel(); refusal != Refusal::kNone) return refusal;
   homing_seen_ = false;
+  homing_of_before_ = sample_.drive.homing;
   waited_ = 0;
   apply(MachineEvent::kHome);
   return Refusal::kNone;

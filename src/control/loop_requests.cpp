@@ -46,6 +46,9 @@ RequestReply Answer::reply() const {
     case Refusal::kPreparing: text << "the drive has not become ready in time; wait, then try again"; break;
     case Refusal::kNotPrepared: text << "the drive is not ready: " << drive_text.text(); break;
     case Refusal::kNoPower: text << "the drive did not switch its power on in time"; break;
+    case Refusal::kPowerStays:
+      text << "the drive still reports power, though it was switched off; press the emergency stop";
+      break;
     case Refusal::kMoved: text << "the axes are not where the job was planned to start; plan it again"; break;
     case Refusal::kFeedback: text << "the drive gives no valid, fresh positions"; break;
     case Refusal::kWithdrawn: text << "disable came before the power"; break;

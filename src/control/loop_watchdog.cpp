@@ -42,6 +42,7 @@ void LoopWatchdog::run() {
       finding_ = Finding::kRuns;
     } else if (++looks == kMostLooks) {
       lock.unlock();
+      finding_ = Finding::kSwitchingOff;
       finding_ = powerOff(drive_) ? Finding::kHangsPowerIsOff : Finding::kHangs;
       lock.lock();
     }

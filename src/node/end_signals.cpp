@@ -28,11 +28,11 @@ bool EndSignals::await(std::chrono::milliseconds timeout) const {
   return sigtimedwait(&signals_, nullptr, &time) > 0;
 }
 
-EndAtOnce::EndAtOnce(const EndSignals& signals, std::string during)
-    : thread_([this, &signals, during = std::move(during)] {
+EndAtOnce::EndAtOnce(const EndSignals& signals, std::string what)
+    : thread_([this, &signals, what = std::move(what)] {
         while (!over_) {
           if (!signals.await(kLook)) continue;
-          ROS_WARN_STREAM("ended by a signal while " << during);
+          ROS_WARN_STREAM("ended by a signal before the return of " << what);
           // It waits for callbacks and for the master, which may hang as well.
           std::thread([] {
             ros::shutdown();
@@ -44,6 +44,22 @@ EndAtOnce::EndAtOnce(const EndSignals& signals, std::string during)
       }) {}
 
 EndAtOnce::~EndAtOnce() {
+  over_ = true;
+  thread_.join();
+}
+
+EndInTime::EndInTime(std::string what)
+    : thread_([this, what = std::move(what)] {
+        const auto deadline = std::chrono::steady_clock::now() + kShutdown;
+        while (!over_) {
+          std::this_thread::sleep_for(kLook);
+          if (std::chrono::steady_clock::now() < deadline) continue;
+          ROS_FATAL_STREAM("the process ends without the return of " << what);
+          std::_Exit(1);
+        }
+      }) {}
+
+EndInTime::~EndInTime() {
   over_ = true;
   thread_.join();
 }

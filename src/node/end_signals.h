@@ -25,9 +25,21 @@ class EndSignals {
 /// While it exists, such a signal ends the process within a second: for what may block for ever, with the power off.
 class EndAtOnce {
  public:
-  /// @param signals must outlive this object. @param during what is being done then, for the log.
-  EndAtOnce(const EndSignals& signals, std::string during);
+  /// @param signals must outlive this object. @param what may block, for the log.
+  EndAtOnce(const EndSignals& signals, std::string what);
   ~EndAtOnce();
+
+ private:
+  std::atomic<bool> over_{false};
+  std::thread thread_;
+};
+
+/// Ends the process, as one that has failed, if it exists for a second: for what may block at the end.
+class EndInTime {
+ public:
+  /// @param what may block, for the log.
+  explicit EndInTime(std::string what);
+  ~EndInTime();
 
  private:
   std::atomic<bool> over_{false};

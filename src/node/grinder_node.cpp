@@ -1,11 +1,8 @@
 #include "node/grinder_node.h"
 
 #include "flute_grinder/MachineInfo.h"
-#include "flute_grinder/drive/export_drive.h"
-#include "flute_grinder/job/fault_text.h"
 #include "node/crash_guard.h"
 #include "node/node_files.h"
-#include "node/plugin_abi.h"
 
 #include <boost/algorithm/string/trim.hpp>
 
@@ -20,6 +17,7 @@ namespace {
 
 constexpr std::chrono::seconds kStopTimeout(10);
 constexpr std::chrono::seconds kGoalEndTimeout(2);
+constexpr std::chrono::seconds kLoopEndTimeout(1);
 constexpr double kRounding = 1e-9;  ///< of a period that is the inverse of a rate
 
 /// Waits for a condition. @return whether it came true in time.
@@ -31,22 +29,6 @@ bool await(std::chrono::seconds timeout, Condition condition) {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   return true;
-}
-
-std::string join(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : "; ") + name;
-  return text;
-}
-
-/// Refuses a loaded plugin that was built against another version of the drive interface.
-void checkAbi(const std::string& parameter, const std::string& library) {
-  const auto abi = driveAbiOf(library);
-  if (abi == kDriveAbi) return;
-  throw ParameterError("parameter " + parameter +
-                       (abi ? " was built against version " + std::to_string(*abi) + " of the drive interface"
-                            : " states no version of the drive interface") +
-                       "; allowed: version " + std::to_string(kDriveAbi) + ". Build it again: " + library);
 }
 
 /// Refuses a drive that cannot hold the control period, or buffers more than the loop keeps.
@@ -84,11 +66,9 @@ flute_grinder::MachineInfo toMessage(const MachineInfo& info, const DriveCapabil
   return message;
 }
 
-const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
-
 }  // namespace
 
-GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const EndSignals& signals)
+GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, DrivePlugin& plugin)
     : nh_(nh), private_nh_(private_nh) {
   std::string urdf;
   if (!nh_.getParam("robot_description", urdf)) {
@@ -96,8 +76,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   }
   const ParameterReader parameters(private_nh_);
   const MachineModel model(urdf);
-  loader_ = std::make_unique<pluginlib::ClassLoader<Drive>>("flute_grinder", "grinder::Drive");
-  const MachineConfig own = readMachineConfig(model, parameters, join(loader_->getDeclaredClasses()));
+  const MachineConfig own = readMachineConfig(model, parameters, plugin.declared());
   const LoopConfig& config = own.loop;
   const std::string name = private_nh_.getNamespace();
   const NodeFiles files = readNodeFiles(parameters, name);
@@ -110,9 +89,13 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
     ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued, and the wheel may be in the work");
   }
   history_ = std::make_unique<History>(files.history, own.history_limit);
-  loadDrive(own.drive, parameters);
-  initDrive(own.drive, signals);
-  const DriveCapabilities can = drive_->capabilities();
+  plugin.load(own.drive, parameters);
+  Drive& drive = plugin.drive();
+  ros::NodeHandle hardware_nh(private_nh_, "hardware");
+  plugin.call("init()", [&] { drive.init(private_nh_, hardware_nh); });
+  const Wheel wheel = journal.error.empty() ? journal.on_disk.wheel : unknownWheel(config.machine.limits);
+  plugin.call("capabilities()", [&] { loop_ = std::make_unique<ControlLoop>(drive, config, wheel); });
+  const DriveCapabilities& can = loop_->capabilities();
   checkCapabilities(can, own.drive, parameters.name("control_rate"), config.machine.period);
   const MachineInfo machine = machineInfo(config, own.drive);
   const auto configuration = private_nh_.param<std::string>("configuration", "of the parameter server");
@@ -120,14 +103,12 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
                              << boost::algorithm::trim_copy(configuration));
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
   machine_.publish(toMessage(machine, can, config.jog_timeout));
-  const Wheel wheel = journal.error.empty() ? journal.on_disk.wheel : unknownWheel(config.machine.limits);
-  loop_ = std::make_unique<ControlLoop>(*drive_, config, wheel);
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(model));
   telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
                                            own.thresholds, model, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
-  watchdog_ = std::make_unique<LoopWatchdog>(*loop_, *drive_);
+  watchdog_ = std::make_unique<LoopWatchdog>(*loop_, drive);
   stopAxesOnCrash(*loop_);
   if (!journal.on_disk.finished) loop_->setFeedOverride(journal.on_disk.feed_override);
   telemetry_->start(*watchdog_);
@@ -142,38 +123,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }
 
-void GrinderNode::loadDrive(const std::string& type, const ParameterReader& parameters) {
-  if (type != kSimulatedDrive && parameters.has("hardware/pace")) {
-    throw ParameterError("parameter " + parameters.name("hardware/pace") +
-                         "; allowed: for flute_grinder/SimulatedDrive alone");
-  }
-  const std::string parameter = parameters.name("hardware/type") + " = " + type;
-  if (!loader_->isClassAvailable(type)) {
-    throw ParameterError("parameter " + parameter + "; allowed: " + join(loader_->getDeclaredClasses()));
-  }
-  try {
-    loader_->loadLibraryForClass(type);
-    checkAbi(parameter, loader_->getClassLibraryPath(type));
-    drive_ = loader_->createUniqueInstance(type);
-  } catch (const pluginlib::PluginlibException& error) {
-    throw ParameterError("parameter " + parameter + " cannot be loaded: " + error.what() +
-                         " What it is: " + loader_->getClassDescription(type));
-  }
-}
-
-void GrinderNode::initDrive(const std::string& type, const EndSignals& signals) {
-  ros::NodeHandle hardware_nh(private_nh_, "hardware");
-  const EndAtOnce guard(signals, "the drive " + type + " was being initialised");
-  try {
-    drive_->init(private_nh_, hardware_nh);
-  } catch (const std::exception& error) {
-    throw ParameterError("the drive " + type + ": " + std::string(textOrNone(error.what())));
-  } catch (...) {
-    throw ParameterError("the drive " + type + ": init() has thrown what is no std::exception");
-  }
-}
-
-bool GrinderNode::shutDown() {
+std::string GrinderNode::shutDown() {
   gate_.shut();
   loop_->postStop(MachineEvent::kDisable);
   const auto or_hangs = [this](bool done) { return done || watchdog_->loopHangs(); };
@@ -183,11 +133,17 @@ bool GrinderNode::shutDown() {
   telemetry_->clearScene();
   planner_->end();
   loop_->requestEnd();
-  const auto is_over = [&] { return loop_->hasEnded() && !loop_->isPreparing(); };
-  await(kGoalEndTimeout, [&] { return or_hangs(is_over()); });
-  if (!is_over()) return false;
-  loop_->stopThread();
-  return true;
+  await(kLoopEndTimeout, [this] { return hangingFunction().empty(); });
+  const std::string hanging = hangingFunction();
+  if (hanging.empty()) loop_->stopThread();
+  return hanging;
+}
+
+/// Once the loop was told to end.
+std::string GrinderNode::hangingFunction() const {
+  if (watchdog_->finding() == LoopWatchdog::Finding::kSwitchingOff) return "powerOff()";
+  if (!loop_->hasEnded()) return "read(), write() or wait()";
+  return loop_->isPreparing() ? "prepare()" : "";
 }
 
 }  // namespace grinder

@@ -3,7 +3,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/control/loop_watchdog.h"
 #include "flute_grinder/control/machine_config.h"
-#include "node/end_signals.h"
+#include "node/drive_plugin.h"
 #include "node/goal_server.h"
 #include "node/history.h"
 #include "node/job_gate.h"
@@ -18,7 +18,6 @@
 #include "node/telemetry.h"
 
 #include <ros/ros.h>
-#include <pluginlib/class_loader.hpp>
 
 #include <memory>
 #include <string>
@@ -33,24 +32,21 @@ class GrinderNode {
   /// Reads all parameters, loads and initialises the drive, and starts the control loop.
   /// @param nh the node's namespace, for robot_description and joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @param signals one of which ends the process while the drive is initialised.
+  /// @param plugin nothing loaded yet; must outlive this object.
   /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of an atomic file.
-  GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, const EndSignals& signals);
+  GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, DrivePlugin& plugin);
   ~GrinderNode();
 
   /// Stops a running job on the path, lifts the wheel, ends the goal and switches the drive off. No job can start once
   /// this has been called.
-  /// @return false if the drive hangs: the loop's thread does not end, and the process has to without it.
-  [[nodiscard]] bool shutDown();
+  /// @return the function of the drive that hangs; empty if none. If one does, its thread does not end, and the process
+  /// has to without it.
+  [[nodiscard]] std::string shutDown();
 
  private:
-  /// @param type the plugin's.
-  void loadDrive(const std::string& type, const ParameterReader& parameters);
-  void initDrive(const std::string& type, const EndSignals& signals);
+  std::string hangingFunction() const;
 
   ros::NodeHandle nh_, private_nh_;
-  std::unique_ptr<pluginlib::ClassLoader<Drive>> loader_;
-  pluginlib::UniquePtr<Drive> drive_;
   std::unique_ptr<JournalWriter> journal_;
   std::unique_ptr<OffsetStore> offsets_;
   std::unique_ptr<History> history_;

@@ -89,6 +89,7 @@ std::optional<Progress> Journal::read() const {
 
 void Journal::write(const Progress& progress) const {
   file_.named([&] { file_.write(toText(progress)); });
+  file_.settle();
 }
 
 }  // namespace grinder

@@ -49,10 +49,9 @@ class Journal {
   /// @throw JournalDamaged if the file is not a complete journal. @throw JournalError if it cannot be read.
   std::optional<Progress> read() const;
 
-  /// As AtomicFile::write(). @throw JournalError also if a value is not finite or out of range.
+  /// As AtomicFile::write() with AtomicFile::settle(): an entry that has been written survives a power failure.
+  /// @throw JournalError also if a value is not finite or out of range.
   void write(const Progress& progress) const;
-  /// As AtomicFile::settle().
-  void settle() const { file_.settle(); }
 
  private:
   AtomicFile file_;

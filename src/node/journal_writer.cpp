@@ -36,7 +36,6 @@ struct JournalWriter::Work {
 
   void requireNothingUnread();
   void storePending();
-  void settle();
 
   const Journal journal;  ///< used by the thread only
   std::string unread;     ///< why the file could not be read at the start; used by the thread only
@@ -71,15 +70,6 @@ void JournalWriter::Work::storePending() {
     status.unread = false;
   }
   status.number = number;
-  status.error = error;
-  lock.unlock();
-  if (error.empty()) settle();
-}
-
-void JournalWriter::Work::settle() {
-  const std::string error = errorOf([&] { journal.settle(); });
-  if (error.empty()) return;
-  const std::lock_guard<std::mutex> lock(mutex);
   status.error = error;
 }
 

@@ -17,7 +17,7 @@ class JournalWriter {
   struct Status {
     Progress on_disk;          ///< what a restart would find
     std::uint64_t number = 0;  ///< of the last write that succeeded or failed; 0 before the first
-    std::string error;         ///< of the last write or its settling, or of the initial read; empty if none
+    std::string error;         ///< of the last write, or of the initial read; empty if none
     std::string damage;        ///< of the file as it was read, until it is replaced; empty if none
     bool unread = false;       ///< the file could not be read at the start, and has not been replaced
   };
@@ -34,9 +34,7 @@ class JournalWriter {
   /// @return the number of this write, from 1.
   std::uint64_t write(const Progress& progress);
 
-  /// The current outcome. Never waits for the disk. A write counts once AtomicFile::write() has returned: the file is
-  /// settled behind it, since no axis reaches the work within the time of that, and a disk that fails then shows as the
-  /// error.
+  /// The current outcome. Never waits for the disk.
   Status status() const;
 
  private:

@@ -6,6 +6,7 @@
 #include "flute_grinder/network/master_watch.h"
 #include "flute_grinder/network/own_address.h"
 #include "flute_grinder/network/ros_api.h"
+#include "node/drive_plugin.h"
 #include "node/end_signals.h"
 #include "node/grinder_node.h"
 #include "node/output.h"
@@ -68,6 +69,40 @@ std::vector<std::string> services() {
   return names;
 }
 
+/// Serves the drive's callbacks, for which its init() may wait; all others have their own threads.
+class DriveCallbacks {
+ public:
+  DriveCallbacks() { spinner_.start(); }
+  ~DriveCallbacks() {
+    const grinder::EndInTime guard("a callback of the drive");
+    spinner_.stop();
+  }
+
+ private:
+  ros::AsyncSpinner spinner_{1};
+};
+
+/// @return the exit status.
+int run(const ros::NodeHandle& nh, const grinder::EndSignals& signals) {
+  // Destroyed last, so that an error is logged whatever becomes of the drive.
+  grinder::DrivePlugin plugin(signals);
+  try {
+    const DriveCallbacks callbacks;
+    grinder::GrinderNode node(nh, ros::NodeHandle("~"), plugin);
+    grinder::boundAddressSpace();
+    const grinder::MasterWatch master_watch(services());
+    waitForEnd(signals);
+    const std::string hanging = node.shutDown();
+    if (hanging.empty()) return 0;
+    ROS_FATAL_STREAM("the process ends without the return of the drive's " << hanging);
+    std::_Exit(1);
+  } catch (const std::exception& error) {
+    // Drives and files have their say in it.
+    ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error.what()), "\n"));
+    return 1;
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -95,24 +130,7 @@ int main(int argc, char** argv) {
   }
   // Keeps ROS running to the end, so that errors are still logged.
   const ros::NodeHandle nh;
-  try {
-    // For the drive's callbacks, for which its init() may wait; all others have their own threads.
-    ros::AsyncSpinner spinner(1);
-    spinner.start();
-    grinder::GrinderNode node(nh, ros::NodeHandle("~"), signals);
-    grinder::boundAddressSpace();
-    const grinder::MasterWatch master_watch(services());
-    waitForEnd(signals);
-    if (!node.shutDown()) {
-      ROS_FATAL("the drive does not return: the process ends without it");
-      std::_Exit(1);
-    }
-    spinner.stop();
-  } catch (const std::exception& error) {
-    // Drives and files have their say in it.
-    ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error.what()), "\n"));
-    return 1;
-  }
+  const int status = run(nh, signals);
   ros::shutdown();
-  return 0;
+  return status;
 }

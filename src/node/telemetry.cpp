@@ -61,6 +61,17 @@ std::string recorderOf(const ros::NodeHandle& nh, const ros::NodeHandle& private
   return name.empty() ? name : nh.resolveName(name);
 }
 
+/// Of a drive that hangs.
+const char* powerInWords(LoopWatchdog::Finding finding) {
+  switch (finding) {
+    case LoopWatchdog::Finding::kSwitchingOff: return "its powerOff() has not returned either";
+    case LoopWatchdog::Finding::kHangsPowerIsOff: return "its power is switched off";
+    case LoopWatchdog::Finding::kRuns:
+    case LoopWatchdog::Finding::kHangs: break;
+  }
+  return "its power can only be switched off by hand";
+}
+
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
@@ -146,8 +157,8 @@ void Telemetry::showJob(const PlannedJob& plan) {
 
 void Telemetry::tick() {
   readRecords();
-  if (samples_read_ == 0) return;
   logHang();
+  if (samples_read_ == 0) return;
   recorder_watch_.look(ros::SteadyTime::now());
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
@@ -215,12 +226,12 @@ void Telemetry::processRecord() {
 }
 
 void Telemetry::logHang() {
-  const bool hangs = watchdog_->loopHangs();
-  if (std::exchange(hung_, hangs) == hangs) return;
-  if (hangs) {
-    ROS_ERROR_STREAM(hang().text());
-  } else {
+  const LoopWatchdog::Finding finding = watchdog_->finding();
+  if (std::exchange(finding_, finding) == finding) return;
+  if (finding == LoopWatchdog::Finding::kRuns) {
     ROS_WARN("the drive has returned to the control loop");
+  } else {
+    ROS_ERROR_STREAM(hang().text());
   }
 }
 
@@ -228,9 +239,7 @@ LoopFault Telemetry::hang() const {
   LoopFault fault;
   fault.kind = FaultKind::kDriveFault;
   fault.drive_text = "it does not return to the control loop; ";
-  fault.drive_text += watchdog_->finding() == LoopWatchdog::Finding::kHangsPowerIsOff
-                          ? "its power is switched off"
-                          : "its power can only be switched off by hand";
+  fault.drive_text += powerInWords(finding_);
   return fault;
 }
 
@@ -239,7 +248,7 @@ void Telemetry::replaceByHang(flute_grinder::GrinderState& message) const {
   const LoopFault fault = hang();
   message.state = static_cast<std::uint8_t>(MachineState::kFault);
   message.state_name = toString(MachineState::kFault);
-  message.enabled = static_cast<std::uint8_t>(watchdog_->finding() == LoopWatchdog::Finding::kHangs);
+  message.enabled = static_cast<std::uint8_t>(finding_ != LoopWatchdog::Finding::kHangsPowerIsOff);
   message.fault = fault.text();
   message.fault_reason = grinder::toMessage(reasonOf(fault));
 }
@@ -357,7 +366,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.fault = text(fault);
   message.fault_reason = grinder::toMessage(fault);
   message.hold_reason = toString(sample_.interlock);
-  if (watchdog_->loopHangs()) replaceByHang(message);
+  if (finding_ != LoopWatchdog::Finding::kRuns) replaceByHang(message);
   const JournalWriter::Status journal = journal_.status();
   message.progress = toMessage(journal.on_disk);
   message.journal_error = journal.error;

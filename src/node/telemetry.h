@@ -123,8 +123,8 @@ class Telemetry {
   std::uint64_t samples_read_ = 0;
   bool in_fault_ = false;  ///< by the sample before
   const LoopWatchdog* watchdog_ = nullptr;
-  bool hung_ = false;     ///< when it was last asked
-  std::deque<Job> jobs_;  ///< announced; the first may be running
+  LoopWatchdog::Finding finding_ = LoopWatchdog::Finding::kRuns;  ///< when the watchdog was last asked
+  std::deque<Job> jobs_;                                          ///< announced; the first may be running
   JobRecorder recorder_;
   std::mutex feedback_mutex_;  ///< guards the next two
   std::uint64_t feedback_number_ = 0;

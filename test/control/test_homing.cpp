@@ -117,5 +117,20 @@ TEST_F(HomingFake, TheTimeCountsAnewForEveryRequestAndWhatWasSeenInAnEarlierOneD
   }
 }
 
+TEST_F(HomingFake, ThatOfBeforeDoesNotEndIt) {
+  bool homing = true;
+  rig_.drive.on_read = [&](FakeDrive& d) { d.status.homing = homing; };
+  rig_.cycle();
+  ASSERT_TRUE(rig_.ask(E::kHome).accepted);
+  const auto expect_after = [&](bool reported, S state) {
+    homing = reported;
+    EXPECT_EQ(rig_.cycle().state, state);
+  };
+  expect_after(true, S::kHoming);
+  expect_after(false, S::kHoming);
+  expect_after(true, S::kHoming);
+  expect_after(false, S::kReady);
+}
+
 }  // namespace test_homing
 }  // namespace grinder::test_support

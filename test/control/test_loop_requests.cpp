@@ -92,6 +92,47 @@ TEST(ControlLoopEnable, GivesUpWhenPowerDoesNotComeInTime) {
   EXPECT_EQ(rig.last().state, S::kDisabled) << "though it has come by now";
 }
 
+// Of a drive that switches off late.
+TEST(ControlLoopEnable, IsAnsweredByPowerThatFollowsIt) {
+  RigIn rig(S::kReady);
+  bool powered = true;
+  rig.drive.on_read = [&](FakeDrive& d) { d.status.enabled = powered; };
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+  ASSERT_TRUE(rig.loop->post(E::kEnable));
+  const auto expect_nothing = [&](const char* why) {
+    rig.run(3);
+    EXPECT_FALSE(rig.loop->reply()) << why;
+    EXPECT_EQ(rig.last().state, S::kDisabled) << why;
+  };
+  expect_nothing("the power is that of before");
+  EXPECT_FALSE(rig.drive.written_drive.enable);
+  powered = false;
+  expect_nothing("there is no power");
+  EXPECT_TRUE(rig.drive.written_drive.enable);
+  powered = true;
+  rig.cycle();
+  EXPECT_TRUE(rig.loop->reply().value_or(RequestReply{}).accepted);
+  EXPECT_EQ(rig.last().state, S::kReady);
+}
+
+TEST(ControlLoopEnable, IsRefusedWhenThePowerOfBeforeStays) {
+  RigIn rig(S::kReady);
+  rig.drive.on_read = [&](FakeDrive& d) { d.status.enabled = true; };
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+  ASSERT_TRUE(rig.loop->post(E::kEnable));
+  rig.run(10);  // of 10.5
+  EXPECT_FALSE(rig.loop->reply());
+  rig.cycle();
+  const RequestReply answer = rig.loop->reply().value_or(RequestReply{});
+  EXPECT_FALSE(answer.accepted);
+  EXPECT_EQ(answer.text,
+            "enable refused: the drive still reports power, though it was switched off; press the emergency stop");
+  EXPECT_FALSE(rig.drive.written_drive.enable);
+  rig.drive.on_read = nullptr;
+  rig.run(5);
+  EXPECT_EQ(rig.last().state, S::kDisabled) << "the refused request came back to life";
+}
+
 TEST(ControlLoopEnable, NeverWritesACommandThatIsNotANumber) {
   Rig<FakeDrive> rig;
   rig.cycle();

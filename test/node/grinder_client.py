@@ -746,9 +746,10 @@ class SlowDisk:
         library = os.path.join(os.path.dirname(os.path.dirname(program('grinder'))), 'libflute_grinder_slow_fsync.so')
         self.environment = {'LD_PRELOAD': library, 'SLOW_FSYNC': self._seconds}
 
-    def stop(self, seconds=1e6):
+    def stop(self, what=''):
+        """`what`: all that is synchronized, or `folders` alone."""
         with open(self._seconds, 'w') as file:
-            file.write(str(seconds))
+            file.write('1e6 ' + what)
 
     def release(self):
         """Once more does nothing."""

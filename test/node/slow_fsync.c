@@ -1,21 +1,29 @@
 /* The fsync of a slow disk, linked into a test, or loaded ahead of libc by LD_PRELOAD: waits for as many seconds as the
-   file says that the environment variable SLOW_FSYNC names. The file is read over and over, so that whoever waits can be
-   released; without it nobody waits. */
+   file says that the environment variable SLOW_FSYNC names, for folders alone if it says `folders` after that. The file is
+   read over and over, so that whoever waits can be released; without it nobody waits. */
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
-static double delay(void) {
+static int is_folder(int fd) {
+  struct stat about;
+  return fstat(fd, &about) == 0 && S_ISDIR(about.st_mode);
+}
+
+static double delay(int fd) {
   const char* path = getenv("SLOW_FSYNC");
   FILE* file = path ? fopen(path, "re") : NULL;
   double seconds = 0;
+  char folders[8];
   if (!file) return 0;
-  if (fscanf(file, "%lf", &seconds) != 1) seconds = 0;
+  const int words = fscanf(file, "%lf %7s", &seconds, folders);
   fclose(file);
-  return seconds;
+  if (words == 2 && !is_folder(fd)) return 0;
+  return words < 1 ? 0 : seconds;
 }
 
 static double now(void) {
@@ -27,6 +35,6 @@ static double now(void) {
 int fsync(int fd) {
   const struct timespec step = {0, 5000000};
   const double begin = now();
-  while (now() - begin < delay()) nanosleep(&step, NULL);
+  while (now() - begin < delay(fd)) nanosleep(&step, NULL);
   return (int)syscall(SYS_fsync, fd);
 }

@@ -79,7 +79,7 @@ class TestDrivePlugin(unittest.TestCase):
             with contextlib.ExitStack() as stack:
                 gc.publisher(stack.callback, '/%s/hardware/go' % node.name, Empty)
                 self.assertEqual(node.end(with_signal), 0, node.output)
-            self.assertIn('ended by a signal while the drive tested/Plugin was being initialised', node.output)
+            self.assertIn('ended by a signal before the return of the init() of the drive tested/Plugin', node.output)
             self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
 
     def test_signal_during_prepare(self):
@@ -91,4 +91,40 @@ class TestDrivePlugin(unittest.TestCase):
         self.assertIn('the drive has not become ready in time',
                       rospy.ServiceProxy('/%s/enable' % node.name, Trigger)().message)
         self.assertEqual(node.end(signal.SIGTERM), 1, node.output)
-        self.assertIn('the drive does not return: the process ends without it', node.output)
+        self.assertIn("the process ends without the return of the drive's prepare()", node.output)
+
+    def test_signal_during_a_call(self):
+        """Of what is called outside the control loop."""
+        for function, shown in ('constructor', 'constructor'), ('capabilities', 'capabilities()'):
+            with self.subTest(function=function):
+                node = self.awkward('hangs in ' + function)
+                gc.poll(lambda: 'hangs now' in node.output, 'the call')
+                self.assertEqual(node.end(signal.SIGTERM), 0, node.output)
+                self.assertIn('ended by a signal before the return of the %s of the drive tested/Plugin' % shown, node.output)
+
+    def test_destructor_that_hangs(self):
+        """After a signal, and after an error, which is said first."""
+        end = 'the process ends without the return of the destructor of the drive tested/Plugin'
+        node = self.awkward('hangs in destructor')
+        grinder = node.client()
+        self.addCleanup(grinder.close)
+        grinder.wait_state(GrinderState.DISABLED)
+        self.assertEqual(node.end(signal.SIGTERM), 1, node.output)
+        self.assertIn(end, node.output)
+        self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward='throws in init, hangs in destructor'),
+                         '(?s)init.. has thrown .*' + end)
+
+    def test_exceptions_of_other_types(self):
+        for function, shown in ('constructor', 'constructor'), ('init', 'init()'), ('capabilities', 'capabilities()'):
+            self.assertIn('the drive tested/Plugin: its %s has thrown what is no std::exception' % shown,
+                          self.refusal('awkward_drive', 'AwkwardDrive', awkward='throws in ' + function))
+
+    def test_power_off_that_hangs(self):
+        """It hides neither that the drive hangs, nor the end."""
+        node = self.awkward('hangs in read, hangs in powerOff')
+        grinder = node.client()
+        self.addCleanup(grinder.close)
+        state = grinder.wait_state(GrinderState.FAULT)
+        self.assertIn('it does not return to the control loop; its powerOff() has not returned either', state.fault)
+        self.assertEqual(node.end(signal.SIGTERM), 1, node.output)
+        self.assertIn("the process ends without the return of the drive's powerOff()", node.output)

@@ -334,6 +334,23 @@ TEST_F(JournalWriterTest, ReportsADamagedJournalAndAFailedWriteUntilOneIsWritten
   expectSame(writer.status().on_disk, someProgress());
 }
 
+TEST_F(JournalWriterTest, AnEntryCountsOnceItsFolderIsSynchronizedToo) {
+  std::filesystem::permissions(folder_, std::filesystem::perms::all);
+  JournalWriter writer(path_, "/grinder");
+  std::filesystem::permissions(path_ + ".lock", std::filesystem::perms::all);
+  {
+    // It takes files, but cannot be opened.
+    const Forbidden forbidden(folder_, std::filesystem::perms::all & ~std::filesystem::perms(0444));
+    waitForWrite(writer, writer.write(someProgress()));
+    EXPECT_TRUE(std::filesystem::exists(path_));
+    EXPECT_EQ(writer.status().error, "journal " + path_ + ": " + folder_ + ": Permission denied");
+    expectSame(writer.status().on_disk, Progress());
+  }
+  waitForWrite(writer, writer.write(someProgress()));
+  EXPECT_EQ(writer.status().error, "");
+  expectSame(writer.status().on_disk, someProgress());
+}
+
 // As after a start as root, which leaves its files to root.
 TEST_F(JournalWriterTest, WhatCouldNotBeReadIsNotWrittenOver) {
   Journal(path_, "/grinder").write(someProgress());

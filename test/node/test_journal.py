@@ -321,6 +321,18 @@ class TestSlowDisk(JournalTest):
         run.wait()
         self.assertEqual((run.status, run.setpoints), ('PREEMPTED', []))
 
+    def test_axes_wait_for_the_folder_too(self):
+        """Without it a power failure in the stroke could leave the entry before."""
+        rest = self.client.wait_rest()
+        self.disk.stop('folders')
+        run = self.client.send(self.job)
+        self.client.wait_for(lambda: self.client.states[-1].spindle_at_speed, 'the spindle at speed')
+        gc.poll(lambda: os.path.exists(self.journal), 'the entry in its folder')
+        self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
+        self.disk.release()
+        run.wait_complete()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+
     def test_strokes_go_on_and_progress_waits_for_the_disk(self):
         run = self.hold_in_stroke_of(0, 1)
         journal = self.wait_left(run)

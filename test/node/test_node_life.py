@@ -183,7 +183,7 @@ class TestDriveHangs(gc.OwnNode):
         g.inject('hang')
         g.wait_state(GrinderState.FAULT)
         self.assertEqual(self.node.end(signal.SIGTERM), 1)
-        self.assertIn('the drive does not return: the process ends without it', self.node.output)
+        self.assertIn("the process ends without the return of the drive's read(), write() or wait()", self.node.output)
 
 
 class TestFaultIsLogged(gc.OwnNode):

@@ -214,7 +214,7 @@ void Watch::checkStroke(const Row& row) {
     throw Violation("a stroke of tooth " + std::to_string(row.tooth) + ", pass " + std::to_string(row.pass) +
                     " after " + std::to_string(progress_.ground) + " passes");
   }
-  progress_.again = !next;
+  progress_.again = !next && !row.ends_stroke;
   checkFeed(row, asked_.teeth[static_cast<std::size_t>(row.tooth)]);
   const Pass& own = asked_.passes[next ? progress_.ground : progress_.ground - 1];
   const Real x = row.work[0];
@@ -229,7 +229,7 @@ void Watch::checkStroke(const Row& row) {
   if (std::abs(x - asked_.to) > noiseOf(0)) return;
   ++progress_.ground;
   progress_.reached = asked_.from;
-  progress_.again = row.work[0] != asked_.to;
+  progress_.again = !row.ends_stroke;
 }
 
 /// A stroke goes forward, and a pair no faster than the feed.

@@ -56,7 +56,8 @@ struct Row {
   bool rises = false;   ///< the wheel is to be lifted: nothing else moves
   std::uint64_t cycle = 0;
   bool in_stroke = false;
-  bool lifts = false;  ///< a move of Y alone, up
+  bool ends_stroke = false;  ///< in the loop's opinion, which may differ by rounding
+  bool lifts = false;        ///< a move of Y alone, up
   int tooth = 0, pass = 0;
 };
 

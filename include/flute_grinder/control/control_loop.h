@@ -101,7 +101,8 @@ class ControlLoop : public RequestBox {
   Answer answerTo(MachineEvent event, Refusal refusal) const;
   Refusal enable();
   void awaitPower();
-  Refusal awaitPreparation();
+  Refusal commandPower();
+  Refusal refusalWithoutPower() const;
   void answerEnable(Refusal refusal);
   void switchOff();
   Refusal reset();
@@ -187,8 +188,10 @@ class ControlLoop : public RequestBox {
   bool switched_by_hand_ = false;  ///< either of them, since the job began or was resumed
   double waited_ = 0;              ///< for power, the reference, or the interlocks of a job [s]
   bool awaiting_power_ = false;
-  double unwanted_power_ = 0;  ///< for so long the drive has reported power that is commanded off [s]
+  bool preparation_begun_ = false;  ///< for the power awaited
+  double unwanted_power_ = 0;       ///< for so long the drive has reported power that is commanded off [s]
   bool homing_seen_ = false;
+  bool homing_of_before_ = false;  ///< reported since before the request
   CycleSample sample_;
   LoopStatus next_status_;  ///< published at the end of the cycle
 

@@ -30,6 +30,7 @@ enum class Refusal : std::uint8_t {
   kPreparing,    ///< the drive's prepare() has not returned
   kNotPrepared,  ///< the drive's prepare() has failed
   kNoPower,
+  kPowerStays,  ///< that of before, so that the new could not be told from it
   kMoved,
   kFeedback,
   kWithdrawn,       ///< an enable that was followed by a disable

@@ -25,7 +25,12 @@ class LoopWatchdog {
   ~LoopWatchdog();
 
   /// What is known of the loop. Thread safe.
-  enum class Finding : std::uint8_t { kRuns, kHangs, kHangsPowerIsOff };
+  enum class Finding : std::uint8_t {
+    kRuns,
+    kSwitchingOff,  ///< it hangs, and the drive's powerOff() has not returned
+    kHangs,
+    kHangsPowerIsOff
+  };
   Finding finding() const noexcept { return finding_; }
   bool loopHangs() const noexcept { return finding() != Finding::kRuns; }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Holds every module to the includes that the table in docs/architecture.md allows it, and the core's modules to the libraries that it
 names. No module may include one below it in the table, no header may be in include/ that only its own module includes, and the drive
-plugin of docs/drive-plugin.md may include only drive. Prints what is wrong; exits with 1 if something is."""
+plugin of docs/drive-plugin.md may include only drive. Nor may a C function that writes or reads numbers stand in a file that does
+not know `CLocale`, since rviz' locale may have a comma in them. Prints what is wrong; exits with 1 if something is."""
 
 import pathlib
 import re
@@ -15,6 +16,10 @@ INSTALLED = ('curve', 'drive')
 ARROW = re.compile(r'`(\w+)`(?: \(([^)]+)\))?')
 INCLUDE = re.compile(r'(?m)^#include [<"](.+?)[>"]')
 CORE = ('curve', 'job', 'motion', 'machine')
+# Not what is for a terminal: programs of our own keep the locale C.
+LOCALE = re.compile(r'\b(?:ato[fl]|sto(?:f|d|ld)|strto(?:f|d|ld)|v?sn?printf|v?asprintf|vf?printf|fprintf|v?[fs]?scanf|setlocale|'
+                    r'locale::global)\((?!stderr)')
+KNOWS = '#include "flute_grinder/job/c_locale.h"'
 LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h',
              'urdfdom': r'urdf_\w+/\w+\.h', 'tinyxml2': r'tinyxml2\.h'}
 
@@ -71,9 +76,15 @@ def check_private():
     return wrong
 
 
+def check_numbers():
+    return ['%s: %s...) goes by the locale; allowed: format() and parseNumber()' % (path.relative_to(ROOT), call)
+            for folder in FOLDERS for path in sorted(folder.rglob('*')) if path.suffix in ('.h', '.cpp')
+            for text in [path.read_text()] if KNOWS not in text for call in LOCALE.findall(text)]
+
+
 def main():
     modules = read_modules()
-    wrong = check_order(modules) + check_private()
+    wrong = check_order(modules) + check_private() + check_numbers()
     for folder in FOLDERS:
         for path in sorted(folder.rglob('*')):
             module = path.relative_to(folder).parts[0]

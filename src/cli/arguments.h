@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,7 +17,7 @@ namespace grinder {
 /// A check that a number is from min to max, in the unit.
 inline auto within(double min, double max, const char* unit) {
   return [=](const std::string& text) {
-    const double value = std::strtod(text.c_str(), nullptr);
+    const double value = parseNumber(text.c_str());
     return value >= min && value <= max ? "" : format("%s; allowed: %g to %g %s", text.c_str(), min, max, unit);
   };
 }
@@ -70,7 +69,7 @@ void addChoice(CLI::App& command, const char* name, std::optional<Enum>& choice,
 template <typename Length>
 CLI::Option& addLength(CLI::App& command, const char* name, Length& length_mm, const char* description, bool zero) {
   return *command.add_option(name, length_mm, description)->type_name("MM")->check([zero](const std::string& text) {
-    const double value = std::strtod(text.c_str(), nullptr);
+    const double value = parseNumber(text.c_str());
     const bool good = std::isfinite(value) && (zero ? value >= 0 : value > 0);
     return good ? "" : text + "; allowed: " + (zero ? "0 mm or more" : "more than 0 mm");
   });

@@ -1,6 +1,7 @@
 #include "cli/csv.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/c_locale.h"
 
 #include <cerrno>
 #include <cstdarg>
@@ -16,6 +17,7 @@ CsvFile::CsvFile(std::string path, const std::string& header) : file_(std::move(
 }
 
 void CsvFile::print(const char* format, ...) {
+  const CLocale with_points;
   va_list arguments;
   va_start(arguments, format);
   if (std::vfprintf(file_.stream(), format, arguments) < 0 && error_ == 0) error_ = errno;

@@ -50,9 +50,7 @@ void addJog(Commands& commands) {
   addAxis(command, options->axis);
   command.add_option("DISTANCE", options->distance, "in mm, of A in deg; negative in the other direction")->required();
   command.add_option("--feed", options->feed, "in mm/min, of A in deg/min (default: parameter jog_velocity)")
-      ->check([](const std::string& text) {
-        return std::strtod(text.c_str(), nullptr) > 0 ? "" : text + "; allowed: above 0";
-      });
+      ->check([](const std::string& text) { return parseNumber(text.c_str()) > 0 ? "" : text + "; allowed: above 0"; });
 }
 
 void addStatus(Commands& commands) {

@@ -43,7 +43,7 @@ void addTouchOff(Commands& commands) {
           "--at", options->at,
           "y: diameter of the blank that the wheel touches; x, z, a: work position here (default: 0); mm or deg")
       ->check([](const std::string& text) {
-        return std::isfinite(std::strtod(text.c_str(), nullptr)) ? "" : text + "; allowed: a finite number";
+        return std::isfinite(parseNumber(text.c_str())) ? "" : text + "; allowed: a finite number";
       });
   command.add_option("--job", options->job, "job to be ground; y and z need it")->type_name(kYamlFile);
   addOperation(command, options->operation);

@@ -10,6 +10,7 @@
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/escaped.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
@@ -20,7 +21,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <iostream>
 #include <stdexcept>
 
@@ -219,7 +219,7 @@ std::string offsetRefusal(const std::string& argument) {
   const std::string allowed = "; allowed: AXIS=VALUE, as y=45.2, the axis x, y, z or a, the value in mm or deg";
   if (axisOf(argument) == kAxisCount || argument.size() < 3 || argument[1] != '=') return argument + allowed;
   char* end = nullptr;
-  const double value = std::strtod(argument.c_str() + 2, &end);
+  const double value = parseNumber(argument.c_str() + 2, &end);
   return *end == '\0' && std::isfinite(value) ? "" : argument + allowed;
 }
 
@@ -229,7 +229,7 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   ros::NodeHandle nh(node);
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
-    const double value = std::strtod(argument.c_str() + 2, nullptr) * shopScale(unitOf(axis, 0));
+    const double value = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
     if (const int status = setWorkOffset(nh, axis, value, basis, options.yes)) return status;
   }
   const int fitted = options.fit.empty() ? 0 : fit(nh, goalFromFile(options.fit, options.operation), options.yes);

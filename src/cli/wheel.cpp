@@ -65,7 +65,7 @@ void printWheel(const WheelFile& wheel) {
 
 Json toJson(const WheelFile& wheel) {
   const GrindProcess& p = wheel.process;
-  const auto mm = [](double metres) { return std::stod(millimetres(metres)); };
+  const auto mm = [](double metres) { return parseNumber(millimetres(metres).c_str()); };
   Json points = Json::array();
   for (const ProfilePoint& point : wheel.points) points.push_back({mm(point.w), mm(point.radius)});
   const bool tapered = isTapered(p.wheel_profile);

@@ -1,6 +1,7 @@
 #include "flute_grinder/collision/collision_check.h"
 
 #include "collision/closest_search.h"
+#include "flute_grinder/job/format.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ MachinePart fastened(MachinePart link, Solid solid) {
 
 void require(bool good, const char* name, double value, const char* allowed) {
   if (!good) {
-    throw std::invalid_argument(std::string(name) + " = " + std::to_string(value) + "; allowed: " + allowed);
+    throw std::invalid_argument(format("%s = %g; allowed: %s", name, value, allowed));
   }
 }
 

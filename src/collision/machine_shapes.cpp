@@ -2,6 +2,7 @@
 
 #include "flute_grinder/collision/joint_pose.h"
 #include "flute_grinder/job/axes.h"
+#include "flute_grinder/job/format.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -23,8 +24,7 @@ std::string nameOf(const urdf::Collision& shape, const urdf::Link& link) {
 Solid toSolid(const urdf::Collision& shape, const urdf::Link& link) {
   const std::string what = "link " + link.name + ", <collision> " + nameOf(shape, link) + ": ";
   const auto positive = [&](double size, const char* name) {
-    if (!(size > 0 && std::isfinite(size)))
-      refuse(what + name + " = " + std::to_string(size) + " m; allowed: positive");
+    if (!(size > 0 && std::isfinite(size))) refuse(what + format("%s = %g m; allowed: positive", name, size));
     return size;
   };
   Solid solid;

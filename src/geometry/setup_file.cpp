@@ -32,7 +32,7 @@ std::string changesText(const std::string& path, const JobSetup& setup) {
   for (const JobEdit& edit : setup.edits) {
     double before = 0;
     const bool is_there = file.has(edit.key) && file.take(edit.key, "", before);
-    const double change = std::stod(edit.value) - before;
+    const double change = parseNumber(edit.value.c_str()) - before;
     text += format("  %-32s", edit.key.c_str());
     text += is_there ? format("%.8g in the file, %s solved", before, edit.value.c_str())
                      : "not in the file, " + edit.value + " solved";

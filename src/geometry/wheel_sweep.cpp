@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/wheel_sweep.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 
 #include <boost/math/tools/minima.hpp>
 
@@ -72,8 +73,7 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
   }
   requireFinite("setup.height", setup.height);
   if (!(cutter.radius(-setup.lead) > 0)) {
-    throw std::invalid_argument("setup.lead = " + std::to_string(setup.lead) +
-                                " m; allowed: less than the way to the apex");
+    throw std::invalid_argument(format("setup.lead = %g m; allowed: less than the way to the apex", setup.lead));
   }
   for (const double value : {stroke.from, stroke.to, stroke.y, stroke.y_per_x, stroke.a})
     requireFinite("stroke", value);

@@ -1,8 +1,8 @@
 #include "flute_grinder/job/flat_file.h"
 
 #include "flute_grinder/job/did_you_mean.h"
+#include "flute_grinder/job/format.h"
 
-#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -26,7 +26,7 @@ std::string listOf(std::string key) {
 /// Whether a text is a decimal number, of whatever size.
 bool isNumber(const std::string& text) {
   char* end = nullptr;
-  std::strtod(text.c_str(), &end);
+  parseNumber(text.c_str(), &end);
   return !text.empty() && *end == '\0' && text.find_first_not_of("0123456789.eE+-") == std::string::npos;
 }
 

@@ -2,14 +2,17 @@
 
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/c_locale.h"
 
 #include <algorithm>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 
 namespace grinder {
 
 std::string format(const char* pattern, ...) {
+  const CLocale with_points;
   va_list arguments, again;
   va_start(arguments, pattern);
   va_copy(again, arguments);
@@ -18,6 +21,11 @@ std::string format(const char* pattern, ...) {
   std::vsnprintf(text.data(), text.size() + 1, pattern, again);
   va_end(again);
   return text;
+}
+
+double parseNumber(const char* text, char** end) {
+  const CLocale with_points;
+  return std::strtod(text, end);
 }
 
 bool hasForm(std::string_view text, std::string_view form) {

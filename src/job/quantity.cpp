@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 
 namespace grinder {
@@ -59,7 +58,7 @@ double shopNumber(double si, Unit unit) {
   const double quotient = si / scale;
   constexpr int all_digits = std::numeric_limits<double>::max_digits10;
   for (int digits = 1; digits <= all_digits; ++digits) {
-    const double rounded = std::strtod(format("%.*g", digits, quotient).c_str(), nullptr);
+    const double rounded = parseNumber(format("%.*g", digits, quotient).c_str());
     if (rounded * scale == si) return rounded;
   }
   // The quotient is rounded too.

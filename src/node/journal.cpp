@@ -1,5 +1,6 @@
 #include "node/journal.h"
 
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/motion/feed_schedule.h"
 #include "node/yaml_fields.h"
 
@@ -61,7 +62,7 @@ void requireSound(const Progress& progress) {
   requireAllowed(next.pass >= 0 && next.pass < kMaxPasses, "pass", next.pass, "0 to " + std::to_string(kMaxPasses - 1));
   const double feed_override = progress.feed_override;
   requireAllowed(feed_override >= 0 && feed_override <= kMaxFeedOverride, "feed_override", feed_override,
-                 "0 to " + std::to_string(kMaxFeedOverride));
+                 format("0 to %g", kMaxFeedOverride));
 }
 
 std::string toText(const Progress& progress) {

@@ -113,14 +113,14 @@ std::string goalRefusal(const flute_grinder::ProbeGoal& goal) {
     return "cycle = " + std::to_string(goal.cycle) + "; allowed: 0 to " + std::to_string(countOf<ProbingCycle>() - 1);
   }
   if (!(goal.within > 0 && std::isfinite(goal.within))) {
-    return "within = " + std::to_string(goal.within) + "; allowed: finite, and above 0";
+    return format("within = %g; allowed: finite, and above 0", goal.within);
   }
   if (!goal.set_offset) {
     return goal.cycle == flute_grinder::ProbeGoal::TOOTH ? "set_offset = false; allowed: true, for TOOTH" : "";
   }
-  if (!std::isfinite(goal.flange)) return "flange = " + std::to_string(goal.flange) + "; allowed: finite";
+  if (!std::isfinite(goal.flange)) return format("flange = %g; allowed: finite", goal.flange);
   if (goal.cycle == flute_grinder::ProbeGoal::DIAMETER && !(goal.diameter > 0 && std::isfinite(goal.diameter))) {
-    return "diameter = " + std::to_string(goal.diameter) + "; allowed: finite, and above 0";
+    return format("diameter = %g; allowed: finite, and above 0", goal.diameter);
   }
   if (!isPlainName(goal.set_by)) return nameRefusal("set_by", goal.set_by);
   if (!isPlainName(goal.job.job_name)) return nameRefusal("job_name", goal.job.job_name);

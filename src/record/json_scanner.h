@@ -1,7 +1,8 @@
 #pragma once
 
+#include "flute_grinder/job/format.h"
+
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -64,7 +65,7 @@ class JsonScanner {
     const std::string_view text = value();
     if (text == "null") return std::nullopt;
     char* end = nullptr;
-    const double number = std::strtod(text.data(), &end);
+    const double number = parseNumber(text.data(), &end);
     if (end != text.data() + text.size()) fail();
     return number;
   }

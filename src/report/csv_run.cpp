@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -36,7 +35,7 @@ class Fields {
   double number() {
     const std::string field = text();
     char* end = nullptr;
-    const double value = std::strtod(field.c_str(), &end);
+    const double value = parseNumber(field.c_str(), &end);
     if (field.empty() || *end != '\0') throw std::invalid_argument("\"" + field + "\" is not a number");
     return value;
   }

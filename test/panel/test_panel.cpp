@@ -1,5 +1,6 @@
 // The panel against a grinder of the test's own, which can be put into every state, and stay silent.
 
+#include "german.h"
 #include "stage.h"
 
 #include <QAbstractSlider>
@@ -770,6 +771,7 @@ TEST_F(OnStage, PositionsAreThoseOfTheWorkWhateverTheOrderOfTheJoints) {
 int main(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   ros::init(argc, argv, "test_panel");
+  grinder::test_support::setGermanEnvironment();
   const QApplication application(argc, argv);
   const ros::NodeHandle keeps_ros_up;
   ros::AsyncSpinner spinner(4);

@@ -3,6 +3,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "german.h"
 #include "panel_fixture.h"
 
 #include <QDialog>
@@ -108,6 +109,7 @@ class SetupSheet : public ::testing::Test {
 };
 
 TEST_F(SetupSheet, IsShownAndWritten) {
+  ASSERT_TRUE(test_support::hasComma()) << "Qt has given this process the desktop's locale, here a German one";
   open({{kSetup, ""}});
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
   EXPECT_TRUE(panel->says("verdict", "'grind setup --write' finds it"));

@@ -38,6 +38,11 @@ def poll(condition, what, interval=0.1):
         time.sleep(interval)
 
 
+def stem(name):
+    """Of a node's name, without what roslaunch adds to an anonymous one: computer, process and a random number."""
+    return re.sub(r'_[A-Za-z0-9_]+_\d+_\d+$', '', name)
+
+
 class Session:
     def __init__(self):
         self.folder = pathlib.Path(tempfile.mkdtemp())
@@ -128,7 +133,8 @@ class Session:
                 raise Failure('%s: has ended\n%s' % (command, log.read_text()))
             try:
                 master = xmlrpc.client.ServerProxy(self.master)
-                return (all(master.lookupNode('/test', node)[0] == 1 for node in nodes) and
+                known = {stem(name) for kind in master.getSystemState('/test')[2] for _, names in kind for name in names}
+                return ({stem(node) for node in nodes} <= known and
                         all(master.lookupService('/test', node + '/plan')[0] == 1 for node in grinders))
             except OSError:
                 return False

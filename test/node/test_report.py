@@ -16,6 +16,7 @@ import xmlrpc.client
 
 import rosbag
 import rosgraph
+import rospy
 from PIL import Image
 
 import browser
@@ -94,7 +95,8 @@ class Recording:
         api = xmlrpc.client.ServerProxy(rosgraph.Master('/test_report').lookupNode('/recorded'))
         wanted = {'/joint_states', '/diagnostics'} | {'/recorded/' + name for name in (
             'setpoints', 'state', 'machine', 'offsets', 'job', 'grind/result')}
-        gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == '/recorded_bag'},
+        recorder = '/' + rospy.get_param('/recorded/recorder')
+        gc.poll(lambda: wanted <= {bus[4] for bus in api.getBusInfo('/test_report')[2] if bus[1] == recorder},
                 'the recorder')
 
 

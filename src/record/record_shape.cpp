@@ -1,5 +1,7 @@
 #include "record/record_shape.h"
 
+#include "flute_grinder/record/record_file.h"
+
 #include <stdexcept>
 #include <string>
 
@@ -19,7 +21,7 @@ constexpr const char* kShape = R"({
       "tooth_angles_deg?": ["number"], "clearance_deg?": "number", "clearance_tolerance_deg?": "number", "land_mm?": "number"},
     "process": {"feed_mm_min": "number", "incomplete_ok?": "flag"},
     "interpolation": {"tolerance_um": "number"}, "operation?": "text"}},
-  "started": "text", "ended": "text", "outcome": "text", "reason": "text",
+  "started": "time", "ended": "time", "outcome": "text", "reason": "text",
   "wheel": {"name": "text", "dressed": "text"}, "passes": "count",
   "planned?": {"feed_limits": [{"cause": "text", "from_x_mm": "number", "to_x_mm": "number"}]},
   "setpoints": {"written": "count", "lost": "count"}, "late_cycles": {"count": "count", "longest_ms": "number?"}
@@ -39,7 +41,18 @@ constexpr const char* kWholeShape = R"({
 
 constexpr const char* kSummaryShape = R"({"complete_strokes": "count", "holds": "count"})";
 
+bool isTime(const Json& value) {
+  if (!value.is_string()) return false;
+  try {
+    timeOf(value);
+    return true;
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
 bool isOfType(const Json& value, const std::string& type) {
+  if (type == "time") return isTime(value);
   if (type == "text") return value.is_string();
   if (type == "flag") return value.is_boolean();
   if (type == "count") return value.is_number_unsigned();
@@ -52,7 +65,10 @@ std::string wordsOf(const Json& shape) {
   std::string type = shape;
   const bool or_null = type.back() == '?';
   if (or_null) type.pop_back();
-  const std::string words = type == "flag" ? "true or false" : type == "count" ? "a whole number from 0" : "a " + type;
+  const std::string words = type == "time"    ? "a time, as 2026-11-22T17:04:13.123Z"
+                            : type == "flag"  ? "true or false"
+                            : type == "count" ? "a whole number from 0"
+                                              : "a " + type;
   return words + (or_null ? ", or null" : "");
 }
 

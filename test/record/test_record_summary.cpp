@@ -123,6 +123,7 @@ TEST_F(RecordSummary, OfAValueOfAnotherTypeIsNone) {
            {"/job/file/cutter/rake_angle_deg", "8", "job.file.cutter.rake_angle_deg = \"8\"; allowed: a number"},
            {"/setpoints/written", "many", "setpoints.written = \"many\"; allowed: a whole number from 0"},
            {"/late_cycles/longest_ms", true, "late_cycles.longest_ms = true; allowed: a number, or null"},
+           {"/started", "today", "started = \"today\"; allowed: a time, as 2026-11-22T17:04:13.123Z"},
            {"/outcome", Json::array(), "outcome = []; allowed: a text"}};
   for (const auto& row : rows) {
     Json record = good;

@@ -40,7 +40,8 @@ class Parameters {
     if (value.getType() != XmlRpc::XmlRpcValue::TypeStruct) value.clear();
     XmlRpc::XmlRpcValue own;
     for (const auto& item : node) {
-      const auto word = item.first.as<std::string>();
+      if (!item.first.IsScalar()) refuse(item.first, "a name of a parameter is no word");
+      const std::string& word = item.first.Scalar();
       const std::string path = key + (key.empty() ? "" : "/") + word;
       if (own.getType() == XmlRpc::XmlRpcValue::TypeStruct && own.hasMember(word)) {
         refuse(item.first, path + " appears twice");
@@ -79,24 +80,6 @@ class Parameters {
   std::string name_;
 };
 
-}  // namespace
-
-MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const std::string& urdf) {
-  const MachineModel model(readTextFile(urdf, kMaxUrdfFile), urdf);
-  XmlRpc::XmlRpcValue values;
-  std::string name;
-  for (const std::string& file : parameters) {
-    const YAML::Node root = parseYaml(readTextFile(file), file);
-    if (!root.IsMap()) throw JobFileError(file + ":1: not a map of parameters");
-    Parameters(file).addTo(values, root, "");
-    name += (name.empty() ? "" : ", ") + file;
-  }
-  const std::string drives = "a drive, as flute_grinder/SimulatedDrive";
-  return {model, readMachineConfig(model, ParameterReader(values, name), drives)};
-}
-
-namespace {
-
 /// rosbag writes over whatever is there, and ends only once it has started.
 void requireNewBag(const std::string& path) {
   const std::filesystem::path bag(path);
@@ -112,6 +95,20 @@ void requireNewBag(const std::string& path) {
 }
 
 }  // namespace
+
+MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const std::string& urdf) {
+  const MachineModel model(readTextFile(urdf, kMaxUrdfFile), urdf);
+  XmlRpc::XmlRpcValue values;
+  std::string name;
+  for (const std::string& file : parameters) {
+    const YAML::Node root = parseYaml(readTextFile(file), file);
+    if (!root.IsMap()) throw JobFileError(file + ":1: not a map of parameters");
+    Parameters(file).addTo(values, root, "");
+    name += (name.empty() ? "" : ", ") + file;
+  }
+  const std::string drives = "a drive, as flute_grinder/SimulatedDrive";
+  return {model, readMachineConfig(model, ParameterReader(values, name), drives)};
+}
 
 int runMachine(const MachineOptions& options) {
   if (!options.bag.empty()) requireNewBag(options.bag);

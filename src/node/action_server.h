@@ -48,11 +48,17 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
     goals_ = nh_.subscribe("goal", kQueue, &Base::goalCallback, static_cast<Base*>(this));
   }
 
-  void publishResult(const actionlib_msgs::GoalStatus& status, const Result& result) override {
-    const Lock lock(this->lock_);
-    ActionResult message;
+  template <typename Message>
+  static Message messageOf(const actionlib_msgs::GoalStatus& status) {
+    Message message;
     message.header.stamp = ros::Time::now();
     message.status = status;
+    return message;
+  }
+
+  void publishResult(const actionlib_msgs::GoalStatus& status, const Result& result) override {
+    const Lock lock(this->lock_);
+    auto message = messageOf<ActionResult>(status);
     message.result = result;
     if (status.status == actionlib_msgs::GoalStatus::RECALLED) recalled_(message.result, reasonOf(status));
     results_.publish(message);
@@ -61,9 +67,7 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
 
   void publishFeedback(const actionlib_msgs::GoalStatus& status, const Feedback& feedback) override {
     const Lock lock(this->lock_);
-    ActionFeedback message;
-    message.header.stamp = ros::Time::now();
-    message.status = status;
+    auto message = messageOf<ActionFeedback>(status);
     message.feedback = feedback;
     feedback_.publish(message);
   }

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Prepares the process and the thread for the control loop. Call each function once, before the first cycle.
+/// Prepares the process and the thread for the control loop. Call each function once, before the first cycle;
+/// boundAddressSpace() once all else that the process needs is there.
 namespace grinder {
 
 /// Gives the threads that are created from now on a stack of 512 KB, unless they ask for another. lockMemory() makes

@@ -98,6 +98,12 @@ constexpr Figure kReliefFigures[]{
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land_end_clearance; }); }, notAsked},
     {"primary_mm", "primary relief, mm", "primary mm", kMillimetre, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land; }); }, notAsked},
+    {"second_clearance_deg", "second clearance, deg", "second deg", kDegree, false,
+     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.second_clearance; }); },
+     [](const Place& p) {
+       const CutterGeometry& c = p.job->cutter;
+       return c.second_clearance > 0 ? Value(c.second_clearance) : Value();
+     }},
     {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.heel; }); }, notAsked},
     {"radius_mm", "edge's radius, mm", "edge mm", kMillimetre, false,

@@ -13,7 +13,9 @@ namespace grinder {
 namespace {
 
 constexpr int kHalvings = 60;          ///< of a search's range
-constexpr int kSteps = 8;              ///< to a section; each gains two digits and more
+constexpr int kSteps = 30;             ///< to a section
+constexpr double kSamePlace = 1e-12;   ///< of the cutter's radius, in which a section is found
+constexpr double kNearby = 1e-4;       ///< of the cutter's radius, behind the edge
 constexpr double kFarthestSine = 0.9;  ///< along the rim, of where a blank is touched
 constexpr int kPlacesOfWidth = 32;     ///< of the rim, between which the one that first touches is looked for
 
@@ -90,17 +92,21 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
       half_width_(wheel.width / 2),
       sin_(std::sin(handOf(cutter) * wheel.swivel)),
       cos_(std::cos(wheel.swivel)),
+      rim_from_(wheel.corner_radius[handOf(cutter) > 0 ? 0 : 1] - half_width_),
+      rim_to_(half_width_ - wheel.corner_radius[handOf(cutter) > 0 ? 1 : 0]),
       path_cutter_(cutter) {
   const double hand = handOf(cutter), swivel = hand * wheel.swivel;
   const Contact c = contactOf(start, tan_cone_, tan_spiral_, swivel);
   phi_ = c.phi, normal_x_ = c.x, normal_y_ = c.y, normal_z_ = c.z;
   const HeightLaw law = heightLaw(c, start, radius_, tan_cone_, wheel_radius_, swivel);
   contact_ = (law.at_middle - hand * wheel.height) / law.per_contact;
-  if (!(std::abs(contact_) <= half_width_)) {
-    const double middle = hand * law.at_middle / units::kMillimetre;
-    const double reach = std::abs(half_width_ * law.per_contact) / units::kMillimetre;
+  if (!(contact_ >= rim_from_ && contact_ <= rim_to_)) {
+    const auto height = [&](double contact) {
+      return hand * (law.at_middle - contact * law.per_contact) / units::kMillimetre;
+    };
+    const auto [low, high] = std::minmax({height(rim_from_), height(rim_to_)});
     std::ostringstream range;
-    range << middle - reach << " to " << middle + reach << " mm, with the edge on the wheel's rim";
+    range << low << " to " << high << " mm, with the edge on the wheel's rim";
     refuse("setup.height", wheel.height / units::kMillimetre, " mm", range.str());
   }
   path_cutter_ = withRake(cutter.geometry(), start.radius_part * std::sin(phi_));
@@ -110,8 +116,11 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
   y_ = p_y + wheel_radius_ * normal_y_ - radius_ - wheel.nominal_radius;
   a_ = hand * (start.behind - phi_);
   const double length = cutter.geometry().flute_length;
-  beyond_end_ = std::max(0.0, -formedAt(0, half_width_ - contact_));
-  beyond_shank_ = std::max(0.0, formedAt(length, half_width_ - contact_) - length);
+  side_ = surfaceOf(0, kNearby * radius_).behind > start.behind ? 1 : -1;
+  // A place of the rim that forms no surface asks for no way.
+  const double end = side_ * half_width_ - contact_;
+  beyond_end_ = std::fmax(0.0, -formedAt(0, end));
+  beyond_shank_ = std::fmax(0.0, formedAt(length, end) - length);
   depth_ = std::max(touchDepth(-beyond_end_), touchDepth(length + beyond_shank_));
 }
 
@@ -124,12 +133,12 @@ double ReliefPath::heightFor(const ConicalCutter& cutter, const ReliefStart& sta
   return hand * (law.at_middle - contact * law.per_contact);
 }
 
-ReliefPath::Point ReliefPath::contactPoint(double s, double along) const noexcept {
+ReliefPath::Point ReliefPath::contactPoint(double s, double w) const noexcept {
   const double rho = start_.radius_part, radius = radius_ + s * tan_cone_;
   const double p_y = rho * radius * std::cos(phi_), p_z = rho * radius * std::sin(phi_);
   // The point of the wheel's axis whose disc is looked at.
-  const double x = s + wheel_radius_ * normal_x_ - along * sin_;
-  const double y = p_y + wheel_radius_ * normal_y_, z = p_z + wheel_radius_ * normal_z_ + along * cos_;
+  const double x = s + wheel_radius_ * normal_x_ - w * sin_;
+  const double y = p_y + wheel_radius_ * normal_y_, z = p_z + wheel_radius_ * normal_z_ + w * cos_;
   // How that point of the wheel moves against the cutter, by s; square to it is the normal, n = cos y + sin v, with y
   // and v = (cos swivel, 0, sin swivel) in the disc's plane. What the turn adds from there to the rim is square to n.
   const double turn = tan_spiral_ / radius;
@@ -142,15 +151,24 @@ ReliefPath::Point ReliefPath::contactPoint(double s, double along) const noexcep
   return {x - wheel_radius_ * n_x, y - wheel_radius_ * n_y, z - wheel_radius_ * n_z, n_y, n_z};
 }
 
-double ReliefPath::formedAt(double x, double along) const noexcept {
-  double s = x + along * sin_;
-  for (int i = 0; i < kSteps; ++i) s += x - contactPoint(s, along).x;
-  return s;
+double ReliefPath::formedAt(double x, double w) const noexcept {
+  const auto off = [&](double s) { return contactPoint(s, w).x - x; };
+  double before = x + w * sin_, off_before = off(before), s = before - off_before;
+  for (int i = 0; i < kSteps; ++i) {
+    const double here = off(s);
+    if (!(radius_ + s * tan_cone_ > 0)) break;
+    if (std::abs(here) <= kSamePlace * radius_) return s;
+    const double next = s - here * (s - before) / (here - off_before);
+    before = s, off_before = here, s = next;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
 }
 
-ReliefPath::Place ReliefPath::surface(double x, double along) const noexcept {
-  const double s = formedAt(x, along);
-  const Point p = contactPoint(s, along);
+ReliefPath::Place ReliefPath::surface(double x, double along) const noexcept { return surfaceOf(x, side_ * along); }
+
+ReliefPath::Place ReliefPath::surfaceOf(double x, double w) const noexcept {
+  const double s = formedAt(x, w);
+  const Point p = contactPoint(s, w);
   const double angle = std::atan2(p.z, p.y);
   // From the edge in this section: it turns on from s to x.
   const double t = (x - s) * tan_cone_ / (radius_ + s * tan_cone_);
@@ -165,7 +183,7 @@ ReliefPath::Place ReliefPath::surfaceAt(double x, double width) const noexcept {
     return std::hypot(place.radius * std::cos(place.behind - from.behind) - from.radius,
                       place.radius * std::sin(place.behind - from.behind));
   };
-  double low = 0, high = half_width_ - contact_;
+  double low = 0, high = reach();
   if (!(distance(surface(x, high)) >= width)) return {std::numeric_limits<double>::quiet_NaN(), 0, 0};
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = (low + high) / 2;

@@ -110,11 +110,17 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
   return all;
 }
 
-std::optional<double> GroundCutter::chordalRake(const Flute& flute, double x, double depth, double edge) const {
-  const double outer = cutter_.radius(x), inner = outer - chordDepth(cutter_.geometry(), depth);
-  const auto face = rakeFace(flute, x, inner);
-  if (!face) return std::nullopt;
-  return chordAngle(outer, inner, direction() == CutDirection::kRightHand ? face->angle - edge : edge - face->angle);
+void GroundCutter::measureRake(const Flute& flute, double x, double r, ToothSection& section) const {
+  const double hand = direction() == CutDirection::kRightHand ? 1 : -1;
+  const auto edge = rakeFace(flute, x, r);
+  if (!edge) return;
+  section.rake = std::atan(-hand * r * edge->slope);
+  if (section.spiral) section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));
+  const double inner = r - chordDepth(cutter_.geometry(), section.depth);
+  section.chordal_rake.reset();
+  if (const auto face = rakeFace(flute, x, inner)) {
+    section.chordal_rake = chordAngle(r, inner, hand * (face->angle - edge->angle));
+  }
 }
 
 double GroundCutter::coreRadius(double x) const {
@@ -221,15 +227,11 @@ ToothSection GroundCutter::measure(const Flute& flute, double x) const {
   if (!at || !face) return section;
   section.edge = face->angle;
   section.edge_wheel_x = face->axis_x;
-  section.rake = std::atan(direction() == CutDirection::kRightHand ? -r * face->slope : r * face->slope);
-  section.chordal_rake = chordalRake(flute, x, section.depth, face->angle);
   section.flute = at->high - at->low;
   const auto ahead = rakeFace(flute, x + h, cutter_.radius(x + h)),
              behind = rakeFace(flute, x - h, cutter_.radius(x - h));
-  if (ahead && behind) {
-    section.spiral = std::atan(r * (ahead->angle - behind->angle) / (2 * h));
-    section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));
-  }
+  if (ahead && behind) section.spiral = std::atan(r * (ahead->angle - behind->angle) / (2 * h));
+  measureRake(flute, x, r, section);
   section.complete = isComplete(flute, x, core);
   return section;
 }
@@ -261,8 +263,11 @@ GroundSection GroundCutter::section(double x) const {
     if (reliefs(i).empty()) continue;
     std::size_t same = 0;
     while (same < i && !landsAreAlike(same, i)) ++same;
-    section.teeth[i].relief = same < i ? section.teeth[same].relief : measureRelief(*this, section, i, reliefs(i));
-    section.core_radius = std::min(section.core_radius, section.teeth[i].relief->core_radius);
+    ToothSection& tooth = section.teeth[i];
+    tooth.relief = same < i ? section.teeth[same].relief : measureRelief(*this, section, i, reliefs(i));
+    if (tooth.relief->edge_radius < section.radius)
+      measureRake(flutes_[teeth_[i].flute], x, tooth.relief->edge_radius, tooth);
+    section.core_radius = std::min(section.core_radius, tooth.relief->core_radius);
   }
   return section;
 }

@@ -13,10 +13,12 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSections = 8;            ///< of the flute's length, between those that are measured
-constexpr int kRingsToSpoil = 6;        ///< of a section, at which a stroke may spoil it
-constexpr double kMostUndercut = 3e-6;  ///< of an edge's radius by a relief [m]
-constexpr double kSameWear = 20e-6;     ///< whose change of the wheel's curvature a check does not see [m]
+constexpr int kSections = 8;             ///< of the flute's length, between those that are measured
+constexpr int kRingsToSpoil = 6;         ///< of a section, at which a stroke may spoil it
+constexpr double kMostUndercut = 3e-6;   ///< of an edge's radius by a relief [m]
+constexpr double kLandPart = 0.05;       ///< of a land, by which its width may be off
+constexpr double kLeastLandOff = 20e-6;  ///< that it may be off in any case [m]
+constexpr double kSameWear = 20e-6;      ///< whose change of the wheel's curvature a check does not see [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
@@ -128,6 +130,7 @@ class Checker {
     if (!(std::abs(clearance - c.clearance) <= c.clearance_tolerance)) {
       add(ReasonKind::kClearance, section.x, number, Unit::kRadian, clearance, c.clearance, c.clearance_tolerance);
     }
+    if (job_->operation > 1) checkSecondary(section, number, relief);
     const double taken = section.radius - relief.edge_radius;
     if (!(taken <= kMostUndercut)) {
       add(ReasonKind::kUndercut, section.x, number, Unit::kDeviationMetre, taken, kMostUndercut);
@@ -139,6 +142,20 @@ class Checker {
     const bool is_wide = last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, c.land).radius > 0;
     if (!is_wide || (job_->operation > 1 && !relief.land)) {
       add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
+    }
+  }
+
+  void checkSecondary(const GroundSection& section, int tooth, const ReliefSection& relief) {
+    const CutterGeometry& c = job_->cutter;
+    const double clearance = relief.second_clearance.value_or(CutterFigures::kNone);
+    if (!(std::abs(clearance - c.second_clearance) <= c.clearance_tolerance)) {
+      add(ReasonKind::kSecondClearance, section.x, tooth, Unit::kRadian, clearance, c.second_clearance,
+          c.clearance_tolerance);
+    }
+    const double asked = c.land * section.radius / (c.end_diameter / 2);  // it begins at one part of the radius
+    const double off = std::max(kLandPart * asked, kLeastLandOff), land = relief.land.value_or(CutterFigures::kNone);
+    if (!(std::abs(land - asked) <= off)) {
+      add(ReasonKind::kPrimaryLand, section.x, tooth, Unit::kMetre, land, asked, off);
     }
   }
 

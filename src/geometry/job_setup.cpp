@@ -235,16 +235,10 @@ ReliefRequest reliefRequestOf(const GrindJob& job, const ValidJob& flutes, const
                               std::optional<SetupFigure> keep) {
   const CutterGeometry& c = job.cutter;
   const GrindProcess& p = job.process;
-  const double radius = c.end_diameter / 2;
   ReliefRequest r;
-  if (p.kind == OperationKind::kPrimaryRelief) {
-    r.start = {c.clearance, 1, p.behind / radius};
-    if (job.operations.size() > 2) r.land = c.land;
-  } else {
-    const ReliefPath::Place end = ValidJob(job.ofOperation(1)).relief(0)->surfaceAt(0, c.land);
-    r.start = {c.second_clearance, end.radius / radius, end.behind};
-  }
-  r.wheel = {p.wheel_diameter / 2, p.wheel_wear, p.wheel_width, 0, 0};
+  r.start = reliefStartOf(job, ConicalCutter(c));
+  if (p.kind == OperationKind::kPrimaryRelief && job.operations.size() > 2) r.land = c.land;
+  r.wheel = reliefWheelOf(p);
   r.edge = edgesOf(flutes).front();
   r.near = flutes->process.setup_swivel;
   r.swivel = swivel;

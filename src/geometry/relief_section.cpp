@@ -1,5 +1,6 @@
 #include "geometry/relief_section.h"
 
+#include "flute_grinder/curve/units.h"
 #include "geometry/tooth_land.h"
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -12,17 +13,23 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRadiusRings = 12;           ///< between which a search among radii looks for a change
-constexpr int kRadiusSteps = 20;           ///< of one between two of them
-constexpr double kRadiusAccuracy = 10e-9;  ///< of that [m]
-constexpr int kNextEdgeRings = 4;          ///< on which the next tooth is looked at
-constexpr double kFloor = 0.1;             ///< of the next flute's depth, which is no longer its rake face
-constexpr double kBelowTheEdge = 1e-5;     ///< of the radius, where a relief is looked at first
+constexpr int kRadiusRings = 12;          ///< between which a search among radii looks for a change
+constexpr int kRadiusSteps = 20;          ///< of one between two of them
+constexpr double kRadiusAccuracy = 1e-9;  ///< of that [m]
+constexpr int kNextEdgeRings = 4;         ///< on which the next tooth is looked at
+constexpr double kFloor = 0.1;            ///< of the next flute's depth, which is no longer its rake face
+constexpr double kBelowTheEdge = 1e-5;    ///< of the radius, where a relief is looked at first
+constexpr double kSameBegin = 1e-9;       ///< by which a relief that begins at the edge may be in front of it [rad]
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// From a place at the blank's radius to one that is so far behind it, in a straight line across the section.
-double distance(double radius, double r, double behind) {
-  return std::hypot(r * std::cos(behind) - radius, r * std::sin(behind));
+/// In a section, by the angle behind the edge's place on the blank's circle.
+struct LandPlace {
+  double radius, behind;
+};
+
+double distance(const LandPlace& a, const LandPlace& b) {
+  const double turn = b.behind - a.behind;
+  return std::hypot(b.radius * std::cos(turn) - a.radius, b.radius * std::sin(turn));
 }
 
 double clearanceOf(double r, const ToothLand::Surface& surface) { return std::atan2(1, -r * surface.slope); }
@@ -60,17 +67,24 @@ class RelievedLand {
   /// No relief reaches a circle below this one.
   double lowest(std::size_t relief) const { return least_[relief] * (1 + kBelowTheEdge); }
 
-  /// How far behind the edge a relief begins on a circle; infinite if it does not reach that.
-  double begin(std::size_t relief, double r) const {
-    const auto surface = r < lowest(relief) ? std::nullopt : tooth_.surface(reliefs_[relief], r);
-    return surface ? surface->behind : kNone;
+  /// A relief's surface on a circle, if it reaches that.
+  std::optional<ToothLand::Surface> surface(std::size_t relief, double r) const {
+    return r < lowest(relief) ? std::nullopt : tooth_.surface(reliefs_[relief], r);
   }
 
-  /// The land's surface is what begins nearest to the edge.
-  double begin(double r) const {
-    double nearest = kNone;
-    for (std::size_t i = 0; i < reliefs_.size(); ++i) nearest = std::min(nearest, begin(i, r));
+  /// The land's surface on a circle: what begins nearest to the edge.
+  std::optional<ToothLand::Surface> surface(double r) const {
+    std::optional<ToothLand::Surface> nearest;
+    for (std::size_t i = 0; i < reliefs_.size(); ++i) {
+      const auto here = surface(i, r);
+      if (here && (!nearest || here->behind < nearest->behind)) nearest = here;
+    }
     return nearest;
+  }
+
+  /// How far behind the edge a surface begins; a turn where there is none.
+  static double begin(const std::optional<ToothLand::Surface>& surface) {
+    return surface ? surface->behind : units::kTurn;
   }
 
   /// How far behind the edge the reliefs reach on a circle.
@@ -86,13 +100,20 @@ class RelievedLand {
   std::vector<double> least_;
 };
 
+/// The radius of the edge: where the rake face, from the blank's circle inwards, first is in front of the reliefs.
+/// @param lowest circle that the rake face reaches.
+double edgeOf(const ToothLand& tooth, const RelievedLand& land, double radius, double lowest) {
+  const auto in_front = [&](double r) { return land.begin(land.surface(r)) - tooth.rakeFace(r) + kSameBegin; };
+  return crossing(radius, lowest, in_front).value_or(lowest);
+}
+
 /// The radius at which the land of a tooth meets the next flute: in front of the reliefs' end, or, where they take that
 /// flute's wall away down to its floor, there.
 /// @param foot of that wall. @param deepest circle that has a wall and a relief.
 /// @return nothing if the reliefs end before.
 std::optional<double> heelOf(const ToothLand& tooth, const RelievedLand& land, double outer, double foot,
                              double deepest) {
-  const auto behind_flute = [&](double r) { return land.begin(r) - tooth.heelWall(r); };
+  const auto behind_flute = [&](double r) { return land.begin(land.surface(r)) - tooth.heelWall(r); };
   const auto short_of_flute = [&](double r) { return tooth.heelWall(r) - land.end(r); };
   const auto heel = crossing(outer, deepest, behind_flute);
   if (heel && short_of_flute(*heel) <= 0) return heel;
@@ -108,27 +129,29 @@ ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& sec
   const double radius = section.radius;
   const RelievedLand land(tooth, reliefs, section.x, radius);
   ReliefSection measured;
-  measured.edge_radius = radius;
   measured.core_radius = land.core();
-  const double below = radius * (1 - kBelowTheEdge);
-  const auto first = tooth.surface(reliefs[0], below);
-  if (!first) return measured;
-  measured.clearance = clearanceOf(below, *first);
-  // Where its surface, straight over so short a way, meets the edge.
-  const double start = first->behind + first->slope * (radius - below);
-  if (start < 0) measured.edge_radius = radius - start / first->slope;
-
   const double depth = section.teeth[cutter.next(number).tooth].depth;
   const double deepest = std::max(radius - depth, land.core()) * (1 + kBelowTheEdge);
   const double foot = std::max(deepest, radius - (1 - kFloor) * depth);
+  const double lowest = std::max(radius - section.teeth[number].depth, 0.0) * (1 + kBelowTheEdge);
+  measured.edge_radius = edgeOf(tooth, land, radius, lowest);
+  const double below = measured.edge_radius * (1 - kBelowTheEdge);
+  if (const auto surface = land.surface(below)) measured.clearance = clearanceOf(below, *surface);
+
+  const LandPlace edge{measured.edge_radius, tooth.rakeFace(measured.edge_radius)};
   const auto heel = heelOf(tooth, land, below, foot, deepest);
-  if (heel) measured.heel = distance(radius, *heel, tooth.heelWall(*heel));
-  const auto second_first = [&](double r) { return land.begin(0, r) - land.begin(1, r); };
+  if (heel) measured.heel = distance(edge, {*heel, tooth.heelWall(*heel)});
+  const auto second_first = [&](double r) { return land.begin(land.surface(0, r)) - land.begin(land.surface(1, r)); };
   const auto land_end =
       reliefs.size() < 2 ? heel : crossing(below, std::max(land.lowest(0), land.lowest(1)), second_first);
   if (const auto end = land_end ? tooth.surface(reliefs[0], *land_end) : std::nullopt) {
-    measured.land = distance(radius, *land_end, end->behind - std::max(0.0, start));
+    // Where its surface, straight over so short a way, is as high as the edge; in front of that, the blank is left.
+    const auto first = tooth.surface(reliefs[0], below);
+    const double begin = first ? first->behind + first->slope * (edge.radius - below) : 0;
+    measured.land = distance({edge.radius, std::max(edge.behind, begin)}, {*land_end, end->behind});
     measured.land_end_clearance = clearanceOf(*land_end, *end);
+    const auto second = reliefs.size() < 2 ? std::nullopt : tooth.surface(reliefs[1], *land_end);
+    if (second) measured.second_clearance = clearanceOf(*land_end, *second);
   }
 
   measured.next_edge = kNone;

@@ -192,7 +192,7 @@ WheelSweep reliefSweep(const ConicalCutter& cutter, const ReliefPath& path, cons
   stroke.a = path.a() + edge;
   const double radius = wheel.nominal_radius - wheel.wear;
   return {path.cutter(),
-          WheelProfile::straight(2 * radius, wheel.width),
+          WheelProfile::straight(2 * radius, wheel.width, wheel.corner_radius),
           wheel.nominal_radius,
           {wheel.swivel, wheel.height, path.lead()},
           stroke};

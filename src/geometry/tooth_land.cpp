@@ -8,6 +8,7 @@ ToothLand::ToothLand(const GroundCutter& cutter, const GroundSection& section, s
     : x_(section.x), right_(cutter.direction() == CutDirection::kRightHand) {
   const std::vector<GroundTooth>& teeth = cutter.teeth();
   edge_ = *section.teeth[number].edge - teeth[number].angle;
+  flute_ = &cutter.flutes()[teeth[number].flute];
   const GroundCutter::NextTooth next = cutter.next(number);
   pitch_ = next.pitch;
   next_flute_ = &cutter.flutes()[teeth[next.tooth].flute];

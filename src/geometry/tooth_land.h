@@ -18,6 +18,9 @@ class ToothLand {
   };
   std::optional<Surface> surface(const Relief& relief, double r) const;
 
+  /// The tooth's own rake face, on a circle that it reaches.
+  double rakeFace(double r) const { return wallOf(*flute_, r, right_).value_or(0); }
+
   /// The next flute's wall at the heel, and at the next edge, on a circle that it reaches.
   double heelWall(double r) const { return wallOf(*next_flute_, r, !right_).value_or(0) + pitch_; }
   double nextRakeFace(double r) const { return wallOf(*next_flute_, r, right_).value_or(0) + pitch_; }
@@ -32,6 +35,7 @@ class ToothLand {
   double x_;
   bool right_;
   double edge_, pitch_;
+  const Flute* flute_;
   const Flute* next_flute_;
 };
 

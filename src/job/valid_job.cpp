@@ -24,23 +24,6 @@ std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& de
   return all;
 }
 
-ReliefWheel reliefWheelOf(const GrindProcess& p) {
-  return {p.wheel_diameter / 2, p.wheel_wear, p.wheel_width, p.setup_swivel, p.setup_height};
-}
-
-/// Where a relief begins behind the edge of one of the teeth: of a secondary one, at the end of the primary's land.
-ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& cutter) {
-  const CutterGeometry& c = job.cutter;
-  if (job.process.kind == OperationKind::kPrimaryRelief) {
-    return {c.clearance, 1, job.process.behind / cutter.radius(0)};
-  }
-  const GrindJob primary = job.ofOperation(1);
-  const ReliefPath path(cutter, reliefStartOf(primary, cutter), reliefWheelOf(primary.process));
-  const ReliefPath::Place end = path.surfaceAt(0, c.land);
-  if (!(end.radius > 0)) throw std::invalid_argument("the primary relief is not as wide as cutter.land_mm");
-  return {c.second_clearance, end.radius / cutter.radius(0), end.behind};
-}
-
 /// Where the start of a relief goes in a stroke: X of the cutter [m].
 Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
@@ -88,6 +71,23 @@ std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeome
 }
 
 }  // namespace
+
+ReliefWheel reliefWheelOf(const GrindProcess& p) {
+  return {p.wheel_diameter / 2, p.wheel_wear,   p.wheel_width,
+          p.setup_swivel,       p.setup_height, {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper}};
+}
+
+ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth) {
+  const CutterGeometry& c = job.cutter;
+  if (job.process.kind == OperationKind::kPrimaryRelief) {
+    return {c.clearance, 1, job.process.behind / tooth.radius(0)};
+  }
+  const GrindJob primary = job.ofOperation(1);
+  const ReliefPath path(tooth, reliefStartOf(primary, tooth), reliefWheelOf(primary.process));
+  const ReliefPath::Place end = path.surfaceAt(0, c.land);
+  if (!(end.radius > 0)) throw std::invalid_argument("the primary relief is not as wide as cutter.land_mm");
+  return {c.second_clearance, end.radius / tooth.radius(0), end.behind};
+}
 
 InvalidJob::InvalidJob(std::vector<Reason> reasons)
     : std::invalid_argument(text(reasons)), reasons_(std::move(reasons)) {}

@@ -142,8 +142,13 @@ RC_GTEST_PROP(ReliefPath, TheSurfaceIsWhatTheWheelLeaves, ()) {
   const ReliefPath path(c.cutter, c.start, c.wheel);
   const BruteForce left{c.cutter, path, c.wheel};
   const double rim_end = c.wheel.width / 2 - path.contact();
+  const auto start_off = [&](double x) {
+    return left.radius(x, c.start.behind) - c.start.radius_part * c.cutter.radius(x);
+  };
+  // Far from the spiral angle, a large wheel takes the start of the relief with another place of its rim.
+  RC_PRE(start_off(0) > -1e-9 && start_off(c.cutter.geometry().flute_length) > -1e-9);
   for (const double x : {0.0, c.cutter.geometry().flute_length}) {
-    RC_ASSERT(std::abs(left.radius(x, c.start.behind) - c.start.radius_part * c.cutter.radius(x)) < 1e-9);
+    RC_ASSERT(start_off(x) < 1e-9);
     for (const double part : {0.0, 0.3, 0.8}) {
       const ReliefPath::Place at = path.surface(x, part * rim_end);
       if (!(at.behind - c.start.behind < 0.7)) break;
@@ -152,6 +157,40 @@ RC_GTEST_PROP(ReliefPath, TheSurfaceIsWhatTheWheelLeaves, ()) {
       const double measured = left.clearance(x, at.behind + 1e-9, at.behind + aside);
       RC_ASSERT(std::abs(measured - at.clearance) < 0.002 * kDegree);
     }
+  }
+}
+
+// Swivelled against the helix, a large wheel leaves the relief on the rim's other half, and grinds each section far
+// from where the edge is in it: the surface still is what the wheel leaves behind the edge.
+TEST(ReliefPath, SwivelledAgainstTheHelixItIsStillBehindTheEdge) {
+  const ConicalCutter cutter(cutterOf(4.92, -1.9, 6.1));
+  const ReliefStart start{12.7 * kDegree};
+  for (const double swivel : {-31.3435, -20.0, -10.0, 20.0}) {
+    SCOPED_TRACE(swivel);
+    const ReliefWheel wheel = wheelOf(cutter, start, 75, 3.9, swivel, 0);
+    const ReliefPath path(cutter, start, wheel);
+    const BruteForce left{cutter, path, wheel};
+    for (const double x : {0.0, 8.4 * kMillimetre}) {
+      const ReliefPath::Place at = path.surface(x, 0.05 * kMillimetre);
+      ASSERT_GT(at.behind, 0.1 * kDegree);
+      EXPECT_NEAR(left.radius(x, at.behind), at.radius, 2e-9);
+    }
+  }
+}
+
+/// The edge lies on the cylinder of the rim, not on a corner, whichever hand.
+TEST(ReliefPath, EndsWhereTheWheelsCornersBegin) {
+  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+    const double hand = cut == CutDirection::kLeftHand ? -1 : 1;
+    const ConicalCutter cutter(cutterOf(10, 5, hand * 30, cut));
+    const ReliefStart start{10 * kDegree};
+    ReliefWheel wheel = wheelOf(cutter, start, 100, 6, hand * 30, -2.5);
+    wheel.corner_radius = {0.4 * kMillimetre, 0.45 * kMillimetre};
+    // From the edge on, the rim ends at the upper face's corner on a right-hand cutter, at the lower one's on another.
+    const double corner = hand > 0 ? 0.45 : 0.4;
+    EXPECT_NEAR(ReliefPath(cutter, start, wheel).reach(), (3 - corner + 2.5) * kMillimetre, 1e-9);
+    wheel.corner_radius = {0.51 * kMillimetre, 0.51 * kMillimetre};
+    EXPECT_THROW(ReliefPath(cutter, start, wheel), std::invalid_argument);
   }
 }
 

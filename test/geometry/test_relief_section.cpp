@@ -332,6 +332,56 @@ TEST(ReliefSection, OnTheFloorOfTheNextFluteTakesTheCoreAndLeavesTheHeel) {
   }
 }
 
+/// The angle behind an edge from which on one stroke leaves less than another.
+double crossingOf(const Stroke& first, const Stroke& second, double x, double edge, double low, double high) {
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    (first.left(x, edge + middle) < second.left(x, edge + middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+// The primary ends where the secondary begins, with its clearance. A secondary with less clearance than the primary
+// goes below that in front of its land's end, and takes some of the edge: rake and clearance are those of what is left.
+TEST(ReliefSection, OfTwoReliefsIsWhatBothLeave) {
+  for (const double second : {20.0, 5.0}) {
+    SCOPED_TRACE(second);
+    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "secondary");
+    if (second < 10) {
+      job.cutter.second_clearance = second * kDegree;
+      job.process.setup_height = job.operations[2].process.setup_height = -4.30473 * kMillimetre;
+    }
+    const ValidJob secondary = withLaws(ValidJob(job)), primary = withLaws(ValidJob(job.ofOperation(1)));
+    const Stroke front = strokeOf(primary, 0), back = strokeOf(secondary, 0);
+    const double x = 0.5 * job.cutter.flute_length, radius = job.cutter.end_diameter / 2;
+    const ToothSection tooth = groundCutterOf(secondary).section(x).teeth[0];
+    const ReliefSection relief = tooth.relief.value();
+    const double edge = *tooth.edge;
+    // The rake face is straight over so little, and the tooth's tip where the reliefs meet it.
+    const double tan_rake = std::tan(groundCutterOf(secondary.flutes()).section(x).teeth[0].rake.value());
+    double taken = 0;
+    for (int i = 0; i < 20; ++i) {
+      const double at = edge + taken * tan_rake / radius;
+      taken = std::max(0.0, radius - std::min(front.left(x, at), back.left(x, at)));
+    }
+    EXPECT_EQ(taken > 3e-6, second < 10);
+    EXPECT_NEAR(radius - relief.edge_radius, taken, 0.05e-6);
+    const double behind = taken * tan_rake / radius, tip = radius - taken;
+    const Stroke& at_edge = second < 10 ? back : front;
+    EXPECT_NEAR(*relief.clearance, clearanceAt(at_edge, x, tip, edge, 1, behind), 0.03 * kDegree);
+
+    if (second < 10) {
+      EXPECT_LT(*relief.land, 1e-6);
+      EXPECT_NEAR(*relief.second_clearance, *relief.clearance, 0.01 * kDegree);
+      continue;
+    }
+    const double end = crossingOf(front, back, x, edge, behind, 10 * kDegree), r = front.left(x, edge + end);
+    EXPECT_NEAR(*relief.land, std::hypot(r * std::cos(end) - tip, r * std::sin(end)), 1e-6);
+    EXPECT_NEAR(*relief.land, job.cutter.land, 1e-6);
+    EXPECT_NEAR(*relief.second_clearance, second * kDegree, 0.02 * kDegree);
+  }
+}
+
 /// A relief that reaches the next edge is seen, and one that ends before the heel.
 TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
   const Tool wide("jobs/taper_d6_t6.yaml", 10, 25, 6, -2.5), narrow("jobs/left_hand_d8_t3.yaml", 12, 30, 3, 0);

@@ -390,7 +390,7 @@ TEST(JobFile, RefusesALaughBeforeItIsBuilt) {
 }
 
 TEST(JobFile, RefusesTheDeepest) {
-  for (const std::size_t depth : {6U, 400U, 30000U}) {
+  for (const std::size_t depth : {7U, 400U, 30000U}) {
     const std::string error = errorOf("a: " + std::string(depth, '[') + std::string(depth, ']') + "\n");
     EXPECT_EQ(error.rfind("job.yaml:1: ", 0), 0u) << depth;
     EXPECT_EQ(linesOf(error), 1) << depth;

@@ -181,6 +181,13 @@ const Row kRows[]{
     {Kind::kNextEdge, Unit::kRadian, kPi / 60, 0, ofThirdTooth(),
      "the relief's wheel reaches 3 deg into the tooth behind tooth 3 at X = 12.3 mm; change the height of the relief's "
      "set-up, or take a narrower wheel"},
+    {Kind::kSecondClearance, Unit::kRadian, kPi / 10, kPi / 9, ofThirdTooth(kPi / 360),
+     "cutter.second_clearance_deg = 20 deg: tooth 3 is ground with 18 deg at X = 12.3 mm; allowed: within 0.5 deg of "
+     "it; "
+     "change the height or the swivel of the relief's set-up, or take a wheel with smaller corner radii"},
+    {Kind::kPrimaryLand, Unit::kMetre, 0.3e-3, 0.4e-3, ofThirdTooth(0.02e-3),
+     "cutter.land_mm = 0.4 mm there: the primary relief of tooth 3 is left 0.3 mm wide at X = 12.3 mm; allowed: within "
+     "0.02 mm of it; change the set-up of the secondary relief"},
     {Kind::kHeel, Unit::kMetre, 0, 0, ofThirdTooth(),
      "the relief of tooth 3 ends on the land at X = 12.3 mm; change the height of the relief's set-up, or take a wider "
      "wheel"},

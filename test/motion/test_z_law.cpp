@@ -8,6 +8,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -63,6 +64,15 @@ RC_GTEST_PROP(ZCorrectionProperty, ItsDerivativesKeepWithinTheirBounds, ()) {
   }
   // Not so wide that they would slow every stroke.
   if (c.pieces > 1) RC_ASSERT(second > bounds.second / 50);
+}
+
+// Limits are divided by them: of a correction of nothing they allow any feed.
+TEST(ZLaw, ACorrectionOfNothingLimitsNothing) {
+  ZCorrection c;
+  c.piece = 0.01, c.pieces = 4;
+  const ZCorrection::Bounds bounds = c.bounds();
+  EXPECT_EQ(1 / bounds.second, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(1 / bounds.third, std::numeric_limits<double>::infinity());
 }
 
 TEST(ZLaw, WithoutACorrectionThePublishedLawKeepsItsBits) {

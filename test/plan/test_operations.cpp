@@ -57,6 +57,17 @@ TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
   EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
 }
 
+TEST(Operations, MayHaveAWheelOfPoints) {
+  std::string text = readTextFile("jobs/end_mill_d10_t4.yaml");
+  const std::string straight = "      width_mm: 3\n      profile: straight\n";
+  ASSERT_NE(text.find(straight), std::string::npos);
+  text.replace(text.find(straight), straight.size(),
+               "      profile: points\n      points_mm: [[-1.5, 50], [1.5, 49]]\n");
+  const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), {}, "flute");
+  ASSERT_EQ(job.wheel_points.size(), 2u);
+  EXPECT_DOUBLE_EQ(job.wheel_points[1].radius, 49 * kMillimetre);
+}
+
 TEST(Operations, OnlyThoseAheadMustBeSolvedForOneToBe) {
   std::string text = readTextFile(kReamer);
   const std::string setup = "    setup: {swivel_deg: 13.104, height_mm: -3.658}\n";
@@ -170,6 +181,20 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
             std::set<ReasonKind>{ReasonKind::kHeel});
   // Of the primary, 0.15 mm of the rim are behind the edge, where the secondary is to begin at 0.3 mm.
   EXPECT_EQ(kindsOf(checkOf(withHeight(reamer("primary"), -4.19e-3))), std::set<ReasonKind>{ReasonKind::kHeel});
+  // A secondary with less clearance than the primary in front of it goes below that before the land's end.
+  GrindJob flat = reamer("secondary");
+  flat.cutter.second_clearance = 6 * kDegree;
+  const std::set<ReasonKind> spoils = kindsOf(checkOf(withHeight(flat, -3.4e-3)));
+  for (const ReasonKind kind : {ReasonKind::kClearance, ReasonKind::kPrimaryLand, ReasonKind::kUndercut}) {
+    EXPECT_EQ(spoils.count(kind), 1u) << toString(kind);
+  }
+  // A corner is none of the rim: neither where the relief ends, nor where it begins.
+  GrindJob round = reamer("secondary");
+  GrindProcess& own = round.operations[2].process;
+  round.process.wheel_corner_radius_upper = own.wheel_corner_radius_upper = 0.5e-3;
+  EXPECT_EQ(kindsOf(checkOf(round)), std::set<ReasonKind>{ReasonKind::kHeel});
+  round.process.wheel_corner_radius_lower = own.wheel_corner_radius_lower = 5e-3;
+  EXPECT_THROW(checkOf(round), InvalidJob);
   GrindJob wrong = reamer("primary");
   wrong.cutter.spiral_tolerance = 1;
   wrong.operations[0].process.setup_lead += 3e-3;  // the flutes' edge is another helix than the relief follows

@@ -2,6 +2,8 @@
 
 #include "flute_grinder/curve/conical_cutter.h"
 
+#include <array>
+
 namespace grinder {
 
 /// The clearance of a relief, and where it begins: at the edge, or behind it on what another relief has left.
@@ -18,6 +20,8 @@ struct ReliefWheel {
   double width = 0;           ///< [m]
   double swivel = 0;          ///< as for a flute [rad]
   double height = 0;          ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+  /// At the lower and the upper face; the rim is what lies between them [m].
+  std::array<double, 2> corner_radius{};
 };
 
 /// The path of a wheel whose rim grinds a relief behind an edge with a constant spiral angle. The relief begins at the
@@ -74,7 +78,11 @@ class ReliefPath {
   double beyondEnd() const noexcept { return beyond_end_; }
   double beyondShank() const noexcept { return beyond_shank_; }
 
-  /// The surface in a section. @param x of the section [m]. @param along the rim, from where the relief begins [m].
+  /// How far along the rim the relief can reach [m].
+  double reach() const noexcept { return side_ > 0 ? rim_to_ - contact_ : contact_ - rim_from_; }
+
+  /// The surface in a section. @param x of the section [m]. @param along the rim, from where the relief begins toward
+  /// the heel [m]. @return NaN where the rim forms none.
   Place surface(double x, double along) const noexcept;
 
   /// Where the surface is so far from its start, in a straight line across the section: a land's width.
@@ -85,14 +93,18 @@ class ReliefPath {
   struct Point {
     double x, y, z, normal_y, normal_z;
   };
-  Point contactPoint(double s, double along) const noexcept;
-  /// Which place of the edge the relief's start is at as a part of the rim forms a section.
-  double formedAt(double x, double along) const noexcept;
+  /// @param w place on the rim, along the wheel's axis from where the relief begins [m].
+  Point contactPoint(double s, double w) const noexcept;
+  /// Which place of the edge the relief's start is at as a place of the rim forms a section; NaN if none is.
+  double formedAt(double x, double w) const noexcept;
+  Place surfaceOf(double x, double w) const noexcept;
   double touchDepth(double s) const noexcept;
 
   ReliefStart start_;
   double radius_, tan_cone_, tan_spiral_;  ///< of the cutter at the small end, as a right-hand one
   double wheel_radius_, half_width_, sin_, cos_;
+  double rim_from_, rim_to_;  ///< from the middle of the width along the wheel's axis
+  double side_ = 1;           ///< -1 if the relief lies on the rim toward its lower face
   double phi_ = 0;
   double normal_x_ = 0, normal_y_ = 0, normal_z_ = 0;
   double contact_ = 0;

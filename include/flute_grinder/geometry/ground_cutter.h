@@ -10,9 +10,10 @@ namespace grinder {
 /// What reliefs leave of a tooth in a section.
 struct ReliefSection {
   double edge_radius = 0;           ///< what is left at the edge: the blank's, unless a relief undercuts it [m]
-  std::optional<double> clearance;  ///< of the first relief where it begins, radial [rad]
+  std::optional<double> clearance;  ///< of the land where it begins, at the edge as it is left, radial [rad]
   std::optional<double> land;       ///< width of the first relief, from its start up to the second or to the heel [m]
   std::optional<double> land_end_clearance;  ///< of the first relief there [rad]
+  std::optional<double> second_clearance;    ///< of the second relief where it begins [rad]
   /// From the edge to where the land meets the next flute; nothing if a relief ends before [m].
   std::optional<double> heel;
   double core_radius = 0;  ///< least that the reliefs leave, the blank's if that is less [m]
@@ -22,9 +23,9 @@ struct ReliefSection {
 /// What is measured of a tooth in a section. What does not exist there, as the land of a tooth whose land is ground
 /// away, is left out.
 struct ToothSection {
-  std::optional<double> edge;         ///< angle of the cutting edge, counted as A is [rad]
+  std::optional<double> edge;         ///< angle of the cutting edge on the blank's circle, counted as A is [rad]
   double edge_wheel_x = 0;            ///< X of the wheel's centre as it forms that edge [m]
-  std::optional<double> rake;         ///< radial, at the edge [rad]
+  std::optional<double> rake;         ///< radial, at the edge as reliefs leave it [rad]
   std::optional<double> normal_rake;  ///< normal to the edge [rad]
   /// Radial, of the chord from the edge to the rake face at CutterGeometry::chordal_rake_depth: what a measuring
   /// machine finds, where the rake is the tangent at the edge, and may be that of a narrow facet [rad].
@@ -129,7 +130,8 @@ class GroundCutter {
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const {
     return outermostWall(flute, x, r, direction() == CutDirection::kRightHand);
   }
-  std::optional<double> chordalRake(const Flute& flute, double x, double depth, double edge) const;
+  /// The rakes of a tooth whose edge is on the circle of radius `r`.
+  void measureRake(const Flute& flute, double x, double r, ToothSection& section) const;
   double coreRadius(const Flute& flute, double x) const { return leastRadius(flute, x, cutter_.radius(x)); }
   double coreRadius(double x) const;
   double areaRemoved(double x, double core_radius) const;

@@ -122,7 +122,7 @@ class FlatFile {
   void throwErrors() const;
 
  private:
-  static constexpr int kDeepest = 5;
+  static constexpr int kDeepest = 6;              ///< operations[0].wheel.points_mm[0][0]
   static constexpr int kMaxReported = 20;         ///< errors
   static constexpr std::size_t kMaxError = 2000;  ///< characters
 

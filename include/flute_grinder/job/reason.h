@@ -62,6 +62,8 @@ enum class ReasonKind : std::uint8_t {
   kNextEdge,     ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
   kHeel,         ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
   kSlow,         ///< the control loop's cycles take `value` on average, allowed `limit`
+  kSecondClearance,  ///< as kClearance, of the secondary relief where it begins
+  kPrimaryLand,      ///< the primary relief is `value` wide, the asked one `limit`, within `low`; at `x` of `tooth`
 };
 
 /// The name is that of the message's constant, in small letters.
@@ -123,6 +125,12 @@ inline constexpr ReasonRow kReasonKinds[]{
      "the relief of tooth {tooth} ends on the land at X = {x}; change the height of the relief's set-up, or take a "
      "wider wheel"},
     {{ReasonKind::kSlow, "slow"}, "the control loop takes {value} for a cycle on average, allowed {limit}"},
+    {{ReasonKind::kSecondClearance, "second_clearance"},
+     "cutter.second_clearance_deg = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of "
+     "it; change the height or the swivel of the relief's set-up, or take a wheel with smaller corner radii"},
+    {{ReasonKind::kPrimaryLand, "primary_land"},
+     "cutter.land_mm = {limit} there: the primary relief of tooth {tooth} is left {value} wide at X = {x}; allowed: "
+     "within {low} of it; change the set-up of the secondary relief"},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();

@@ -20,6 +20,13 @@ class InvalidJob : public std::invalid_argument {
   std::vector<Reason> reasons_;
 };
 
+/// The wheel of a relief, and how the machine is set for it.
+ReliefWheel reliefWheelOf(const GrindProcess& process);
+
+/// Where a job's relief begins behind the edge of a tooth: of a secondary one, at the end of the primary's land.
+/// @param tooth its cutter. @throw std::invalid_argument if the primary is not as wide as the land.
+ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth);
+
 /// Y of a pass over X: that of the cone, the taper's, less the depth.
 struct DepthLaw {
   double at_end = 0;  ///< below the cone's at X = 0 [m]

@@ -73,6 +73,7 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
       offsets_(offsets),
       tracker_(journal),
       thread_(kIdlePollPeriod, [this] { poll(); }) {
+  offsets_.noteFinished(tracker_.progress());
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
   job_ = nh.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
@@ -172,8 +173,10 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   if (!unknown.empty() || goal.dry_run) return unknown;
   if (!goal.discard) {
     std::string changed = tracker_.offsetRefusal(digest, offsets);
-    // A job goes on with what it began with, whatever was said then.
-    if (!changed.empty() || tracker_.continues(digest, offsets)) return changed;
+    // A job goes on with what it began with, whatever was said then: a relief only beside edges that are where they
+    // were.
+    const bool placed = goal.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
+    if (!changed.empty() || (placed && tracker_.continues(digest, offsets))) return changed;
   }
   if (goal.ignore_offset_check) return "";
   const std::string mismatch = text(mismatches(offsets, goal));
@@ -253,7 +256,7 @@ void GoalServer::startJob() {
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->plan;
   goal_->stream = std::make_unique<SetpointStream>(plan.program);
-  tracker_.begin(*plan.program, plan.digest, asked.job_name, goal_->number, goal_->offsets);
+  tracker_.begin(*plan.program, plan.digest, basisOf(asked, OffsetMethod::kUnknown), goal_->number, goal_->offsets);
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
@@ -366,7 +369,7 @@ void GoalServer::endWhenPublished() {
     if (goal_->journal_error.empty()) {
       const std::string how = resultOfJob(status).error_string;
       tracker_.end(status, how.empty() ? outcomeOf(status.end) : how);
-      if (tracker_.finished()) offsets_.noteGround(basisOf(*goal_->handle.getGoal(), OffsetMethod::kUnknown));
+      offsets_.noteFinished(tracker_.progress());
     } else {
       tracker_.revert();
     }

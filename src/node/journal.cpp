@@ -39,6 +39,8 @@ void visitFields(AnyProgress& progress, const Visit& visit) {
   visit("offset_a_rad", progress.offset[kA]);
   visit("mounting", progress.mounting);
   visit("clamping", progress.clamping);
+  visit("tool_digest", progress.tool_digest);
+  visit("tool_operation", progress.tool_operation);
 }
 
 void requireFinite(const std::string& key, double value) {
@@ -60,6 +62,8 @@ void requireSound(const Progress& progress) {
   requireAllowed(next.tooth >= 0 && next.tooth <= last_tooth, "tooth", next.tooth,
                  "0 to " + std::to_string(last_tooth));
   requireAllowed(next.pass >= 0 && next.pass < kMaxPasses, "pass", next.pass, "0 to " + std::to_string(kMaxPasses - 1));
+  requireAllowed(progress.tool_operation >= 0 && progress.tool_operation < countOf<OperationKind>(), "tool_operation",
+                 progress.tool_operation, "0 to " + std::to_string(countOf<OperationKind>() - 1));
   const double feed_override = progress.feed_override;
   requireAllowed(feed_override >= 0 && feed_override <= kMaxFeedOverride, "feed_override", feed_override,
                  format("0 to %g", kMaxFeedOverride));

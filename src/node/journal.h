@@ -36,6 +36,8 @@ struct Progress {
   Axes offset = Axes::Zero();  ///< with which the job began, see RunStart [m], A [rad]
   std::uint32_t mounting = 0;  ///< of the wheel with which the job began, see MountedWheel
   std::uint32_t clamping = 0;  ///< of the tool in the same way, see ClampedTool
+  std::string tool_digest;     ///< as OffsetBasis::tool_digest
+  int tool_operation = 0;      ///< as OffsetBasis::operation
 };
 
 /// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.

@@ -14,6 +14,9 @@ namespace grinder {
 
 namespace {
 
+/// Between attempts to save what could not be written [s].
+constexpr double kSavePeriod = 1;
+
 bool isDigest(const std::string& text) {
   constexpr std::size_t digits = 64;
   return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
@@ -86,7 +89,7 @@ void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
 
 OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate,
                            OffsetStore& store, const OffsetLimits& limits)
-    : loop_(loop), gate_(gate), store_(store), limits_(limits) {
+    : loop_(loop), gate_(gate), store_(store), limits_(limits), thread_(kSavePeriod, [this] { saveNotes(); }) {
   ros::NodeHandle nh(private_nh);
   nh.setCallbackQueue(thread_.queue());
   offsets_ = nh.advertise<flute_grinder::WorkOffsets>("offsets", 10, true);
@@ -195,13 +198,23 @@ std::string OffsetServer::changed(const OffsetStore::Change& change, const std::
 void OffsetServer::note(const OffsetStore::Change& change) {
   store_.changeAtOnce(change);
   thread_.post([this] {
-    try {
-      store_.change([](WorkOffsets&) {});
-    } catch (const AtomicFileError& error) {
-      ROS_ERROR_STREAM(error.what() << "; what happened to the tool in the collet is lost with the node's end");
-    }
+    unsaved_ = true;
+    saveNotes();
     publish();
   });
+}
+
+void OffsetServer::saveNotes() {
+  if (!unsaved_) return;
+  try {
+    store_.change([](WorkOffsets&) {});
+    unsaved_ = said_ = false;
+  } catch (const AtomicFileError& error) {
+    if (said_) return;
+    said_ = true;
+    ROS_ERROR_STREAM(error.what() << "; what happened to the tool in the collet is lost if the node ends before it can "
+                                     "be written");
+  }
 }
 
 void OffsetServer::noteHoming() {
@@ -213,13 +226,20 @@ void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
   if (job.operation > 0) return;
   note([=](WorkOffsets& offsets) {
     const bool goes_on = !whole && offsets.tool.digest == job.tool_digest;
+    // Half of the flutes stand where A was before.
+    if (!whole && offsets.tool.unknown == TeethUnknown::kHomed) return;
     offsets.tool = {job.tool_digest, job.job_name, goes_on ? offsets.tool.ground : 0, {}, offsets.tool.clamping};
   });
 }
 
-void OffsetServer::noteGround(const OffsetBasis& job) {
+void OffsetServer::noteFinished(const Progress& last) {
+  if (!last.finished || last.tool_digest.empty()) return;
+  const auto is_it = [=](const ClampedTool& tool) {
+    return tool.digest == last.tool_digest && tool.clamping == last.clamping && !tool.isGround(last.tool_operation);
+  };
+  if (!is_it(store_.offsets().tool)) return;
   note([=](WorkOffsets& offsets) {
-    if (offsets.tool.digest == job.tool_digest) offsets.tool.ground |= 1U << job.operation;
+    if (is_it(offsets.tool)) offsets.tool.ground |= 1U << last.tool_operation;
   });
 }
 

@@ -8,6 +8,7 @@
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/machine/offset_limits.h"
 #include "node/job_gate.h"
+#include "node/journal.h"
 #include "node/offset_store.h"
 #include "node/served_queue.h"
 
@@ -39,8 +40,8 @@ class OffsetServer {
   void noteHoming();
   /// A job has begun. @param whole at its first pass.
   void noteGrinding(const OffsetBasis& job, bool whole);
-  /// A job has ground its last pass.
-  void noteGround(const OffsetBasis& job);
+  /// What the journal has as finished; again, if the process ended before that was on the disk.
+  void noteFinished(const Progress& last);
 
   /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
   /// which it waits. @param value [m], A [rad]. @param before the offsets when the cycle began; it is not set if it was
@@ -62,6 +63,7 @@ class OffsetServer {
   void withoutJob(const std::function<std::string()>& act, Response& response);
   std::string changed(const OffsetStore::Change& change, const std::string& done);
   void note(const OffsetStore::Change& change);
+  void saveNotes();
   template <typename Request, typename Response>
   void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
   std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
@@ -72,6 +74,8 @@ class OffsetServer {
   JobGate& gate_;
   OffsetStore& store_;
   const OffsetLimits limits_;
+  bool unsaved_ = false;  ///< notes; of the thread alone
+  bool said_ = false;     ///< that they cannot be saved
   ServedQueue thread_;
   ros::Publisher offsets_;
   std::vector<ros::ServiceServer> services_;

@@ -76,7 +76,7 @@ std::string ProgressTracker::offsetChanges(const WorkOffsets& offsets) const {
   return changes;
 }
 
-void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const std::string& name,
+void ProgressTracker::begin(const GrindProgram& program, const std::string& digest, const OffsetBasis& job,
                             std::uint64_t number, const WorkOffsets& offsets) {
   before_ = progress_;
   number_ = number;
@@ -87,7 +87,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_ = Progress();
   progress_.feed_override = before_.feed_override;
   progress_.job_digest = digest;
-  progress_.job_name = name;
+  progress_.job_name = job.job_name;
   progress_.operation = program.job()->operationText();
   progress_.cutter = program.job()->cutter;
   progress_.tooth_angles = program.job()->tooth_angles;
@@ -99,6 +99,8 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.offset = program.run().offset;
   progress_.mounting = offsets.wheel.mounting;
   progress_.clamping = offsets.tool.clamping;
+  progress_.tool_digest = job.tool_digest;
+  progress_.tool_operation = job.operation;
   write();
 }
 

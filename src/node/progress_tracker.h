@@ -34,9 +34,10 @@ class ProgressTracker {
   bool continues(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Enters a job before it starts.
+  /// @param job its name, tool and operation.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
   /// @param offsets with the wheel and the tool with which it begins.
-  void begin(const GrindProgram& program, const std::string& digest, const std::string& name, std::uint64_t number,
+  void begin(const GrindProgram& program, const std::string& digest, const OffsetBasis& job, std::uint64_t number,
              const WorkOffsets& offsets);
   /// The job was not started: restores the previous entry.
   void revert();
@@ -45,8 +46,8 @@ class ProgressTracker {
   /// Records the job's progress or, without a job, the wheel's position. To be called often.
   void update(const LoopStatus& status);
 
-  /// Whether every pass of the last job is ground.
-  bool finished() const { return progress_.finished; }
+  /// The last entry.
+  const Progress& progress() const { return progress_; }
   /// Whether every entry has been written to disk, or has failed to be.
   bool upToDate() const { return writer_.status().number >= request_; }
   /// Why the last entry is not on disk; empty if it is.

@@ -65,7 +65,7 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
     turnTo(rig_, y);
     return rig_.run(cycles).wheel_in_work;
   };
-  EXPECT_TRUE(seeAt(kClearanceHeight - 1e-9, true, 200));
+  EXPECT_TRUE(seeAt(kClearanceHeight - 11e-6, true, 200));
   EXPECT_TRUE(seeAt(0.05, false, 200)) << "the position means nothing";
   EXPECT_TRUE(seeAt(kClearanceHeight - 1e-4, false, 1));
   for (int i = 0; i < 20; ++i) {
@@ -74,6 +74,18 @@ TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   }
   EXPECT_FALSE(seeAt(0.05, true, 200));
   EXPECT_FALSE(seeAt(0, true, 200)) << "and nothing brings it back but a job";
+}
+
+// An axis that has been lifted rests some counts of its encoder below, and is clear with power as without.
+TEST(WheelWatch, IsClearWhereALiftHasLeftIt) {
+  for (const bool is_clear : {true, false}) {
+    Wheel wheel;
+    wheel.clear_y = kClearanceHeight;
+    WheelWatch watch(wheel);
+    watch.followJob(kClearanceHeight);
+    watch.observePosition(kClearanceHeight - (is_clear ? 131e-9 : 11e-6), false, 1e-3);
+    EXPECT_EQ(watch.wheel().in_work, !is_clear);
+  }
 }
 
 /// How Y comes to be read a turn of its screw too high.

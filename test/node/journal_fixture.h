@@ -75,6 +75,10 @@ inline Progress someProgress() {
   p.wheel.lift = 0.005;
   p.wheel.y_doubted = true;
   p.offset << 0.11, -0.0225, 1.0 / 7, -3;
+  p.mounting = 5;
+  p.clamping = 3;
+  p.tool_digest = std::string(64, 'e');
+  p.tool_operation = 1;
   return p;
 }
 
@@ -98,6 +102,10 @@ inline void expectSame(const Progress& a, const Progress& b) {
   EXPECT_EQ(a.wheel.clear_y, b.wheel.clear_y);
   EXPECT_EQ(a.wheel.lift, b.wheel.lift);
   EXPECT_EQ(a.wheel.y_doubted, b.wheel.y_doubted);
+  EXPECT_EQ(a.mounting, b.mounting);
+  EXPECT_EQ(a.clamping, b.clamping);
+  EXPECT_EQ(a.tool_digest, b.tool_digest);
+  EXPECT_EQ(a.tool_operation, b.tool_operation);
   EXPECT_TRUE((a.offset == b.offset).all()) << a.offset.transpose() << " and " << b.offset.transpose();
 }
 

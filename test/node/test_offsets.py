@@ -2,6 +2,7 @@
 unknown; and that nothing changes them while a job depends on them. That a job is ground where they say is shown in test_frames.py
 and in test/control/test_work_offsets.cpp."""
 
+import hashlib
 import math
 import os
 import signal
@@ -336,6 +337,32 @@ class TestToolOfSeveralOperations(OffsetsTest):
         self.client.make_ready()
         self.grind(0, 'confirm-swivel', '13.104')
         self.check_refused('primary', unknown % 'the tool was clamped anew')
+
+    def test_what_a_kill_kept_from_the_file_is_in_the_journal(self):
+        self.grind_flutes()
+        self.assertEqual(self.node.end(signal.SIGKILL), -signal.SIGKILL)
+        body = open(self.file).read().split('checksum: ')[0].replace('tool_ground: 1', 'tool_ground: 0')
+        with open(self.file, 'w') as file:
+            file.write(body + 'checksum: %s\n' % hashlib.sha256(body.encode()).hexdigest())
+        self.client.wait_end_of_connections()
+        self.start()
+        self.assertRegex(self.said('status'), r'(?m)^tool            reamer\.yaml with flute$')
+        gc.poll(lambda: 'tool_ground: 1' in open(self.file).read(), 'the note')
+
+    def test_flutes_that_go_on_after_a_homing_are_no_place_for_a_relief(self):
+        self.mount('flute')
+        self.set_zeros('flute')
+        run = threading.Thread(target=gc.grind, args=('--node', self.node.name, 'run', self.job, '--operation', 'flute'))
+        run.start()
+        gc.poll(lambda: self.client.batches and self.client.batches[-1].setpoints[-1].tooth == 2, 'the third tooth')
+        self.grind(0, 'cancel')
+        run.join()
+        self.client.wait_state(GrinderState.READY)
+        self.grind(0, 'home')
+        self.grind(0, 'run', self.job, '--operation', 'flute', '--continue')
+        self.mount('primary')
+        self.set_zeros('primary')
+        self.check_refused('primary', 'A: where the teeth of this tool are is not known: the axes were homed after the flutes')
 
 
 class TestCommandLine(OffsetsTest):

@@ -42,8 +42,15 @@ class ProgressTrackerTest : public ::testing::Test {
     return writer_.status().on_disk;
   }
 
+  static OffsetBasis named(const std::string& job) {
+    OffsetBasis basis;
+    basis.job_name = job + ".yaml";
+    basis.tool_digest = "tool of " + job;
+    basis.operation = 1;
+    return basis;
+  }
   void begin(const GrindProgram& program, const std::string& digest) {
-    tracker_.begin(program, digest, digest + ".yaml", ++status_.jobs_started, now_);
+    tracker_.begin(program, digest, named(digest), ++status_.jobs_started, now_);
     status_.strokes_ended_at = 0;
     status_.place = {};
   }
@@ -85,6 +92,8 @@ TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
   EXPECT_FALSE(onDisk().finished);
   endStroke(two_, 1);
   EXPECT_TRUE(onDisk().finished);
+  EXPECT_EQ(onDisk().tool_digest, "tool of job");
+  EXPECT_EQ(onDisk().tool_operation, 1);
   EXPECT_DOUBLE_EQ(onDisk().x, two_.strokeTo());
   tracker_.end(status_, "canceled");
   EXPECT_FALSE(onDisk().wheel.in_work);
@@ -110,7 +119,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
   ASSERT_TRUE(onDisk().finished);
 
   const GrindProgram one = program(1);
-  tracker_.begin(one, "short", "short.yaml", status_.jobs_started + 1, now_);
+  tracker_.begin(one, "short", named("short"), status_.jobs_started + 1, now_);
   tracker_.update(status_);
   const Progress entered = onDisk();
   EXPECT_EQ(entered.job_digest, "short");
@@ -121,7 +130,7 @@ TEST_F(ProgressTrackerTest, WhatTheLoopSaysOfTheJobBeforeIsNotTheNextOnes) {
 TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
   grind(two_, "left", 1);
   const Progress before = onDisk();
-  tracker_.begin(two_, "refused", "refused.yaml", status_.jobs_started + 1, now_);
+  tracker_.begin(two_, "refused", named("refused"), status_.jobs_started + 1, now_);
   EXPECT_EQ(onDisk().job_digest, "refused");
   tracker_.revert();
   EXPECT_EQ(onDisk().job_digest, before.job_digest);

@@ -32,9 +32,10 @@ class WheelWatch {
   /// @param period of the control loop [s].
   void observePosition(const std::optional<double>& y, bool powered, double period) noexcept {
     left_by_job_ = left_by_job_ && !powered;
-    seen_clear_ = y && *y >= wheel_.clear_y ? seen_clear_ + period : 0;
+    const bool is_clear = y && *y >= wheel_.clear_y - kBelow;
+    seen_clear_ = is_clear ? seen_clear_ + period : 0;
     if (seen_clear_ >= kSeenClear) clear();
-    if (left_by_job_ && (wheel_.y_doubted || (y && *y < wheel_.clear_y))) wheel_.in_work = true;
+    if (left_by_job_ && (wheel_.y_doubted || (y && !is_clear))) wheel_.in_work = true;
   }
   /// To be called when Y was read where it cannot have been, and once it is homed.
   void doubtY(bool doubted) noexcept { wheel_.y_doubted = doubted; }
@@ -64,6 +65,8 @@ class WheelWatch {
   }
 
   static constexpr double kSeenClear = 0.1;  ///< [s]
+  /// By which an axis may rest below where it was lifted to. The least clearance of a job is ten times that [m].
+  static constexpr double kBelow = 10e-6;
 
   Wheel wheel_;
   double seen_clear_ = 0;     ///< for so long [s]

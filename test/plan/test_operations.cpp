@@ -62,7 +62,7 @@ TEST(Operations, MayHaveAWheelOfPoints) {
   const std::string straight = "      width_mm: 3\n      profile: straight\n";
   ASSERT_NE(text.find(straight), std::string::npos);
   text.replace(text.find(straight), straight.size(),
-               "      profile: points\n      points_mm: [[-1.5, 50], [1.5, 49]]\n");
+               "      width_mm: 3\n      profile: points\n      points_mm: [[-1.5, 50], [1.5, 49]]\n");
   const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), {}, "flute");
   ASSERT_EQ(job.wheel_points.size(), 2u);
   EXPECT_DOUBLE_EQ(job.wheel_points[1].radius, 49 * kMillimetre);

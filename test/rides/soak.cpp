@@ -93,7 +93,9 @@ class Soak {
     SetpointStream stream(plan_.program);
     ++jobs_;
     recorder_.announce(jobs_, std::make_shared<JobRecord>(plan_, JobNames{"soak.yaml", "", ""}, WorkOffsets{}, false));
-    tracker_.begin(*plan_.program, plan_.digest, "soak.yaml", jobs_, {});
+    OffsetBasis job;
+    job.job_name = "soak.yaml";
+    tracker_.begin(*plan_.program, plan_.digest, job, jobs_, {});
     require(loop_->startJob({&stream, wheelOf(stream.program())}), "the loop has not answered the start before");
     std::uint64_t setpoints = 0;
     while (loop_->status().jobs_ended < jobs_) {

@@ -123,6 +123,10 @@ void ControlLoop::watchClients() {
   const double unheard = std::min(periods, kMostPeriods) * config_.machine.period;
   dead_man_.wait(unheard);
   client_.wait(unheard);
+  hearClient();
+}
+
+void ControlLoop::hearClient() {
   const std::uint32_t keep_alives = keepAlives();
   if (keep_alives != keep_alives_seen_) client_.restart();
   keep_alives_seen_ = keep_alives;
@@ -153,6 +157,7 @@ void ControlLoop::stopJogOnContact() {
 
 /// As a stop does, so that the series ends too.
 void ControlLoop::stopJogWithoutClient() {
+  hearClient();  // again: a jog may have been requested since, and its client heard before that
   if (!for_client_ || !client_.expired()) return;
   for_client_ = false;
   next_status_.client_lost = true;

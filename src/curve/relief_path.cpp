@@ -121,7 +121,10 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
   const double end = side_ * half_width_ - contact_;
   beyond_end_ = std::fmax(0.0, -formedAt(0, end));
   beyond_shank_ = std::fmax(0.0, formedAt(length, end) - length);
-  depth_ = std::max(touchDepth(-beyond_end_), touchDepth(length + beyond_shank_));
+}
+
+double ReliefPath::depth() const noexcept {
+  return std::max(touchDepth(-beyond_end_), touchDepth(path_cutter_.geometry().flute_length + beyond_shank_));
 }
 
 double ReliefPath::heightFor(const ConicalCutter& cutter, const ReliefStart& start, const ReliefWheel& wheel,
@@ -131,6 +134,17 @@ double ReliefPath::heightFor(const ConicalCutter& cutter, const ReliefStart& sta
   const HeightLaw law = heightLaw(c, start, cutter.geometry().end_diameter / 2, cutter.tanCone(),
                                   wheel.nominal_radius - wheel.wear, swivel);
   return hand * (law.at_middle - contact * law.per_contact);
+}
+
+double ReliefPath::heightForReach(const ConicalCutter& cutter, const ReliefStart& start, ReliefWheel wheel,
+                                  double reach) {
+  wheel.height = heightFor(cutter, start, wheel, 0);
+  const auto [lower, upper] = wheel.corner_radius;
+  wheel.corner_radius = {};
+  const ReliefPath amid(cutter, start, wheel);
+  // The corners change sides in the mirror.
+  const double end = amid.half_width_ - (amid.side_ * handOf(cutter) > 0 ? upper : lower);
+  return heightFor(cutter, start, wheel, amid.side_ * (end - reach));
 }
 
 ReliefPath::Point ReliefPath::contactPoint(double s, double w) const noexcept {

@@ -230,29 +230,14 @@ void intoList(GrindJob& job) {
   if (!job.operations.empty()) job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
 }
 
-/// Where a relief begins, and how far it has to reach.
-ReliefRequest reliefRequestOf(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
-                              std::optional<SetupFigure> keep) {
-  const CutterGeometry& c = job.cutter;
-  const GrindProcess& p = job.process;
-  ReliefRequest r;
-  r.start = reliefStartOf(job, ConicalCutter(c));
-  if (p.kind == OperationKind::kPrimaryRelief && job.operations.size() > 2) r.land = c.land;
-  r.wheel = reliefWheelOf(p);
-  r.edge = edgesOf(flutes).front();
-  r.near = flutes->process.setup_swivel;
-  r.swivel = swivel;
-  if (keep) r.asked = p.setup_swivel;
-  return r;
-}
-
 std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const Range& swivel,
                                                      std::optional<SetupFigure> keep) {
   if (keep && *keep != SetupFigure::kSwivel) {
     return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
   }
   const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
-  const ReliefSetup found = findReliefSetup(groundCutterOf(flutes), reliefRequestOf(job, flutes, swivel, keep));
+  const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
+  const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
            found.refused;

@@ -1,7 +1,9 @@
 #include "geometry/relief_setup.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/on_all_cores.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/quantity.h"
 #include "geometry/relief_section.h"
 #include "geometry/tooth_land.h"
@@ -9,8 +11,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -18,201 +22,360 @@ namespace grinder {
 namespace {
 
 using units::kDegree;
-using units::kMillimetre;
 
 constexpr double kSameAngle = 1e-9;
-constexpr double kSwivelStep = 1 * kDegree;
-constexpr double kReachMargin = 0.2 * kMillimetre;  ///< of the rim beyond the relief's end, at least
-constexpr double kNextEdgeMargin = 1 * kDegree;     ///< of the wheel from the next edge
-constexpr double kLeastClearance = 0.5 * kDegree;   ///< at the land's end
-constexpr double kAlongStep = 0.25 * kMillimetre;   ///< along the rim, while the land's end is looked for
-constexpr double kWidest = 50 * kMillimetre;        ///< of a rim
+constexpr double kSwivelStep = 2 * kDegree;
+constexpr double kReachMargin = 0.02;  ///< of the end diameter: of the rim beyond the relief's end, enough for anybody
+constexpr double kNextEdgeMargin = 1 * kDegree;  ///< likewise, of the wheel from the next edge
+/// Part of the margin that is left in any case, above what a file rounds, and parts that are tried where there is no
+/// room for all of it.
+constexpr double kLeastMargin = 0.02, kLessMargins[] = {0.1, 0.25, 0.5};
+constexpr double kHopeless = -5;                   ///< slack from which on nothing else is measured
+constexpr int kCornerHalvings = 5;                 ///< of a corner, whose part may grind the land's end
+constexpr double kLeastClearance = 0.5 * kDegree;  ///< at the land's end
+constexpr double kAlongStep = 0.025;               ///< of the end diameter, along the rim, to the land's end
+constexpr double kWidest = 5;                      ///< of the end diameter, of a rim
+constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
-constexpr int kPlacesOfWall = 12;  ///< between which a flute's wall is straight enough
+constexpr int kPlacesOfWall = 12;     ///< between which a flute's wall is straight enough
+constexpr std::size_t kAtOnce = 8;    ///< of the swivels, tried
+constexpr std::size_t kRefined = 3;   ///< of the swivels that come nearest
+constexpr int kRefinements = 7;       ///< steps between them and the ones beside
+constexpr double kGolden = 0.618034;  ///< of what is left in each
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string figure(double si, Unit unit) { return text(Quantity{si, unit}); }
 
-/// The lands in some sections, of one tooth of those that are alike.
-class Lands {
- public:
-  struct Land {
-    GroundSection section;
-    std::size_t tooth;
-    std::vector<double> wall;  ///< of the next flute at the heel, from the core to the edge's circle
+/// The land behind a tooth in a section, of one of those that are alike.
+struct Land {
+  GroundSection section;
+  std::size_t tooth;
+  std::vector<double> wall;  ///< of the next flute at the heel, from the core to the edge's circle
 
-    double heelWall(double r) const {
-      const double part = (r - section.core_radius) / (section.radius - section.core_radius);
-      const double at = std::clamp(part, 0.0, 1.0) * kPlacesOfWall;
-      const auto i = std::min(static_cast<std::size_t>(at), wall.size() - 2);
-      return wall[i] + (at - static_cast<double>(i)) * (wall[i + 1] - wall[i]);
-    }
-  };
-
-  explicit Lands(const GroundCutter& cutter) : cutter_(cutter) {
-    const double length = cutter.cutter().geometry().flute_length;
-    for (int i = 0; i < kSectionsOfFlute; ++i) {
-      const GroundSection section = cutter.section(length * i / (kSectionsOfFlute - 1));
-      for (const std::size_t tooth : unlikeTeeth()) lands_.push_back(landOf(section, tooth));
-    }
+  double heelWall(double r) const {
+    const double part = (r - section.core_radius) / (section.radius - section.core_radius);
+    const double at = std::clamp(part, 0.0, 1.0) * kPlacesOfWall;
+    const auto i = std::min(static_cast<std::size_t>(at), wall.size() - 2);
+    return wall[i] + (at - static_cast<double>(i)) * (wall[i + 1] - wall[i]);
   }
-
-  template <typename Visit>
-  void visit(const Visit& visit) const {
-    for (const Land& land : lands_) visit(land);
-  }
-
-  const GroundCutter& cutter() const { return cutter_; }
-
- private:
-  std::vector<std::size_t> unlikeTeeth() const {
-    const auto& teeth = cutter_.teeth();
-    std::vector<std::tuple<std::size_t, std::size_t, double>> seen;
-    std::vector<std::size_t> unlike;
-    for (std::size_t i = 0; i < teeth.size(); ++i) {
-      for (const std::size_t next : {(i + 1) % teeth.size(), (i + teeth.size() - 1) % teeth.size()}) {
-        const double turn = std::remainder(teeth[next].angle - teeth[i].angle, units::kTurn);
-        const auto tooth = std::make_tuple(teeth[i].flute, teeth[next].flute, std::round(turn / kSameAngle));
-        if (std::find(seen.begin(), seen.end(), tooth) != seen.end()) continue;
-        seen.push_back(tooth);
-        if (unlike.empty() || unlike.back() != i) unlike.push_back(i);
-      }
-    }
-    return unlike;
-  }
-
-  Land landOf(const GroundSection& section, std::size_t tooth) const {
-    if (!section.teeth[tooth].edge) throw std::invalid_argument("no edge at X = " + figure(section.x, Unit::kMetre));
-    const ToothLand land(cutter_, section, tooth);
-    std::vector<double> wall;
-    for (int i = 0; i <= kPlacesOfWall; ++i) {
-      wall.push_back(land.heelWall(section.core_radius + (section.radius - section.core_radius) * i / kPlacesOfWall));
-    }
-    wall[0] = wall[1];  // the floor has no wall
-    return {section, tooth, std::move(wall)};
-  }
-
-  const GroundCutter& cutter_;
-  std::vector<Land> lands_;
 };
 
-/// How far along the rim a surface reaches up to where it ends, by the first place at which `over` is so.
-/// @return infinity if it is so nowhere, or if the clearance is lost before.
+std::vector<std::size_t> unlikeTeeth(const GroundCutter& cutter) {
+  const auto& teeth = cutter.teeth();
+  std::vector<std::tuple<std::size_t, std::size_t, double>> seen;
+  std::vector<std::size_t> unlike;
+  for (std::size_t i = 0; i < teeth.size(); ++i) {
+    for (const std::size_t next : {(i + 1) % teeth.size(), (i + teeth.size() - 1) % teeth.size()}) {
+      const double turn = std::remainder(teeth[next].angle - teeth[i].angle, units::kTurn);
+      const auto tooth = std::make_tuple(teeth[i].flute, teeth[next].flute, std::round(turn / kSameAngle));
+      if (std::find(seen.begin(), seen.end(), tooth) != seen.end()) continue;
+      seen.push_back(tooth);
+      if (unlike.empty() || unlike.back() != i) unlike.push_back(i);
+    }
+  }
+  return unlike;
+}
+
+Land landOf(const GroundCutter& cutter, const GroundSection& section, std::size_t tooth) {
+  if (!section.teeth[tooth].edge) throw std::invalid_argument("no edge at X = " + figure(section.x, Unit::kMetre));
+  const ToothLand land(cutter, section, tooth);
+  std::vector<double> wall;
+  for (int i = 0; i <= kPlacesOfWall; ++i) {
+    wall.push_back(land.heelWall(section.core_radius + (section.radius - section.core_radius) * i / kPlacesOfWall));
+  }
+  wall[0] = wall[1];  // the floor has no wall
+  return {section, tooth, std::move(wall)};
+}
+
+std::vector<Land> landsOf(const GroundCutter& cutter) {
+  const double length = cutter.cutter().geometry().flute_length;
+  std::vector<Land> lands;
+  for (int i = 0; i < kSectionsOfFlute; ++i) {
+    const GroundSection section = cutter.section(length * i / (kSectionsOfFlute - 1));
+    for (const std::size_t tooth : unlikeTeeth(cutter)) lands.push_back(landOf(cutter, section, tooth));
+  }
+  return lands;
+}
+
+/// How far along the rim the surface goes until `is_over`. @return nothing if the clearance is lost before.
 template <typename Over>
-double reachNeeded(const ReliefPath& path, double x, const Over& over) {
-  for (double along = kAlongStep; along < kWidest; along += kAlongStep) {
+std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, const Over& is_over) {
+  const double step = kAlongStep * diameter;
+  for (double along = step; along < kWidest * diameter; along += step) {
     const ReliefPath::Place at = path.surface(x, along);
-    if (!(at.clearance >= kLeastClearance)) break;
-    if (over(at)) return along;
+    if (!is_over(at)) {
+      if (!(at.clearance >= kLeastClearance)) return std::nullopt;
+      continue;
+    }
+    double low = along - step, high = along;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      (is_over(path.surface(x, middle)) ? high : low) = middle;
+    }
+    return path.surface(x, high).clearance >= kLeastClearance ? std::optional(high) : std::nullopt;
   }
-  return std::numeric_limits<double>::infinity();
+  return std::nullopt;
 }
 
-/// What a relief leaves of core and next teeth, and whether it is to be refused for that.
-void judge(const Lands& lands, const Reliefs& relief, ReliefSetup& setup) {
-  const CutterGeometry& c = lands.cutter().cutter().geometry();
-  setup.next_edge = std::numeric_limits<double>::infinity();
-  lands.visit([&](const Lands::Land& land) {
-    const ReliefSection measured = measureRelief(lands.cutter(), land.section, land.tooth, relief);
-    setup.next_edge = std::min(setup.next_edge, measured.next_edge);
-    const double core = 2 * measured.core_radius, least = askedCore(c, land.section.x) - c.core_tolerance;
-    if (core >= std::min(least, 2 * land.section.core_radius)) return;
-    setup.refused = "the wheel leaves a core of " + figure(core, Unit::kMetre) +
-                    " at X = " + figure(land.section.x, Unit::kMetre) + "; allowed: from " +
-                    figure(least, Unit::kMetre);
-  });
-  if (setup.next_edge >= kNextEdgeMargin) return;
-  setup.refused = setup.next_edge < 0
-                      ? "the wheel reaches " + figure(-setup.next_edge, Unit::kRadian) + " beyond the next edge"
-                      : "the wheel comes within " + figure(setup.next_edge, Unit::kRadian) + " of the next edge";
-}
-
-/// A swivel tried out.
-ReliefSetup tried(const Lands& lands, const ReliefRequest& request, double swivel) {
-  const ConicalCutter& cone = lands.cutter().cutter();
+/// A set-up that was tried.
+struct Tried {
   ReliefSetup setup;
-  setup.swivel = swivel;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  setup.land_end_clearance = {infinity, -infinity};
-  ReliefWheel wheel = request.wheel;
-  wheel.swivel = swivel;
-  ReliefWheel wide = wheel;  // to find out how much of it is needed
-  wide.width = 2 * kWidest;
-  wide.height = ReliefPath::heightFor(cone, request.start, wide, 0);
-  const ReliefPath path(cone, request.start, wide);
-  lands.visit([&](const Lands::Land& land) {
-    const ReliefPath::Place from = path.surface(land.section.x, 0);
-    const auto wide_enough = [&](const ReliefPath::Place& at) {
-      return std::hypot(at.radius * std::cos(at.behind - from.behind) - from.radius,
-                        at.radius * std::sin(at.behind - from.behind)) >= request.land;
-    };
-    const auto at_heel = [&](const ReliefPath::Place& at) { return at.behind >= land.heelWall(at.radius); };
-    const double reach =
-        request.land > 0 ? reachNeeded(path, land.section.x, wide_enough) : reachNeeded(path, land.section.x, at_heel);
-    setup.width = std::max(setup.width, reach);
-    if (!(reach < kWidest)) return;
-    const double end = path.surface(land.section.x, reach).clearance;
-    setup.land_end_clearance = {std::min(setup.land_end_clearance.from, end),
-                                std::max(setup.land_end_clearance.to, end)};
-  });
-  if (!(setup.width < kWidest)) {
-    setup.refused = "the clearance is lost before the land's end";
-    return setup;
-  }
-  setup.width += kReachMargin;
-  if (setup.width > wheel.width) {
-    setup.refused = "the relief needs a wheel " + figure(setup.width, Unit::kMetre) + " wide, this one is " +
-                    figure(wheel.width, Unit::kMetre);
-    return setup;
-  }
-  wheel.height = setup.height = ReliefPath::heightFor(cone, request.start, wheel, wheel.width / 2 - setup.width);
-  const ReliefPath final_path(cone, request.start, wheel);
-  judge(lands, {{reliefSweep(cone, final_path, wheel, request.edge)}}, setup);
-  return setup;
-}
+  double slack = -kInfinity;  ///< the least of its margins, by what is enough of them; 0 or less if it is refused
+  double next_edge_slack = -kInfinity;
+  bool has_heel = false;
+};
 
-ReliefSetup triedOrRefused(const Lands& lands, const ReliefRequest& request, double swivel) {
-  try {
-    return tried(lands, request, swivel);
-  } catch (const std::invalid_argument& error) {
-    ReliefSetup setup;
-    setup.swivel = swivel;
-    setup.refused = error.what();
-    return setup;
+/// Tries set-ups of a relief out.
+class Trials {
+ public:
+  Trials(const GrindJob& job, const ValidJob& flutes)
+      : job_(job), flutes_(flutes), edges_(edgesOf(flutes)), lands_(landsOf(groundCutterOf(flutes))) {
+    const bool goes_on = static_cast<std::size_t>(job.operation) + 1 < job.operations.size();
+    land_ = goes_on ? job.cutter.land : 0;
+    for (const Land& land : lands_) {
+      teeth_.emplace_back(flutes.cutterOf(static_cast<int>(land.tooth)));
+      starts_.push_back(reliefStartOf(job, teeth_.back()));
+    }
   }
+
+  /// The best with a swivel, by what is measured in some sections.
+  Tried best(double swivel) const {
+    Tried best;
+    best.setup.swivel = swivel;
+    try {
+      const Needs needs = needsAt(swivel);
+      const double whole = kReachMargin * job_.cutter.end_diameter;
+      const auto take = [&](Tried tried) {
+        if (tried.slack > best.slack) best = std::move(tried);
+      };
+      take(at(swivel, needs, whole, whole));
+      if (best.slack >= 1) return best;
+      const double least = leastMargin(swivel, needs, whole);
+      take(at(swivel, needs, least, whole));
+      if (!(best.slack > 0)) return best;
+      for (const double part : kLessMargins) take(at(swivel, needs, least + part * whole, whole));
+    } catch (const std::invalid_argument& error) {
+      if (best.setup.refused.empty()) best.setup.refused = error.what();
+    }
+    return best;
+  }
+
+  /// Asks the plan's check, which looks at more sections. What it refuses has no slack.
+  bool isConfirmed(Tried& tried) const {
+    if (!(tried.slack > 0)) return false;
+    const CutterCheck check = checkGroundCutter(jobWith(tried.setup));
+    if (check.reasons.empty()) return true;
+    tried.slack = 0;
+    tried.setup.refused = text(check.reasons);
+    return false;
+  }
+
+ private:
+  /// What the reliefs behind all lands need.
+  struct Needs {
+    std::vector<double> reach;  ///< along the rim behind the relief's start, for each land [m]
+    Range clearance{kInfinity, -kInfinity};
+  };
+
+  Needs needsAt(double swivel) const {
+    Needs needs;
+    const double diameter = job_.cutter.end_diameter;
+    for (std::size_t i = 0; i < lands_.size(); ++i) {
+      const Land& land = lands_[i];
+      ReliefWheel wide = wheelAt(swivel);
+      wide.width = 2 * kWidest * diameter;
+      wide.corner_radius = {};
+      wide.height = ReliefPath::heightFor(teeth_[i], starts_[i], wide, 0);
+      const ReliefPath path(teeth_[i], starts_[i], wide);
+      const double x = land.section.x, width = land_ * land.section.radius / (diameter / 2);
+      const ReliefPath::Place from = path.surface(x, 0);
+      const auto is_wide = [&](const ReliefPath::Place& at) {
+        const double turn = at.behind - from.behind;
+        return std::hypot(at.radius * std::cos(turn) - from.radius, at.radius * std::sin(turn)) >= width;
+      };
+      const auto is_at_heel = [&](const ReliefPath::Place& at) { return at.behind >= land.heelWall(at.radius); };
+      const auto reach = land_ > 0 ? reachTo(path, x, diameter, is_wide) : reachTo(path, x, diameter, is_at_heel);
+      if (!reach) throw std::invalid_argument("the clearance is lost before the land's end");
+      needs.reach.push_back(*reach);
+      const double clearance = path.surface(x, *reach).clearance;
+      needs.clearance = {std::min(needs.clearance.from, clearance), std::max(needs.clearance.to, clearance)};
+    }
+    return needs;
+  }
+
+  ReliefWheel wheelAt(double swivel) const {
+    ReliefWheel wheel = reliefWheelOf(job_.process);
+    wheel.swivel = swivel;
+    return wheel;
+  }
+
+  /// A height with which the rim reaches over every land, and how far over the one that it needs most for.
+  std::pair<double, double> heightAt(double swivel, const Needs& needs, double margin) const {
+    ReliefWheel wheel = wheelAt(swivel);
+    const auto reaches = [&](double height) {
+      wheel.height = height;
+      for (std::size_t i = 0; i < lands_.size(); ++i) {
+        if (!(ReliefPath(teeth_[i], starts_[i], wheel).reach() >= needs.reach[i] + margin - kSameReach)) return false;
+      }
+      return true;
+    };
+    // Teeth of one helix need the same height for the same reach.
+    std::vector<std::size_t> by_need(lands_.size());
+    std::iota(by_need.begin(), by_need.end(), 0);
+    std::stable_sort(by_need.begin(), by_need.end(),
+                     [&](std::size_t a, std::size_t b) { return needs.reach[a] > needs.reach[b]; });
+    for (const std::size_t i : by_need) {
+      const double reach = std::max(0.0, needs.reach[i] + margin);
+      const double height = ReliefPath::heightForReach(teeth_[i], starts_[i], wheel, reach);
+      if (reaches(height)) return {height, reach};
+    }
+    throw std::invalid_argument("no height has every edge on the rim, and the rim over every land");
+  }
+
+  /// The least margin of the rim with which the relief reaches every heel. It is negative where a corner of the wheel
+  /// grinds the land's end.
+  double leastMargin(double swivel, const Needs& needs, double whole) const {
+    const double rounding = kLeastMargin * whole;
+    const double corner = std::max(job_.process.wheel_corner_radius_lower, job_.process.wheel_corner_radius_upper);
+    if (land_ > 0 || corner == 0) return rounding;
+    double low = -corner, high = rounding;
+    if (!(at(swivel, needs, low, whole).next_edge_slack > 0)) return rounding;
+    for (int i = 0; i < kCornerHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      (at(swivel, needs, middle, whole).has_heel ? high : low) = middle;
+    }
+    return high + rounding;
+  }
+
+  /// @param margin of the rim beyond the lands' ends. @param whole what is enough of it [m].
+  Tried at(double swivel, const Needs& needs, double margin, double whole) const {
+    Tried tried;
+    tried.setup.swivel = swivel;
+    const double most = *std::max_element(needs.reach.begin(), needs.reach.end()) + margin;
+    const ReliefWheel wheel = wheelAt(swivel);
+    const double rim = wheel.width - wheel.corner_radius[0] - wheel.corner_radius[1];
+    if (most > rim) {
+      tried.slack = (rim - most) / whole - 1;
+      tried.setup.refused = "the relief needs a rim " + figure(most, Unit::kMetre) + " wide, that of this wheel is " +
+                            figure(rim, Unit::kMetre);
+      return tried;
+    }
+    std::tie(tried.setup.height, tried.setup.width) = heightAt(swivel, needs, margin);
+    tried.setup.land_end_clearance = needs.clearance;
+    measure(tried, margin / whole);
+    return tried;
+  }
+
+  /// @param margin of the rim, by what is enough.
+  void measure(Tried& tried, double margin) const {
+    const GroundCutter cutter = groundCutterOf(jobWith(tried.setup));
+    const CutterGeometry& c = job_.cutter;
+    tried.has_heel = true;
+    tried.next_edge_slack = kInfinity;
+    double core_slack = kInfinity;
+    for (const Land& land : lands_) {
+      const ReliefSection relief = measureRelief(cutter, land.section, land.tooth, cutter.reliefs(land.tooth));
+      tried.has_heel = tried.has_heel && (land_ > 0 || relief.heel);
+      tried.next_edge_slack = std::min(tried.next_edge_slack, relief.next_edge / kNextEdgeMargin);
+      if (tried.next_edge_slack < kHopeless) break;
+      const double core = 2 * relief.core_radius, least = askedCore(c, land.section.x) - c.core_tolerance;
+      const double slack = (core - least) / c.core_tolerance;
+      if (core >= std::min(least, 2 * land.section.core_radius) || slack >= core_slack) continue;
+      core_slack = slack;
+      tried.setup.refused = "the wheel leaves a core of " + figure(core, Unit::kMetre) +
+                            " at X = " + figure(land.section.x, Unit::kMetre) + "; allowed: from " +
+                            figure(least, Unit::kMetre);
+    }
+    tried.setup.next_edge = tried.next_edge_slack * kNextEdgeMargin;
+    tried.slack = std::min(tried.next_edge_slack, core_slack);
+    if (tried.setup.next_edge <= 0) {
+      tried.setup.refused =
+          "the wheel reaches " + figure(-tried.setup.next_edge, Unit::kRadian) + " beyond the next edge";
+    } else if (!tried.has_heel) {
+      tried.setup.refused = "the relief ends on the land";
+    }
+    // Where a corner grinds the land's end, the margin is what is above the least.
+    tried.slack = std::min(tried.slack, tried.has_heel ? std::max(margin, kLeastMargin) : -kLeastMargin);
+  }
+
+  ValidJob jobWith(const ReliefSetup& setup) const {
+    GrindJob job = job_;
+    job.process.setup_swivel = setup.swivel;
+    job.process.setup_height = setup.height;
+    job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
+    return ValidJob(std::move(job)).withEdges(flutes_, edges_);
+  }
+
+  static constexpr double kSameReach = 1e-12;  ///< [m]
+
+  const GrindJob& job_;
+  const ValidJob& flutes_;
+  const std::vector<double> edges_;
+  const std::vector<Land> lands_;
+  double land_;                       ///< width at the small end, where another relief follows; 0: to the heel [m]
+  std::vector<ConicalCutter> teeth_;  ///< of the lands
+  std::vector<ReliefStart> starts_;   ///< of the lands
+};
+
+/// The best swivel between two, of which one in between is better than both.
+Tried refined(const Trials& trials, double from, double to, Tried best) {
+  for (int i = 0; i < kRefinements; ++i) {
+    const double middle = best.setup.swivel;
+    const bool above = to - middle > middle - from;
+    Tried beside = trials.best(middle + (1 - kGolden) * (above ? to - middle : from - middle));
+    if (beside.slack > best.slack) {
+      (above ? from : to) = middle;
+      best = std::move(beside);
+    } else {
+      (above ? to : from) = beside.setup.swivel;
+    }
+  }
+  return best;
 }
 
 }  // namespace
 
-WheelSweep reliefSweep(const ConicalCutter& cutter, const ReliefPath& path, const ReliefWheel& wheel, double edge) {
-  GrindStroke stroke;
-  stroke.from = path.lead() - path.beyondEnd();
-  stroke.to = cutter.geometry().flute_length + path.lead() + path.beyondShank();
-  stroke.y = path.y();
-  stroke.y_per_x = path.taper();
-  stroke.a = path.a() + edge;
-  const double radius = wheel.nominal_radius - wheel.wear;
-  return {path.cutter(),
-          WheelProfile::straight(2 * radius, wheel.width, wheel.corner_radius),
-          wheel.nominal_radius,
-          {wheel.swivel, wheel.height, path.lead()},
-          stroke};
-}
-
-ReliefSetup findReliefSetup(const GroundCutter& cutter, const ReliefRequest& request) {
-  const Lands lands(cutter);
-  if (request.asked) return triedOrRefused(lands, request, *request.asked);
-  const ReliefSetup nearest =
-      triedOrRefused(lands, request, std::clamp(request.near, request.swivel.from, request.swivel.to));
-  if (nearest.refused.empty()) return nearest;
-  const double farthest = std::max(request.near - request.swivel.from, request.swivel.to - request.near);
-  for (double aside = kSwivelStep; aside <= farthest; aside += kSwivelStep) {
-    for (const double swivel : {request.near + aside, request.near - aside}) {
-      if (!(swivel >= request.swivel.from && swivel <= request.swivel.to)) continue;
-      const ReliefSetup setup = triedOrRefused(lands, request, swivel);
-      if (setup.refused.empty()) return setup;
+ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
+                            std::optional<double> asked) {
+  const Trials trials(job, flutes);
+  if (asked) {
+    Tried tried = trials.best(*asked);
+    trials.isConfirmed(tried);
+    return tried.setup;
+  }
+  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
+  std::vector<double> swivels{near, job.process.setup_swivel};
+  for (double aside = kSwivelStep; aside <= swivel.to - swivel.from; aside += kSwivelStep) {
+    swivels.push_back(near + aside);
+    swivels.push_back(near - aside);
+  }
+  const auto is_beyond = [&](double one) { return !(one >= swivel.from && one <= swivel.to); };
+  swivels.erase(std::remove_if(swivels.begin(), swivels.end(), is_beyond), swivels.end());
+  std::stable_sort(swivels.begin(), swivels.end(),
+                   [near](double a, double b) { return std::abs(a - near) < std::abs(b - near); });
+  std::vector<Tried> all;
+  while (all.size() < swivels.size()) {
+    const std::size_t from = all.size(), count = from == 0 ? 1 : std::min(kAtOnce, swivels.size() - from);
+    all.resize(from + count);
+    onAllCores(count, [&](std::size_t i) { all[from + i] = trials.best(swivels[from + i]); });
+    for (std::size_t i = from; i < all.size(); ++i) {
+      if (all[i].slack >= 1 && trials.isConfirmed(all[i])) return all[i].setup;
     }
   }
-  return nearest;
+  const Tried nearest = all.front();
+  const auto more_slack = [](const Tried& a, const Tried& b) { return a.slack > b.slack; };
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  all.resize(std::min(kRefined, all.size()));
+  onAllCores(all.size(), [&](std::size_t i) {
+    const double middle = all[i].setup.swivel;
+    all[i] =
+        refined(trials, std::max(swivel.from, middle - kSwivelStep), std::min(swivel.to, middle + kSwivelStep), all[i]);
+  });
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  for (Tried& best : all) {
+    if (trials.isConfirmed(best)) return best.setup;
+  }
+  return nearest.setup;
 }
 
 }  // namespace grinder

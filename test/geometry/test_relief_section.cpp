@@ -8,7 +8,6 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/valid_job.h"
-#include "geometry/relief_setup.h"
 
 #include <gtest/gtest.h>
 
@@ -90,6 +89,21 @@ Stroke strokeOf(const ValidJob& job, int tooth) {
           along.a};
 }
 
+/// The stroke that grinds a relief at its full depth, as if the tooth were at angle 0. @param edge as of Tool.
+WheelSweep sweepOf(const ConicalCutter& cutter, const ReliefPath& path, const ReliefWheel& wheel, double edge) {
+  GrindStroke stroke;
+  stroke.from = path.lead() - path.beyondEnd();
+  stroke.to = cutter.geometry().flute_length + path.lead() + path.beyondShank();
+  stroke.y = path.y();
+  stroke.y_per_x = path.taper();
+  stroke.a = path.a() + edge;
+  return {path.cutter(),
+          WheelProfile::straight(2 * wheel.nominal_radius, wheel.width),
+          wheel.nominal_radius,
+          {wheel.swivel, wheel.height, path.lead()},
+          stroke};
+}
+
 /// A job's flutes with a primary relief whose start is at a place of the rim.
 struct Tool {
   GrindJob job;
@@ -113,7 +127,7 @@ struct Tool {
         path(cone, start, wheel),
         edge(edgeOf()),
         relieved(cone, cutter.flutes(), cutter.teeth(),
-                 std::vector<Reliefs>(cutter.flutes().size(), {{reliefSweep(cone, path, wheel, edge)}})) {}
+                 std::vector<Reliefs>(cutter.flutes().size(), {{sweepOf(cone, path, wheel, edge)}})) {}
 
   ReliefWheel wheelOf(const ReliefStart& start, double swivel, double width, double contact) const {
     ReliefWheel w{50 * kMillimetre, 0, width * kMillimetre, swivel * kDegree, 0};

@@ -2,8 +2,8 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
-
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/geometry/job_setup.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 
 #include <gtest/gtest.h>
@@ -16,37 +16,40 @@ namespace test_relief_setup {
 using units::kDegree;
 using units::kMillimetre;
 
+constexpr Range kSwivel{-60 * kDegree, 60 * kDegree};
+
+/// The flutes of a job with a primary relief, and with a secondary one if a land is given.
 struct Tool {
   GrindJob job;
-  GroundCutter cutter;
-  ReliefRequest request;
 
-  Tool(const std::string& file, double clearance, double width)
-      : job(readJobFile(file)), cutter(groundCutterOf(ValidJob(job))) {
-    request.start.clearance = clearance * kDegree;
-    request.wheel.nominal_radius = 50 * kMillimetre;
-    request.wheel.width = width * kMillimetre;
-    const double middle = job.cutter.flute_length / 2;
-    request.edge = *cutter.section(middle).teeth[0].edge - LogCurve(cutter.cutter()).a(middle);
-    request.near = job.process.setup_swivel;
-    request.swivel = {-60 * kDegree, 60 * kDegree};
+  /// @param clearance [deg]. @param width of the reliefs' wheel [mm].
+  Tool(const std::string& file, double clearance, double width, double land = 0, double second_clearance = 0)
+      : job(readJobFile(file)) {
+    job.cutter.clearance = clearance * kDegree;
+    job.cutter.clearance_tolerance = 0.5 * kDegree;
+    job.cutter.land = land * kMillimetre;
+    job.cutter.second_clearance = second_clearance * kDegree;
+    GrindProcess relief;
+    relief.kind = OperationKind::kPrimaryRelief;
+    relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 4e-3;
+    relief.wheel_diameter = 100 * kMillimetre, relief.wheel_width = width * kMillimetre;
+    job.operations = {{job.process, {}}, {relief, {}}};
+    relief.kind = OperationKind::kSecondaryRelief;
+    if (land > 0) job.operations.push_back({relief, {}});
+    job = job.ofOperation(1);
   }
 
-  ReliefWheel wheelOf(const ReliefSetup& setup) const {
-    ReliefWheel wheel = request.wheel;
-    wheel.swivel = setup.swivel;
-    wheel.height = setup.height;
-    return wheel;
+  ValidJob flutes() const { return withLaws(ValidJob(job.ofOperation(0))); }
+
+  ReliefSetup find(std::optional<double> asked = {}) const { return findReliefSetup(job, flutes(), kSwivel, asked); }
+
+  void take(const ReliefSetup& setup) {
+    job.process.setup_swivel = setup.swivel;
+    job.process.setup_height = setup.height;
+    job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
   }
 
-  WheelSweep sweepOf(const ReliefSetup& setup) const {
-    const ReliefWheel wheel = wheelOf(setup);
-    return reliefSweep(cutter.cutter(), ReliefPath(cutter.cutter(), request.start, wheel), wheel, request.edge);
-  }
-
-  GroundCutter with(const Reliefs& reliefs) const {
-    return {cutter.cutter(), cutter.flutes(), cutter.teeth(), std::vector<Reliefs>(cutter.flutes().size(), reliefs)};
-  }
+  GroundCutter relieved() const { return groundCutterOf(withLaws(ValidJob(job))); }
 };
 
 // Of every tooth, in more sections than the solver looks at.
@@ -55,10 +58,11 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
        {std::tuple{"jobs/roughing_d10_t4.yaml", 10.0, 6.0}, std::tuple{"jobs/left_hand_d8_t3.yaml", 10.0, 6.0},
         std::tuple{"jobs/taper_d6_t6.yaml", 10.0, 3.0}, std::tuple{"jobs/finishing_d20_t8.yaml", 10.0, 3.0}}) {
     SCOPED_TRACE(file);
-    const Tool tool(file, clearance, width);
-    const ReliefSetup setup = findReliefSetup(tool.cutter, tool.request);
+    Tool tool(file, clearance, width);
+    const ReliefSetup setup = tool.find();
     ASSERT_EQ(setup.refused, "");
-    const GroundCutter relieved = tool.with({{tool.sweepOf(setup)}});
+    tool.take(setup);
+    const GroundCutter relieved = tool.relieved();
     for (int i = 0; i <= 10; ++i) {
       const GroundSection section = relieved.section(tool.job.cutter.flute_length * i / 10);
       for (const ToothSection& tooth : section.teeth) {
@@ -72,67 +76,86 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
   }
 }
 
-// The nearest one that can do it: a degree nearer to the flute's it cannot.
+// The nearest one with a margin: some degrees nearer to the flutes' it has none.
 TEST(ReliefSetup, TakesTheSwivelNearestToTheFlutes) {
   const Tool easy("jobs/roughing_d10_t4.yaml", 10, 6);
-  EXPECT_EQ(findReliefSetup(easy.cutter, easy.request).swivel, easy.job.process.setup_swivel);
+  const double near = easy.flutes()->process.setup_swivel;
+  EXPECT_EQ(easy.find().swivel, near);
 
-  Tool far("jobs/taper_d6_t6.yaml", 10, 3);
-  const ReliefSetup setup = findReliefSetup(far.cutter, far.request);
+  const Tool far("jobs/taper_d6_t6.yaml", 10, 3);
+  const double near_far = far.flutes()->process.setup_swivel;
+  const ReliefSetup setup = far.find();
   ASSERT_EQ(setup.refused, "");
-  EXPECT_LT(setup.swivel, far.request.near - 5 * kDegree);
-  far.request.asked = setup.swivel + 1 * kDegree;
-  const ReliefSetup nearer = findReliefSetup(far.cutter, far.request);
-  EXPECT_NE(nearer.refused.find("next edge"), std::string::npos) << nearer.refused;
+  EXPECT_LT(setup.swivel, near_far - 2 * kDegree);
+  EXPECT_NE(far.find(near_far).refused, "");
 }
 
 TEST(ReliefSetup, SaysWhatIsInTheWay) {
-  const Tool narrow("jobs/unequal_d12_t4.yaml", 10, 3);
-  EXPECT_NE(findReliefSetup(narrow.cutter, narrow.request).refused.find("mm wide, this one is 3 mm"),
+  EXPECT_NE(Tool("jobs/unequal_d12_t4.yaml", 10, 2).find().refused.find("wide, that of this wheel is 2 mm"),
             std::string::npos);
-  const Tool long_land("jobs/paper.yaml", 10, 6);
-  EXPECT_NE(findReliefSetup(long_land.cutter, long_land.request).refused.find("clearance is lost"), std::string::npos);
+  EXPECT_NE(Tool("jobs/paper.yaml", 10, 6).find().refused.find("clearance is lost"), std::string::npos);
 }
 
 // A steep relief on the way to the heel. What it takes of the core depends on the swivel.
 TEST(ReliefSetup, KeepsTheCore) {
   Tool tool("jobs/roughing_d10_t4.yaml", 28, 8);
   const double least = tool.job.cutter.core_diameter - tool.job.cutter.core_tolerance;
-  const ReliefSetup setup = findReliefSetup(tool.cutter, tool.request);
+  const ReliefSetup setup = tool.find();
   ASSERT_EQ(setup.refused, "");
-  const auto core_with = [&](const ReliefSetup& with, double x) {
-    return 2 * tool.with({{tool.sweepOf(with)}}).section(x).core_radius;
-  };
-  for (int i = 0; i <= 10; ++i) EXPECT_GT(core_with(setup, tool.job.cutter.flute_length * i / 10), least);
-  tool.request.asked = tool.request.near;
-  const ReliefSetup nearest = findReliefSetup(tool.cutter, tool.request);
-  EXPECT_NE(nearest.refused.find("the wheel leaves a core of 6.2"), std::string::npos) << nearest.refused;
+  Tool good = tool;
+  good.take(setup);
+  const GroundCutter relieved = good.relieved();
+  for (int i = 0; i <= 10; ++i) {
+    EXPECT_GT(2 * relieved.section(tool.job.cutter.flute_length * i / 10).core_radius, least);
+  }
+  const ReliefSetup nearest = tool.find(tool.flutes()->process.setup_swivel);
+  EXPECT_NE(nearest.refused.find("the wheel leaves a core of 6."), std::string::npos) << nearest.refused;
   EXPECT_NE(nearest.refused.find("allowed: from 6.79 mm"), std::string::npos) << nearest.refused;
-  EXPECT_NEAR(core_with(nearest, 0), 6.2 * kMillimetre, 0.01 * kMillimetre);
 }
 
 // A second relief goes on where the first is as wide as asked.
 TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
-  Tool tool("jobs/roughing_d10_t4.yaml", 10, 6);
-  tool.request.land = 0.4 * kMillimetre;
-  const ReliefSetup first = findReliefSetup(tool.cutter, tool.request);
+  Tool tool("jobs/roughing_d10_t4.yaml", 10, 6, 0.4, 20);
+  const ReliefSetup first = tool.find();
   ASSERT_EQ(first.refused, "");
-  Reliefs reliefs{{tool.sweepOf(first)}};
-  const ConicalCutter& cone = tool.cutter.cutter();
-  const ReliefPath::Place end =
-      ReliefPath(cone, tool.request.start, tool.wheelOf(first)).surfaceAt(0, 0.4 * kMillimetre);
-  tool.request.land = 0;
-  tool.request.start = {20 * kDegree, end.radius / cone.radius(0), end.behind};
-  const ReliefSetup second = findReliefSetup(tool.cutter, tool.request);
+  tool.take(first);
+  tool.job = tool.job.ofOperation(2);
+  const ReliefSetup second = tool.find();
   ASSERT_EQ(second.refused, "");
-  reliefs.push_back({tool.sweepOf(second)});
+  tool.take(second);
+  const GroundCutter relieved = tool.relieved();
   for (const double x : {0.0, 10e-3, 22e-3}) {
-    const ReliefSection relief = tool.with(reliefs).section(x).teeth[0].relief.value();
+    const ReliefSection relief = relieved.section(x).teeth[0].relief.value();
     EXPECT_NEAR(*relief.land, 0.4 * kMillimetre, 1e-6);
     EXPECT_NEAR(*relief.clearance / kDegree, 10, 0.02);
+    EXPECT_NEAR(*relief.second_clearance / kDegree, 20, 0.02);
     ASSERT_TRUE(relief.heel);
     EXPECT_GT(*relief.heel, 0.5 * kMillimetre);
   }
+}
+
+// The margins are the tool's, not a machine's: a small mill has a small wheel.
+TEST(ReliefSetup, OfASmallToolHasSmallMargins) {
+  Tool tool("jobs/roughing_d10_t4.yaml", 10, 6);
+  const double part = 0.2;
+  const auto shrink = [&](GrindProcess& p) {
+    for (double* figure : {&p.depth, &p.depth_end, &p.infeed, &p.finish_infeed, &p.overtravel_end, &p.overtravel_shank,
+                           &p.wheel_diameter, &p.wheel_width, &p.setup_height, &p.setup_lead}) {
+      *figure *= part;
+    }
+  };
+  CutterGeometry& c = tool.job.cutter;
+  for (double* figure : {&c.end_diameter, &c.flute_length, &c.shank_diameter, &c.neck_length, &c.core_diameter,
+                         &c.core_diameter_end, &c.core_tolerance}) {
+    *figure *= part;
+  }
+  const ReliefSetup large = Tool("jobs/roughing_d10_t4.yaml", 10, 6).find();
+  for (GrindOperation& operation : tool.job.operations) shrink(operation.process);
+  tool.job = tool.job.ofOperation(1);
+  const ReliefSetup small = tool.find();
+  ASSERT_EQ(small.refused, "");
+  EXPECT_NEAR(small.swivel, large.swivel, 1e-6);
+  EXPECT_NEAR(small.width, part * large.width, 1e-4 * small.width);
 }
 
 }  // namespace test_relief_setup

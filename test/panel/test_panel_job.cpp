@@ -224,7 +224,7 @@ TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
 }
 
 TEST_F(SetupSheet, OfAReliefGoesToItsOperation) {
-  open({{"    setup: {swivel_deg: 13.104, height_mm: -3.658}\n", ""}},
+  open({{"    setup: {swivel_deg: 13.104, height_mm: -3.864}\n", ""}},
        QString(kJob).replace("paper", "taper_reamer_d6_t6"));
   EXPECT_FALSE(panel->enabled("setup"));
   panel->chooseOperation("2 primary relief");

@@ -61,17 +61,17 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   panel.widget().load(config);
   panel.chooseOperation("2 primary relief");
   panel.plan();
-  changedJob(kReamer, path, {{"height_mm: -3.658", "height_mm: -3.657"}});
+  changedJob(kReamer, path, {{"height_mm: -3.864", "height_mm: -3.863"}});
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
-  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).process.setup_height, -3.657e-3);
+  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).process.setup_height, -3.863e-3);
   EXPECT_EQ(box.currentText(), "2 primary relief");
   WAIT_FOR(says("Takes "));
   changedJob(
       kReamer, path,
       {{"  - kind: relief\n    relief: secondary\n    feed_mm_min: 300\n    infeed_mm: 0.05\n    finish_infeed_mm: "
         "0.01\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    setup: {swivel_deg: 13.104, height_mm: "
-        "-3.548}\n",
+        "-3.648}\n",
         ""},
        {"  second_clearance_deg: 22\n", ""}});
   panel.click("start");
@@ -112,7 +112,7 @@ TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {
   panel.click("touch_off");
   panel.press("confirm_touch");
   WAIT_FOR(touches().size() == 1);
-  EXPECT_NEAR(touches().at(0).basis.height, -3.548e-3, 1e-12);
+  EXPECT_NEAR(touches().at(0).basis.height, -3.648e-3, 1e-12);
 }
 
 }  // namespace grinder::test_panel_operation

@@ -133,6 +133,7 @@ class ControlLoop : public RequestBox {
   void advanceLift();
   void advanceJog();
   void watchClients();
+  void hearClient();
   void stopJogWithoutClient();
   void stopJogOnContact();
   void endJog();

@@ -54,6 +54,10 @@ class ReliefPath {
   static double heightFor(const ConicalCutter& cutter, const ReliefStart& start, const ReliefWheel& wheel,
                           double contact);
 
+  /// The height with which the rim reaches so far behind the relief's start. Throws as heightFor().
+  /// @param reach see reach() [m].
+  static double heightForReach(const ConicalCutter& cutter, const ReliefStart& start, ReliefWheel wheel, double reach);
+
   /// The cutter by whose law Z follows: its rake angle alone is the path's.
   const ConicalCutter& cutter() const noexcept { return path_cutter_; }
 
@@ -70,8 +74,8 @@ class ReliefPath {
   double yPerWear() const noexcept { return 1 / normal_y_; }
 
   /// How far the last stroke's Y lies below that at which the rim first touches the blank, if nothing was ground
-  /// before [m].
-  double depth() const noexcept { return depth_; }
+  /// before. Takes a tenth of a millisecond [m].
+  double depth() const noexcept;
 
   /// How far beyond the flute's ends the relief's start must go for the surface to be complete up to the rim's end
   /// [m].
@@ -109,7 +113,7 @@ class ReliefPath {
   double normal_x_ = 0, normal_y_ = 0, normal_z_ = 0;
   double contact_ = 0;
   ConicalCutter path_cutter_;
-  double lead_ = 0, y_ = 0, taper_ = 0, a_ = 0, depth_ = 0, beyond_end_ = 0, beyond_shank_ = 0;
+  double lead_ = 0, y_ = 0, taper_ = 0, a_ = 0, beyond_end_ = 0, beyond_shank_ = 0;
 };
 
 }  // namespace grinder

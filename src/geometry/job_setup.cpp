@@ -253,6 +253,41 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   return setup;
 }
 
+/// The job with a solved set-up, and the tool that it then grinds.
+JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
+  JobSetup setup;
+  setup.job = job;
+  take(solved, keep, setup);
+  for (int i = 0;; ++i) {
+    intoList(setup.job);
+    const ValidJob valid(setup.job);
+    if (i == 0 && !hasLaws(valid)) {
+      giveRoom(setup);
+      continue;
+    }
+    setup.check = checkGroundCutter(withLaws(valid));
+    if (i == kMaxLengthenings || !lengthenOvertravel(solved, setup)) return setup;
+  }
+}
+
+/// Whether a plan's check takes a job with a solved set-up.
+bool isAccepted(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
+  try {
+    return setupWith(solved, job, keep).check.reasons.empty();
+  } catch (const std::invalid_argument&) {  // the job is not valid with it, or has no law of Z
+    return false;
+  }
+}
+
+std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,
+                                                    std::optional<SetupFigure> keep) {
+  SetupRequest request = requestOf(job, swivel, keep);
+  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, job, keep); };
+  const auto result = solveSetup(request);
+  if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
+  return setupWith(std::get<SolvedSetup>(result), job, keep);
+}
+
 }  // namespace
 
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
@@ -267,21 +302,7 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Ran
                                                   std::optional<SetupFigure> keep) {
   try {
     if (isRelief(job.process.kind)) return solveReliefSetup(job, swivel, keep);
-    const auto result = solveSetup(requestOf(job, swivel, keep));
-    if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
-    JobSetup setup;
-    setup.job = job;
-    take(std::get<SolvedSetup>(result), keep, setup);
-    for (int i = 0;; ++i) {
-      intoList(setup.job);
-      const ValidJob valid(setup.job);
-      if (i == 0 && !hasLaws(valid)) {
-        giveRoom(setup);
-        continue;
-      }
-      setup.check = checkGroundCutter(withLaws(valid));
-      if (i == kMaxLengthenings || !lengthenOvertravel(std::get<SolvedSetup>(result), setup)) return setup;
-    }
+    return solveFluteSetup(job, swivel, keep);
   } catch (const InvalidJob& error) {
     return "the set-up does not suit the job: " + text(error.reasons());
   } catch (const std::invalid_argument& error) {

@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace grinder {
 
@@ -27,6 +28,7 @@ const std::vector<double> kFirstSwivels{4 * units::kDegree};
 const std::vector<double> kOtherSwivels{0, -4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
 const std::vector<double> kSwivelsOfCylinder{0, 4 * units::kDegree, -4 * units::kDegree};
 constexpr int kStartHeights = 4;                    ///< from which they start, on either side of the axis
+constexpr int kMoreHeights = 12;                    ///< likewise, if all that was for nothing
 constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< of the deepest, where it is found and no core is asked
 constexpr int kSmallerWheels = 15;                  ///< that are tried, each by a twentieth of the diameter less
 constexpr double kLessWheel = 0.05;
@@ -64,6 +66,11 @@ void check(const SetupRequest& r) {
   requireFinite("teeth", static_cast<double>(r.tooth_angles.size()), !r.tooth_angles.empty(), "1 or more");
 }
 
+SolvedSetup mirrored(SolvedSetup solved) {
+  solved.setup = {-solved.setup.swivel, -solved.setup.height, solved.setup.lead};
+  return solved;
+}
+
 /// The same tool in the mirror: a left-hand cutter becomes a right-hand one.
 SetupRequest mirrored(SetupRequest r) {
   r.cutter.cut = CutDirection::kRightHand;
@@ -73,6 +80,7 @@ SetupRequest mirrored(SetupRequest r) {
   std::swap(r.min_swivel, r.max_swivel);
   r.min_swivel = -r.min_swivel;
   r.max_swivel = -r.max_swivel;
+  if (r.accepts) r.accepts = [asked = r.accepts](const SolvedSetup& solved) { return asked(mirrored(solved)); };
   return r;
 }
 
@@ -102,9 +110,9 @@ std::vector<double> startDepths(const SetupTrial& trial, const SetupRequest& req
 }
 
 /// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a lead.
-/// @param swivels less the spiral angle [rad].
+/// @param swivels less the spiral angle [rad]. @param most heights, on either side of the axis.
 std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request,
-                                 const std::vector<double>& swivels) {
+                                 const std::vector<double>& swivels, int most) {
   const double radius = request.cutter.end_diameter / 2;
   const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : std::min(request.depth, radius);
   std::vector<SetupPoint> starts;
@@ -114,7 +122,7 @@ std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& re
     if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
     const double highest = radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(p.swivel));
     const bool has_heights = request.keep != SetupFigure::kHeight && !isHeightTied(trial, request);
-    const int heights = has_heights ? kStartHeights : 0;
+    const int heights = has_heights ? most : 0;
     for (int i = -heights; i <= heights; ++i) {
       p.height = request.keep == SetupFigure::kHeight ? request.kept.height
                  : has_heights ? highest * i / heights - trial.wheel().upperFace() / std::cos(p.swivel)
@@ -153,10 +161,26 @@ SetupRequest measurable(SetupRequest r) {
 /// The best set-up with all that is asked: exact, or else within the tolerances. If there is none, the nearest.
 struct Fitted {
   std::optional<Judged> best;
+  std::vector<Judged> unasked;  ///< that would do, and may yet be accepted
+  bool settled = false;         ///< the best one is accepted
   std::optional<SetupPoint> nearest;
   double error = std::numeric_limits<double>::infinity();  ///< of the nearest one, by the tolerances
 
-  bool isGood() const { return best && !best->problem && !best->cut_short && !best->is_facet; }
+  void take(const Judged& judged) {
+    if (!best || isBetter(judged, *best)) best = judged;
+    if (!judged.problem && !judged.cut_short && !judged.is_facet) unasked.push_back(judged);
+  }
+
+  /// Asks of what would do, the best first. @return whether one is accepted, which then is the best.
+  bool settle(const SetupRequest& request) {
+    std::stable_sort(unasked.begin(), unasked.end(), isBetter);
+    for (const Judged& judged : std::exchange(unasked, {})) {
+      if (settled || (request.accepts && !request.accepts(judged.solved))) continue;
+      best = judged;
+      settled = true;
+    }
+    return settled;
+  }
 };
 
 /// Fits all that is asked from some starts. @param fitted what others came to.
@@ -179,7 +203,7 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
     if (request.z_law == ZLaw::kPublished) {
       judged.error = setupErrors(trial, request, fit, SetupTrial::kSections).worst(measurable(request));
     }
-    if (!fitted.best || isBetter(judged, *fitted.best)) fitted.best = judged;
+    fitted.take(judged);
   };
   for (const SetupPoint& start : starts) {
     const auto fit = fitEnds(trial, request, start);
@@ -187,7 +211,7 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
     add_new(fit->point, ends, kAlike);
     if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
   }
-  if (fitted.isGood()) return;
+  if (fitted.settle(request)) return;
   for (const SetupPoint& start : ends) {
     const auto fit = nearestSetup(trial, request, start);
     if (fit) add_new(*fit, nearest, kAlike);
@@ -211,8 +235,9 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
   const auto keep = request.keep;
   if (!keep || trial.isCylinder() || !request.core_diameter) return {};
   request.keep.reset();
+  request.accepts = {};
   Fitted free;
-  fitAll(trial, request, startsOf(trial, request, kFirstSwivels), free);
+  fitAll(trial, request, startsOf(trial, request, kFirstSwivels, kStartHeights), free);
   if (!free.best) return {};
   SetupPoint point = free.best->point;
   switch (*keep) {
@@ -227,11 +252,16 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
 Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywhere) {
   Fitted all;
   fitAll(trial, request, startsBesideFree(trial, request), all);
-  if (all.isGood()) return all;
+  if (all.settle(request)) return all;
   const bool asks_edge = request.asks_spiral || request.core_diameter_end;
   const bool is_alone = !trial.isCylinder() && asks_edge;
-  fitAll(trial, request, startsOf(trial, request, is_alone ? kFirstSwivels : kSwivelsOfCylinder), all);
-  if (everywhere && !all.isGood()) fitAll(trial, request, startsOf(trial, request, kOtherSwivels), all);
+  const std::vector<double>& first = is_alone ? kFirstSwivels : kSwivelsOfCylinder;
+  fitAll(trial, request, startsOf(trial, request, first, kStartHeights), all);
+  if (all.settle(request) || !everywhere) return all;
+  fitAll(trial, request, startsOf(trial, request, kOtherSwivels, kStartHeights), all);
+  if (all.settle(request)) return all;
+  fitAll(trial, request, startsOf(trial, request, kFirstSwivels, kMoreHeights), all);
+  all.settle(request);
   return all;
 }
 
@@ -287,6 +317,7 @@ SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest
   SetupRequest even = request;
   even.core_diameter_end.reset();
   even.y_per_x = 0;
+  even.accepts = {};
   const Fitted all = fitted(SetupTrial(ConicalCutter(even.cutter), even.wheel, even.nominal_radius, 0), even, false);
   if (!all.best || all.best->problem) return {};
   return {0, 0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
@@ -327,7 +358,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   if (request.cutter.cut == CutDirection::kLeftHand) {
     auto result = solveSetup(mirrored(request));
     if (auto* solved = std::get_if<SolvedSetup>(&result)) {
-      solved->setup = {-solved->setup.swivel, -solved->setup.height, solved->setup.lead};
+      *solved = mirrored(*solved);
     } else if (auto& refusal = std::get<SetupRefusal>(result); refusal.problem == SetupProblem::kSwivel) {
       refusal = {refusal.problem, -refusal.asked, -refusal.max, -refusal.min};
     } else {
@@ -352,6 +383,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     SetupRequest wide = request;
     wide.min_swivel = -kWidestSwivel;
     wide.max_swivel = kWidestSwivel;
+    wide.accepts = {};
     const Fitted anywhere = fitted(trial, wide, false);
     if (anywhere.best && !anywhere.best->problem) return beyond(anywhere.best->solved.setup.swivel);
   }

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <variant>
 #include <vector>
@@ -19,6 +20,8 @@ enum class SetupFigure : std::uint8_t { kSwivel, kHeight, kDepth };
 constexpr EnumRow<SetupFigure> kSetupFigures[] = {
     {SetupFigure::kSwivel, "swivel"}, {SetupFigure::kHeight, "height"}, {SetupFigure::kDepth, "depth"}};
 constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
+
+struct SolvedSetup;
 
 /// What the tool shall be, and what there is to grind it with. Of a cone whose edge or cores at both ends are asked,
 /// all may differ by the cutter's tolerances, and not at all where these are 0.
@@ -42,6 +45,8 @@ struct SetupRequest {
   /// The published one takes the set-up with the minimum of the maximum error of the rake over the flute. For a law
   /// that corrects Z, the set-up is exact at both ends, where the correction then begins and ends with little.
   ZLaw z_law = ZLaw::kPublished;
+  /// Asked of every set-up that would do, the best first, for what the solver does not know; without it, any does.
+  std::function<bool(const SolvedSetup&)> accepts{};
 };
 
 /// What comes nearest to its limit in a set-up.
@@ -111,8 +116,9 @@ struct SetupRefusal {
 };
 
 /// Solves a set-up: the rake over the flute, as z_law says, and edge and cores if they are asked. Of
-/// several solutions, that with the steadiest rake whose rake face the wheel's face or edge forms the deepest. A depth
-/// that is found lies above 0 and short of the cutter's axis. Takes some tenths of a second.
+/// several solutions, that with the steadiest rake whose rake face the wheel's face or edge forms the deepest, of those
+/// that are accepted, or of all if none is. A depth that is found lies above 0 and short of the cutter's axis. Takes
+/// some tenths of a second.
 /// @throw std::invalid_argument naming the value unless the cutter exists, and every figure is finite and in its range.
 std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request);
 

@@ -7,6 +7,7 @@
 #include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/plan/planned_job.h"
 
 #include <cstdio>
 
@@ -48,11 +49,21 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   return json;
 }
 
+/// What a plan has against a job that grinds the asked tool: its motion, and what is hit.
+std::string otherRefusals(const GrindJob& job, const MachineFiles& files) {
+  const Machine& machine = files.config.loop.machine;
+  const PlannedJob plan = planWholeJob(ValidJob(job), machine, MachineShapes(files.model), machine.park);
+  std::string said;
+  for (const Reason& reason : plan.reasons) said += "a plan of it is refused: " + text(reason) + "\n";
+  return said;
+}
+
 }  // namespace
 
 int runSetup(const SetupOptions& options) {
   const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep), options.operation);
-  const LoopConfig config = readMachineFiles({options.parameters}, options.urdf).config.loop;
+  const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
+  const LoopConfig& config = files.config.loop;
   if (options.write) requireNotRead(options.job + ".before");
   const Range swivel = config.machine.swivel;
   const auto result = solveJobSetup(job, swivel, options.keep);
@@ -74,6 +85,7 @@ int runSetup(const SetupOptions& options) {
     return 1;
   }
   if (options.write) writeSetup(options.job, setup);
+  std::fputs(otherRefusals(setup.job, files).c_str(), stderr);
   return 0;
 }
 

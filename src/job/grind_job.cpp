@@ -296,7 +296,9 @@ std::vector<double> passDepths(const GrindProcess& process, double deepest) {
 
 double shankCut(const CutterGeometry& cutter) {
   if (cutter.neck_length > 0) return 0;
-  return std::max(0.0, cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length));
+  constexpr double kNothing = 0.5e-6;  // a file's shank is that of the flute's end but for its decimals
+  const double cut = cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length);
+  return cut > kNothing ? cut : 0;
 }
 
 double askedCore(const CutterGeometry& cutter, double x) noexcept {

@@ -95,6 +95,13 @@ class TestRefusals(TestSetup):
         self.setup(job, '--write')
         self.grind(0, 'plan', job)
 
+    def test_what_else_a_plan_refuses_is_said_beforehand(self):
+        job = self.job('job.yaml', shank_diameter_mm='40')
+        done = self.grind(0, 'setup', job, '--write')
+        self.assertRegex(done.stderr, r'(?m)^a plan of it is refused: collision_clearance = 1 mm: .* shank .*; change .*$')
+        self.assertIn('shank', self.grind(1, 'plan', job).stderr)
+        self.assertEqual(self.grind(0, 'setup', PAPER_JOB).stderr, '')
+
 
 class TestTouchOff(TestSetup):
     def test_wheel_above_the_swivel(self):

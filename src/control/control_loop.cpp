@@ -86,6 +86,7 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
     sample_.drive.fault_text = thrown_;
     has_thrown_ = false;
   }
+  observeHang();
   unwanted_power_ = sample_.drive.enabled && !drive_command_.enable ? unwanted_power_ + sample_.period : 0;
   sample_.power_stays = !(unwanted_power_ <= config_.enable_timeout);
   drive_checks_.observe(sample_);
@@ -106,6 +107,18 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   sample_.command_in_effect = history_.empty() ? command_ : history_.inEffect(sample_.drive.commands_waiting).command;
   judgeY(last_y, elapsed);
   readSwivel();
+}
+
+/// The watchdog has called powerOff(): whatever the drive reports, that is a fault, until the call has returned.
+void ControlLoop::observeHang() {
+  PowerOff power_off = power_off_;
+  has_hung_ = power_off != PowerOff::kNotCalled;
+  if (!has_hung_) return;
+  sample_.drive.fault = true;
+  sample_.drive.fault_text = "it has returned to the control loop too late";
+  if (power_off == PowerOff::kCalled) sample_.drive.fault_text += "; its powerOff() has not returned";
+  // Unless it is called again meanwhile.
+  if (power_off == PowerOff::kReturned) power_off_.compare_exchange_strong(power_off, PowerOff::kNotCalled);
 }
 
 /// Once Y was read where it cannot have come to, it counts as not homed until it is: where the axis is, nobody knows.
@@ -150,6 +163,12 @@ void ControlLoop::trackMotion() {
 }
 
 void ControlLoop::checkDrive() {
+  if (has_hung_) {  // from which late cycle, underruns and lost power come
+    LoopFault fault;
+    fault.kind = FaultKind::kDriveFault;
+    fault.drive_text = sample_.drive.fault_text;
+    return fail(fault);
+  }
   if (const auto fault = drive_checks_.findFault(sample_, moving_unbuffered_)) fail(*fault);
 }
 

@@ -17,8 +17,7 @@ bool powerOff(Drive& drive) noexcept {
 
 }  // namespace
 
-LoopWatchdog::LoopWatchdog(const ControlLoop& loop, Drive& drive)
-    : loop_(loop), drive_(drive), thread_([this] { run(); }) {}
+LoopWatchdog::LoopWatchdog(ControlLoop& loop, Drive& drive) : loop_(loop), drive_(drive), thread_([this] { run(); }) {}
 
 LoopWatchdog::~LoopWatchdog() {
   {
@@ -27,6 +26,12 @@ LoopWatchdog::~LoopWatchdog() {
   }
   end_.notify_one();
   thread_.join();
+}
+
+LoopWatchdog::Finding LoopWatchdog::finding() const noexcept {
+  const Finding finding = finding_;
+  // While powerOff() does not return, the thread does not look.
+  return finding != Finding::kRuns && loop_.status().cycles != hangs_at_ ? Finding::kRuns : finding;
 }
 
 void LoopWatchdog::run() {
@@ -42,8 +47,11 @@ void LoopWatchdog::run() {
       finding_ = Finding::kRuns;
     } else if (++looks == kMostLooks) {
       lock.unlock();
+      loop_.beginPowerOff();
+      hangs_at_ = cycles;
       finding_ = Finding::kSwitchingOff;
       finding_ = powerOff(drive_) ? Finding::kHangsPowerIsOff : Finding::kHangs;
+      loop_.endPowerOff();
       lock.lock();
     }
   }

@@ -141,7 +141,7 @@ std::string GrinderNode::shutDown() {
 
 /// Once the loop was told to end.
 std::string GrinderNode::hangingFunction() const {
-  if (watchdog_->finding() == LoopWatchdog::Finding::kSwitchingOff) return "powerOff()";
+  if (loop_->isPoweringOff()) return "powerOff()";
   if (!loop_->hasEnded()) return "read(), write() or wait()";
   return loop_->isPreparing() ? "prepare()" : "";
 }

@@ -105,6 +105,7 @@ class FakeDrive : public Drive {
 
   bool powerOff() override {
     power_off = true;
+    if (on_power_off) on_power_off();
     if (power_off_fails) throw std::runtime_error("no bus");
     return true;
   }
@@ -118,6 +119,7 @@ class FakeDrive : public Drive {
   std::function<void(FakeDrive&)> on_read;  ///< has the last word on what is read
   std::function<void()> on_write;           ///< before what is written takes effect
   std::function<void()> on_prepare;
+  std::function<void()> on_power_off;
   std::function<void()> on_wait;        ///< in place of the wait
   std::optional<ros::Duration> waited;  ///< what that returns, in place of the time since the last cycle
 

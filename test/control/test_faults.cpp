@@ -115,6 +115,44 @@ TEST(FaultWhileRunning, EndsTheJobInItsCycleAndStays) {
   }
 }
 
+/// Whether or not powerOff() has done anything.
+TEST(ControlLoopFault, OfAHangIsFoundInAnyStateWithPowerWhenItEnds) {
+  for (const S state : {S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHeld, S::kRetracted, S::kCanceling,
+                        S::kLifting, S::kJogging}) {
+    for (const bool enabled : {true, false}) {
+      SCOPED_TRACE(testing::Message() << toString(state) << enabled);
+      RigIn rig(state);
+      rig.loop->beginPowerOff();
+      rig.loop->endPowerOff();
+      rig.drive.on_read = [&](FakeDrive& d) { d.status.enabled = enabled; };
+      rig.cycle(400);
+      EXPECT_EQ(rig.last().state, S::kFault);
+      EXPECT_EQ(rig.last().fault.text(), "the drive reports a fault: it has returned to the control loop too late");
+      EXPECT_EQ(rig.last().job_ended, isInJob(state));
+      EXPECT_FALSE(rig.drive.written_drive.enable);
+      rig.drive.on_read = nullptr;
+      rig.run(3);
+      ASSERT_NO_FATAL_FAILURE(rig.recover());
+    }
+  }
+}
+
+TEST(ControlLoopFault, OfAHangWhilePowerIsAwaitedRefusesIt) {
+  Rig<FakeDrive> rig;
+  rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; };
+  rig.cycle();
+  ASSERT_TRUE(rig.loop->post(E::kEnable));
+  rig.run(2);
+  ASSERT_TRUE(rig.drive.written_drive.enable);
+  rig.loop->beginPowerOff();
+  rig.drive.on_read = nullptr;
+  rig.cycle();
+  const auto answer = rig.loop->reply();
+  ASSERT_TRUE(answer);
+  EXPECT_CONTAINS(answer->text, "it has returned to the control loop too late; its powerOff() has not returned");
+  EXPECT_FALSE(rig.drive.written_drive.enable);
+}
+
 TEST(ControlLoopFault, OfAThrowingWriteEndsTheJobInTheNextCycle) {
   RigIn rig(S::kRunning);
   bool throws = true;

@@ -120,6 +120,37 @@ TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {
   EXPECT_TRUE(soon([&] { return loop_->hasEnded(); }));
 }
 
+TEST_F(ControlLoopThread, OfADriveThatReturnsHasNoPowerBeforeItsPowerOffHasReturned) {
+  LoopConfig config = machineConfig();
+  config.following_error.setConstant(1);
+  config.feedback_timeout = config.enable_timeout = 30;  // the machine may be busy with other things
+  std::atomic<bool> hangs{false}, power_off_hangs{true};
+  drive_.on_read = [&](FakeDrive&) {
+    while (hangs) std::this_thread::yield();
+  };
+  drive_.on_power_off = [&] {
+    while (power_off_hangs) std::this_thread::yield();
+  };
+  loop_ = std::make_unique<ControlLoop>(drive_, config);
+  loop_->startThread();
+  const LoopWatchdog watchdog(*loop_, drive_);
+  ASSERT_TRUE(loop_->request(E::kEnable).accepted);
+  hangs = true;
+  ASSERT_TRUE(soon([&] { return watchdog.finding() == LoopWatchdog::Finding::kSwitchingOff; }));
+  hangs = false;
+  EXPECT_TRUE(soon([&] { return loop_->status().state == S::kFault; })) << "power after a hang";
+  EXPECT_EQ(watchdog.finding(), LoopWatchdog::Finding::kRuns);
+  EXPECT_TRUE(loop_->request(E::kReset).accepted);
+  EXPECT_EQ(loop_->request(E::kEnable).text,
+            "enable refused: the drive still reports a fault after the reset: it has returned to the control loop too "
+            "late; its powerOff() has not returned; remove its cause");
+  EXPECT_TRUE(loop_->isPoweringOff());
+  power_off_hangs = false;
+  ASSERT_TRUE(soon([&] { return !loop_->isPoweringOff(); }));
+  ASSERT_TRUE(soon([&] { return loop_->request(E::kEnable).accepted; }));
+  EXPECT_EQ(loop_->status().state, S::kReady);
+}
+
 TEST_F(ControlLoopThread, ReportsHowLongTheCycleBeforeTookWithoutTheWait) {
   using Clock = std::chrono::steady_clock;
   // By value, as the thread goes on after the test.

@@ -62,7 +62,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         g.inject('none')
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
-        self.assertRegex(run.text, 'the drive has switched its power off')
+        self.assertRegex(run.text, 'it has returned to the control loop too late')
         gc.poll(lambda: g.fresh_state().fault == run.text.split(' (')[0], 'the fault of the state')
 
     def test_way_back_from_an_emergency_stop(self):

@@ -21,6 +21,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <thread>
 
@@ -45,6 +46,13 @@ class ControlLoop : public RequestBox {
   /// The same without waiting for the end, which does not come while the drive hangs. Thread safe.
   void requestEnd() noexcept { running_ = false; }
   bool hasEnded() const noexcept { return ended_; }
+
+  /// For the watchdog, before and after the drive's powerOff(). The loop that comes round after all finds a fault of
+  /// the drive, and there is no power before the return. Thread safe; never waits.
+  void beginPowerOff() noexcept { power_off_ = PowerOff::kCalled; }
+  void endPowerOff() noexcept { power_off_ = PowerOff::kReturned; }
+  /// Whether the drive's powerOff() has not returned. Thread safe.
+  bool isPoweringOff() const noexcept { return power_off_ == PowerOff::kCalled; }
 
   /// The status of the most recent cycle. For any thread; never waits.
   LoopStatus status() const noexcept { return status_.load(); }
@@ -74,6 +82,9 @@ class ControlLoop : public RequestBox {
   const DriveCapabilities& capabilities() const { return capabilities_; }  ///< of the drive
 
  private:
+  /// The drive's powerOff(), since the loop last looked.
+  enum class PowerOff : std::uint8_t { kNotCalled, kCalled, kReturned };
+
   void run();
 
   /// Calls the drive; what it throws becomes a fault of the drive in the next readDrive().
@@ -86,6 +97,7 @@ class ControlLoop : public RequestBox {
   void writeOff(const DriveCycle& cycle) noexcept;
 
   void readDrive(const DriveCycle& cycle);
+  void observeHang();
   void readSwivel();
   void judgeY(double last, double elapsed);
   void trackMotion();
@@ -173,6 +185,7 @@ class ControlLoop : public RequestBox {
   WheelWatch wheel_;
   FaultText thrown_;            ///< by the drive, since the last readDrive()
   bool has_thrown_ = false;     ///< the drive
+  bool has_hung_ = false;       ///< the drive, until this cycle
   bool has_positions_ = false;  ///< all have been finite once
   bool y_homed_ = false;        ///< as the drive says, and it is not homing
   DriveFeedback feedback_;
@@ -203,6 +216,7 @@ class ControlLoop : public RequestBox {
   std::atomic<double> feed_override_{1};
   std::atomic<bool> running_{false};
   std::atomic<bool> ended_{false};
+  std::atomic<PowerOff> power_off_{PowerOff::kNotCalled};
   std::atomic<pthread_t> own_thread_{};
   std::atomic<bool> realtime_scheduling_{false};
   std::atomic<bool> memory_locked_{false};

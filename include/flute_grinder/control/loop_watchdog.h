@@ -21,7 +21,7 @@ class LoopWatchdog {
   static constexpr int kMostLooks = 25;
 
   /// @param loop whose thread has been started. @param drive its own. Both must outlive this object.
-  LoopWatchdog(const ControlLoop& loop, Drive& drive);
+  LoopWatchdog(ControlLoop& loop, Drive& drive);
   ~LoopWatchdog();
 
   /// What is known of the loop. Thread safe.
@@ -31,15 +31,16 @@ class LoopWatchdog {
     kHangs,
     kHangsPowerIsOff
   };
-  Finding finding() const noexcept { return finding_; }
+  Finding finding() const noexcept;
   bool loopHangs() const noexcept { return finding() != Finding::kRuns; }
 
  private:
   void run();
 
-  const ControlLoop& loop_;
+  ControlLoop& loop_;
   Drive& drive_;
-  std::atomic<Finding> finding_{Finding::kRuns};
+  std::atomic<Finding> finding_{Finding::kRuns};  ///< as of the last look
+  std::atomic<std::uint64_t> hangs_at_{0};        ///< the cycles done by a loop that hangs
   std::mutex mutex_;
   std::condition_variable end_;
   bool ends_ = false;  ///< guarded by the mutex

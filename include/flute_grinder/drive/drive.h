@@ -118,7 +118,8 @@ class Drive {
 
   /// Switches the power off at once, in place of write(), because read(), write() or wait() has not returned for 0.25
   /// s. Called in a thread of its own, maybe while one of these still hangs, or goes on. `enabled` must then stay
-  /// false until `enable` has been false. By default nothing is done: the drive's own watchdog is all there is.
+  /// false until `enable` has been false; until this has returned, it is not set again. By default nothing is done: the
+  /// drive's own watchdog is all there is.
   /// @return whether the power is switched off.
   virtual bool powerOff() { return false; }
 

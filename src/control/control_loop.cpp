@@ -10,6 +10,16 @@
 // The cycle and the motion; all of it is real-time. Requests are executed in loop_execution.cpp.
 namespace grinder {
 
+namespace {
+
+void append(FaultText& text, std::int64_t number) noexcept {
+  std::array<char, 21> digits{};
+  std::to_chars(digits.begin(), digits.end() - 1, number);
+  text += digits.data();
+}
+
+}  // namespace
+
 template <typename Call>
 void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
   try {
@@ -36,10 +46,8 @@ ros::Duration ControlLoop::awaitCycle() noexcept {
   });
   if (waited && period >= ros::Duration() && period <= ros::Duration(kLongest, 0)) return period;
   if (waited) {
-    std::array<char, 12> seconds{};
-    std::to_chars(seconds.begin(), seconds.end() - 1, period.sec);
     thrown_ = "its wait() has returned ";
-    thrown_ += seconds.data();
+    append(thrown_, period.sec);
     thrown_ += " s; allowed: 0 to 3600 s";
     has_thrown_ = true;
   }
@@ -86,6 +94,7 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
     sample_.drive.fault_text = thrown_;
     has_thrown_ = false;
   }
+  boundCommandsWaiting();
   observeHang();
   unwanted_power_ = sample_.drive.enabled && !drive_command_.enable ? unwanted_power_ + sample_.period : 0;
   sample_.power_stays = !(unwanted_power_ <= config_.enable_timeout);
@@ -107,6 +116,20 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   sample_.command_in_effect = history_.empty() ? command_ : history_.inEffect(sample_.drive.commands_waiting).command;
   judgeY(last_y, elapsed);
   readSwivel();
+}
+
+/// Axes whose commands never arrive would never rest.
+void ControlLoop::boundCommandsWaiting() {
+  DriveStatus& drive = sample_.drive;
+  const std::uint32_t reported = drive.commands_waiting;
+  if (reported <= capabilities_.buffer) return;
+  drive.commands_waiting = capabilities_.buffer;
+  if (drive.fault) return;
+  drive.fault = true;
+  drive.fault_text = "it has reported ";
+  append(drive.fault_text, reported);
+  drive.fault_text += " commands waiting; allowed: up to ";
+  append(drive.fault_text, capabilities_.buffer);
 }
 
 /// The watchdog has called powerOff(): whatever the drive reports, that is a fault, until the call has returned.
@@ -376,6 +399,7 @@ void ControlLoop::command(const Axes& offset) {
   sample_.has_setpoint = true;
 }
 
+/// A drive whose buffer does not empty delays that by its buffer, since the last setpoint is written again and again.
 bool ControlLoop::allReachedAxes() { return sample_.drive.commands_waiting <= rested_++; }
 
 void ControlLoop::restJob() {

@@ -25,10 +25,12 @@ void nap(std::int64_t nanoseconds) {
 
 void HalHardware::init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) {
   const HalParameters parameters = readHalParameters(ParameterReader(node_nh), ParameterReader(drive_nh));
-  can_.buffer = parameters.buffer;
+  kept_ = parameters.buffer;
+  can_.buffer = 2 * kept_;
   component_ = std::make_unique<HalComponent>(parameters.component);
-  fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, 2 * can_.buffer);
+  fifo_ = std::make_unique<HalFifo>(component_->id(), parameters.streamer, can_.buffer);
   makePins();
+  sent_ = *pins_->played;
   checkServoThread(parameters.control_rate);
 }
 
@@ -176,12 +178,12 @@ void HalHardware::switchOn(const AxisValues& position) {
   // job was aborted.
   fifo_->drain();
   sent_ = *pins_->played;
-  for (std::uint32_t i = 0; i < can_.buffer; ++i) send(position);
+  for (std::uint32_t i = 0; i < kept_; ++i) send(position);
   *pins_->enable = !power_off_;
 }
 
 void HalHardware::send(const AxisValues& position) {
-  if (fifo_->push(position, sent_ + 1)) {
+  if (waiting() < can_.buffer && fifo_->push(position, sent_ + 1)) {
     ++sent_;
   } else {
     overflow_ = true;
@@ -192,7 +194,7 @@ ros::Duration HalHardware::wait(const ros::Duration& nominal) {
   if (!*pins_->enabled || !*pins_->enable) return Drive::wait(nominal);
   const std::int64_t time = nominal.toNSec() / kNapsPerCycle;
   for (int naps = 0; naps < kNapsPerCycle * kMaxWait; ++naps) {
-    if (waiting() < can_.buffer || !*pins_->enabled) break;
+    if (waiting() < kept_ || !*pins_->enabled) break;
     nap(time);
   }
   return sinceLastCycle(nominal);

@@ -5,6 +5,7 @@
 #include "control/paper_stream.h"
 #include "flute_grinder/control/control_loop.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -304,7 +305,12 @@ inline void bringTo(Rig<FakeDrive>& rig, MachineState state) {
 /// In a state.
 class RigIn : public Rig<FakeDrive> {
  public:
-  explicit RigIn(MachineState state, const LoopConfig& config = machineConfig()) : Rig(config) {
+  /// @param buffer of the drive [commands].
+  explicit RigIn(MachineState state, const LoopConfig& config = machineConfig(), std::uint32_t buffer = 0)
+      : Rig(config, [&](FakeDrive& drive) {
+          setUp(drive, config);
+          drive.can.buffer = buffer;
+        }) {
     bringTo(*this, state);
     if (last().state != state) {
       throw std::runtime_error(std::string(toString(last().state)) + " instead of " + toString(state));

@@ -447,8 +447,7 @@ TEST(Jog, AfterAStallOfTheProcessItsMessagesAreWaitedForOnce) {
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
-  Rig<FakeDrive> rig;
-  rig.enable();
+  RigIn rig(S::kReady, machineConfig(), 4);
   rig.drive.status.commands_waiting = 4;
   const double from = rig.last().command[kX];
   ASSERT_TRUE(rig.jog(step(kX, 1e-5)).accepted);

@@ -46,7 +46,7 @@ TEST(LateCycle, IsNoFaultAtRest) {
 }
 
 TEST(LateCycle, IsNothingToADriveThatHasCommandsWaiting) {
-  RigIn late(S::kRunning, patient()), punctual(S::kRunning, patient());
+  RigIn late(S::kRunning, patient(), 1), punctual(S::kRunning, patient(), 1);
   late.drive.status.commands_waiting = punctual.drive.status.commands_waiting = 1;  // within the following error
   punctual.cycle();
   late.cycle(50);

@@ -2,7 +2,9 @@
 #include "control/rig.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <deque>
+#include <limits>
 
 // The control loop with a drive that buffers commands and plays them by a clock of its own.
 namespace grinder::test_support {
@@ -29,7 +31,10 @@ class BufferedDrive : public testing::Test {
     rig_.drive.on_read = [this](FakeDrive& drive) { buffer_(drive); };
   }
 
-  Rig<FakeDrive> rig_;
+  Rig<FakeDrive> rig_{machineConfig(), [](FakeDrive& drive) {
+                        setUp(drive, machineConfig());
+                        drive.can.buffer = kDepth;
+                      }};
   Buffer buffer_;
 };
 
@@ -91,6 +96,47 @@ TEST_F(BufferedDrive, UnderrunIsAFaultWithCountAndSetpoint) {
   EXPECT_EQ(sample.fault.kind, FaultKind::kUnderrun);
   EXPECT_EQ(sample.fault.text(),
             "the axes found no setpoint in 3 servo cycles, after setpoint " + std::to_string(cycle));
+}
+
+/// Wherever the power is switched off at rest.
+class BufferThat : public testing::Test {
+ protected:
+  /// Reports in a state that commands wait, then disables.
+  static const CycleSample& afterDisable(RigIn& rig, std::uint32_t waiting) {
+    rig.drive.on_read = [before = rig.drive.on_read, waiting](FakeDrive& d) {
+      if (before) before(d);
+      d.status.commands_waiting = waiting;
+    };
+    rig.loop->postStop(E::kDisable);
+    for (int i = 0; i < 5000 && rig.drive.written_drive.enable; ++i) rig.cycle();
+    return rig.last();
+  }
+};
+
+TEST_F(BufferThat, HoldsMoreThanItCanIsAFaultInAnyState) {
+  for (const S state : {S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracted,
+                        S::kCanceling, S::kLifting, S::kJogging}) {
+    SCOPED_TRACE(toString(state));
+    RigIn rig(state, machineConfig(), 50);
+    const CycleSample& sample = afterDisable(rig, std::numeric_limits<std::uint32_t>::max());
+    EXPECT_EQ(sample.state, S::kFault);
+    EXPECT_EQ(sample.fault.text(),
+              "the drive reports a fault: it has reported 4294967295 commands waiting; allowed: up to 50");
+    EXPECT_EQ(sample.drive.commands_waiting, 50u);
+    EXPECT_FALSE(rig.drive.written_drive.enable);
+  }
+}
+
+TEST_F(BufferThat, NeverEmptiesDelaysADisableByNoMoreThanItHolds) {
+  for (const S state : {S::kStarting, S::kRunning, S::kHeld, S::kRetracted, S::kLifting, S::kJogging}) {
+    SCOPED_TRACE(toString(state));
+    LoopConfig config = machineConfig();
+    config.following_error.setConstant(1);
+    RigIn rig(state, config, 50), empty(state, config, 50);
+    EXPECT_EQ(afterDisable(rig, 50).state, S::kDisabled);
+    EXPECT_EQ(afterDisable(empty, 0).state, S::kDisabled);
+    EXPECT_LE(rig.log.size(), empty.log.size() + 2 * 51) << "at the stop, and at the end of the lift";
+  }
 }
 
 TEST_F(BufferedDrive, FollowsPositionsAnewAfterAFault) {

@@ -64,6 +64,7 @@ class RideDrive : public Drive {
   DriveCapabilities capabilities() const override {
     DriveCapabilities can;
     can.homing = can.spindle = can.coolant = true;
+    can.buffer = static_cast<std::uint32_t>(buffer_);
     return can;
   }
   void read(const DriveCycle& cycle, DriveFeedback& feedback) override {

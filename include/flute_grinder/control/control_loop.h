@@ -97,6 +97,7 @@ class ControlLoop : public RequestBox {
   void writeOff(const DriveCycle& cycle) noexcept;
 
   void readDrive(const DriveCycle& cycle);
+  void boundCommandsWaiting();
   void observeHang();
   void readSwivel();
   void judgeY(double last, double elapsed);

@@ -33,6 +33,7 @@ struct DriveStatus {
   bool probe_contact = false;        ///< the measuring probe touches something
   std::uint64_t feedback_count = 0;  ///< incremented with each fresh set of positions
   /// For a drive that buffers: number of written commands that had not reached the axes when the positions were read.
+  /// More than DriveCapabilities::buffer is a fault of the drive.
   std::uint32_t commands_waiting = 0;
   std::uint64_t underruns = 0;  ///< servo cycles since the start in which the powered axes had no command
   /// Angle of the wheel's swivel, positive for right-hand flutes; NaN if the drive does not measure it [rad]

@@ -86,7 +86,8 @@ void ControlLoop::cycle(const ros::Time& time, const ros::Duration& period) {
 void ControlLoop::readDrive(const DriveCycle& cycle) {
   callDrive("read()", [&] { drive_.read(cycle, feedback_); });
   const std::uint64_t last_feedback = sample_.drive.feedback_count;
-  const double last_y = sample_.position[kY], elapsed = sample_.feedback_age + sample_.period;
+  const Axes last = sample_.position;
+  const double elapsed = sample_.feedback_age + sample_.period;
   touched_ = sample_.drive.probe_contact;
   sample_.drive = feedback_.status;
   if (has_thrown_) {
@@ -106,15 +107,18 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   const bool finite = sample_.position.isFinite().all();
   has_positions_ = has_positions_ || (sample_.drive.feedback_count > 0 && finite);
   next_status_.position_valid = has_positions_ && finite && sample_.feedback_age <= config_.feedback_timeout;
+  const AxisFlags credible = credibleFrom(last, elapsed);
+  if (sample_.feedback_age == 0) settled_ = credible.all();
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
-  // again; after a fault the commands do not change.
-  const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
+  // again; after a fault the commands do not change. While the power comes on they take effect at any time.
+  const bool follows =
+      (state_ == MachineState::kDisabled && (settled_ || !drive_command_.enable)) || state_ == MachineState::kHoming;
   if (follows && finite) {
     command_ = sample_.position;
     history_.clear();
   }
   sample_.command_in_effect = history_.empty() ? command_ : history_.inEffect(sample_.drive.commands_waiting).command;
-  judgeY(last_y, elapsed);
+  judgeY(credible[kY]);
   readSwivel();
 }
 
@@ -144,20 +148,27 @@ void ControlLoop::observeHang() {
   if (power_off == PowerOff::kReturned) power_off_.compare_exchange_strong(power_off, PowerOff::kNotCalled);
 }
 
+/// Whether the axes can have come where they are read. If not, that is of a new reference, or wrong: the next reading
+/// shows which.
+/// @param last reading [m], A [rad]. @param elapsed since then [s].
+ControlLoop::AxisFlags ControlLoop::credibleFrom(const Axes& last, double elapsed) const {
+  // What moved unseen for longer is not believed.
+  const Axes most =
+      config_.following_error + config_.machine.limits.max_velocity * std::min(elapsed, config_.feedback_timeout);
+  return (sample_.position - last).abs() <= most;  // not of NaN
+}
+
 /// Once Y was read where it cannot have come to, it counts as not homed until it is: where the axis is, nobody knows.
-/// @param last reading [m]. @param elapsed since then [s].
-void ControlLoop::judgeY(double last, double elapsed) {
+/// @param credible whether it can have come there without power.
+void ControlLoop::judgeY(bool credible) {
   const bool was_homed = y_homed_;
   y_homed_ = state_ != MachineState::kHoming && sample_.drive.homed && has_positions_;
   if (state_ == MachineState::kHoming) return;
   // A drive that does not home gives no better reading than the one after a lift.
   if (!capabilities_.homing && !wheel_.wheel().in_work) wheel_.doubtY(false);
-  const double slack = config_.following_error[kY];
-  // What moved unseen for longer is not believed.
-  const double most = slack + config_.machine.limits.max_velocity[kY] * std::min(elapsed, config_.feedback_timeout);
-  const bool credible = isPowered(state_) ? sample_.followingError(kY) <= slack  // not of NaN
-                                          : !was_homed || std::abs(sample_.position[kY] - last) <= most;
-  if (y_homed_ && !credible) wheel_.doubtY(true);
+  const bool right = isPowered(state_) ? sample_.followingError(kY) <= config_.following_error[kY]  // not of NaN
+                                       : !was_homed || credible;
+  if (y_homed_ && !right) wheel_.doubtY(true);
   sample_.drive.homed = sample_.drive.homed && !wheel_.wheel().y_doubted;
 }
 
@@ -256,11 +267,12 @@ void ControlLoop::awaitHoming() {
   homing_of_before_ &= sample_.drive.homing;
   homing_seen_ |= sample_.drive.homing && !homing_of_before_;
   const bool over = homing_seen_ && !sample_.drive.homing;
-  if (over && sample_.drive.homed) {
+  const bool failed = over && !sample_.drive.homed;
+  if (over && !failed && settled_) {
     wheel_.doubtY(false);
     return apply(MachineEvent::kDone);
   }
-  if (!over && waited_ <= config_.homing_timeout) return;
+  if (!failed && waited_ <= config_.homing_timeout) return;
   LoopFault fault;
   fault.kind = FaultKind::kHoming;
   fault.value = waited_;

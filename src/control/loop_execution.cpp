@@ -126,7 +126,7 @@ Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
   waited_ += sample_.period;
-  const bool on = drive_command_.enable && sample_.drive.enabled;
+  const bool on = drive_command_.enable && sample_.drive.enabled && settled_;
   Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal == Refusal::kNone) refusal = commandPower();
   if (refusal == Refusal::kNone && !on && !(waited_ <= config_.enable_timeout)) refusal = refusalWithoutPower();
@@ -140,19 +140,21 @@ void ControlLoop::awaitPower() {
   }
 }
 
-/// Once the power of before has gone, which would be taken for the new, and the drive is prepared.
+/// Once the power of before has gone, which would be taken for the new, the drive is prepared, and the command is where
+/// the axes are.
 Refusal ControlLoop::commandPower() {
   if (drive_command_.enable || sample_.drive.enabled) return Refusal::kNone;
   if (preparation_ && !preparation_begun_) {
     if (!preparation_->begin()) return Refusal::kPreparing;
     preparation_begun_ = true;
   }
-  if (isPreparing()) return Refusal::kNone;
+  if (isPreparing() || !settled_) return Refusal::kNone;
   drive_command_.enable = !preparation_ || preparation_->state() == DrivePreparation::State::kReady;
   return drive_command_.enable ? Refusal::kNone : Refusal::kNotPrepared;
 }
 
 Refusal ControlLoop::refusalWithoutPower() const {
+  if (!settled_) return Refusal::kFeedback;
   if (drive_command_.enable) return Refusal::kNoPower;
   return isPreparing() ? Refusal::kPreparing : Refusal::kPowerStays;
 }

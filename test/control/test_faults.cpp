@@ -222,6 +222,46 @@ TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
   EXPECT_TRUE(rig.setpoints().empty());
 }
 
+/// With positions that are read in every cycle, or in every other one.
+TEST(Enable, NeverCommandsAWrongReading) {
+  LoopConfig config = machineConfig();
+  config.enable_timeout = 1;
+  const Axes at = config.machine.park;
+  for (const int every : {1, 2}) {
+    for (int wrong = 0; wrong <= 6; ++wrong) {
+      SCOPED_TRACE(testing::Message() << wrong << " of every " << every);
+      Rig<FakeDrive> rig(config);
+      rig.run(3);
+      rig.drive.on_read = [&, cycle = 0](FakeDrive& d) mutable {
+        const int reading = cycle / every;
+        if (cycle++ % every != 0) --d.status.feedback_count;
+        d.status.enabled = d.status.enabled && reading >= 5;
+        d.place(at);
+        if (reading == wrong) d.position[kZ] += 0.01;
+      };
+      ASSERT_TRUE(rig.loop->post(E::kEnable));
+      for (int i = 0; i < 40; ++i) {
+        rig.cycle();
+        ASSERT_TRUE(!rig.drive.written_drive.enable || sameBits(toAxes(rig.drive.written), at)) << i;
+      }
+      EXPECT_EQ(rig.last().state, wrong <= 5 ? S::kReady : S::kFault) << rig.last().fault.text();
+    }
+  }
+}
+
+TEST(Enable, IsRefusedWhilePositionsJump) {
+  for (const bool enabled : {true, false}) {
+    Rig<FakeDrive> rig;
+    rig.cycle();
+    rig.drive.on_read = [&, sign = 1](FakeDrive& d) mutable {
+      d.status.enabled = d.status.enabled && enabled;
+      d.position[kX] += (sign = -sign) * 0.01;
+    };
+    EXPECT_EQ(rig.ask(E::kEnable).text, "enable refused: the drive gives no valid, fresh positions");
+    EXPECT_FALSE(rig.drive.written_drive.enable);
+  }
+}
+
 TEST(ControlLoopReset, IsRefusedWhileTheEmergencyStopIsPressedAndCommandedForOneCycle) {
   RigIn rig(S::kFault);
   rig.drive.status.emergency_stop = true;

@@ -1,6 +1,7 @@
 #include "control/checks.h"
 #include "control/rig.h"
 
+#include <algorithm>
 #include <functional>
 #include <string>
 
@@ -66,10 +67,12 @@ class HomingFake : public testing::Test {
 TEST_F(HomingFake, CommandsFollowThePositionsHoweverTheyJump) {
   changeHoming([](FakeDrive& d, int reading) {
     d.status.homing = reading <= 10;
-    d.place({0.1 * reading, -0.01 * reading, 0.02 * reading, -3.0 * reading});
+    const int place = std::min(reading, 11);
+    d.place({0.1 * place, -0.01 * place, 0.02 * place, -3.0 * place});
   });
   ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-  for (int i = 0; i < 11; ++i) {
+  // The last jump may be the new reference, or a wrong reading: the one after it shows that.
+  for (int i = 0; i < 12; ++i) {
     rig_.cycle();
     ASSERT_TRUE(sameBits(toAxes(rig_.drive.written), toAxes(rig_.drive.position))) << "cycle " << i;
   }
@@ -81,6 +84,25 @@ TEST_F(HomingFake, CommandsFollowThePositionsHoweverTheyJump) {
   // From then on they do not.
   rig_.drive.on_read = [](FakeDrive& d) { d.position[kX] += 0.0011; };
   EXPECT_EQ(rig_.cycle().fault.kind, FaultKind::kFollowingError);
+}
+
+TEST_F(HomingFake, IsNotDoneByAReadingThatTheNextOneBeliesAndNothingJumps) {
+  const Axes home = machineConfig().machine.park;
+  for (const int wrong : {10, 11, 12}) {
+    SCOPED_TRACE(wrong);
+    changeHoming([=](FakeDrive& d, int reading) {
+      d.status.homing = reading <= 10;
+      d.place(home);
+      if (reading == wrong) d.position[kZ] += 0.01;
+    });
+    ASSERT_TRUE(rig_.ask(E::kHome).accepted);
+    for (int i = 0; i < 20; ++i) {
+      rig_.cycle();
+      const bool follows = rig_.drive.written_drive.enable && !rig_.drive.written_drive.home;
+      ASSERT_TRUE(!follows || sameBits(toAxes(rig_.drive.written), home)) << i;
+    }
+    EXPECT_EQ(rig_.last().state, S::kReady) << rig_.last().fault.text();
+  }
 }
 
 TEST_F(HomingFake, ThatNeverEndsOrNeverBeginsFaultsAfterTheTimeout) {

@@ -158,7 +158,7 @@ TEST(YThatWasReadWhereItCannotBe, LeavesTheLiftAloneAndThenHoming) {
       ASSERT_TRUE(rig.ask(E::kHome).accepted);
       rig.run(3);
       rig.drive.on_read = [](FakeDrive& d) { d.status.homing = false, d.position[kY] = 0.05; };
-      rig.cycle();
+      rig.run(2);
       rig.drive.on_read = nullptr;
       EXPECT_TRUE(rig.cycle().drive.homed);
       EXPECT_TRUE(rig.askToStartPaper().accepted);

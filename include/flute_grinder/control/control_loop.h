@@ -82,6 +82,8 @@ class ControlLoop : public RequestBox {
   const DriveCapabilities& capabilities() const { return capabilities_; }  ///< of the drive
 
  private:
+  using AxisFlags = Eigen::Array<bool, kAxisCount, 1>;
+
   /// The drive's powerOff(), since the loop last looked.
   enum class PowerOff : std::uint8_t { kNotCalled, kCalled, kReturned };
 
@@ -100,7 +102,8 @@ class ControlLoop : public RequestBox {
   void boundCommandsWaiting();
   void observeHang();
   void readSwivel();
-  void judgeY(double last, double elapsed);
+  AxisFlags credibleFrom(const Axes& last, double elapsed) const;
+  void judgeY(bool credible);
   void trackMotion();
   void checkDrive();
   void writeDrive(const DriveCycle& cycle);
@@ -184,9 +187,11 @@ class ControlLoop : public RequestBox {
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;
-  FaultText thrown_;            ///< by the drive, since the last readDrive()
-  bool has_thrown_ = false;     ///< the drive
-  bool has_hung_ = false;       ///< the drive, until this cycle
+  FaultText thrown_;         ///< by the drive, since the last readDrive()
+  bool has_thrown_ = false;  ///< the drive
+  bool has_hung_ = false;    ///< the drive, until this cycle
+  bool settled_ =
+      false;  ///< by the last two readings that differ in time, every axis can have come from one to the other
   bool has_positions_ = false;  ///< all have been finite once
   bool y_homed_ = false;        ///< as the drive says, and it is not homing
   DriveFeedback feedback_;

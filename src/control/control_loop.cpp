@@ -35,7 +35,7 @@ void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
   has_thrown_ = true;
 }
 
-ros::Duration ControlLoop::awaitCycle() noexcept {
+ros::Duration ControlLoop::awaitCycle(Clock::time_point last) noexcept {
   constexpr std::int32_t kLongest = 3600;  // a computer that was suspended may count that [s]
   const ros::Duration nominal(config_.machine.period);
   ros::Duration period = nominal;
@@ -51,7 +51,9 @@ ros::Duration ControlLoop::awaitCycle() noexcept {
     thrown_ += " s; allowed: 0 to 3600 s";
     has_thrown_ = true;
   }
-  return drive_.Drive::wait(nominal);
+  // What that returns is the time since it was called last, maybe many cycles ago.
+  drive_.Drive::wait(nominal);
+  return ros::Duration().fromNSec(std::chrono::nanoseconds(Clock::now() - last).count());
 }
 
 void ControlLoop::writeOff(const DriveCycle& cycle) noexcept {

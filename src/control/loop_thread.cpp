@@ -56,20 +56,20 @@ void ControlLoop::run() {
   own_thread_ = pthread_self();
   pthread_setname_np(pthread_self(), "control_loop");
   realtime_scheduling_ = becomeRealtime();
-  using Clock = std::chrono::steady_clock;
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
   // The first wait returns a period that has not passed; no stamp is to be ahead of the clock.
-  ros::Time time = ros::Time(wall.sec, wall.nsec) - ros::Duration(config_.machine.period);
+  const ros::Duration nominal(config_.machine.period);
+  ros::Time time = ros::Time(wall.sec, wall.nsec) - nominal;
+  Clock::time_point begin = Clock::now() - std::chrono::nanoseconds(nominal.toNSec());
   while (running_) {
-    const ros::Duration period = awaitCycle();
-    const Clock::time_point begin = Clock::now();
+    const ros::Duration period = awaitCycle(begin);
+    begin = Clock::now();
     time = after(time, period);
     cycle(time, period);
     sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
-  const ros::Duration period(config_.machine.period);
-  writeOff({time, period, period});
+  writeOff({time, nominal, nominal});
   ended_ = true;
 }
 

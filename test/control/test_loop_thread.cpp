@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -65,6 +66,35 @@ TEST_F(ControlLoopThread, GoesOnWhenTheDriveThrows) {
   }
   loop_->stopThread();
   EXPECT_FALSE(drive_.written_drive.enable);
+}
+
+TEST_F(ControlLoopThread, OfADriveWithAClockOfItsOwnThatThrowsAgainLaterKeepsTheTime) {
+  using Clock = std::chrono::steady_clock;
+  static constexpr int kFailures[]{3, 60};
+  int waits = 0;
+  Clock::time_point waited_until;  // before the failure
+  std::atomic<double> passed{0};   // since then, when the failure is read
+  const auto fails = [&] { return waits == kFailures[0] || waits == kFailures[1]; };
+  drive_.waited = ros::Duration(0.001);
+  drive_.on_wait = [&] {
+    ++waits;
+    if (fails()) throw std::runtime_error("no clock");
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    waited_until = Clock::now();
+  };
+  drive_.on_read = [&](FakeDrive&) {
+    if (fails()) passed = std::chrono::duration<double>(Clock::now() - waited_until).count();
+  };
+  loop_->startThread();
+  CycleSample sample;
+  int cycle = 0;
+  for (const int failure : kFailures) {
+    for (; cycle < failure; ++cycle) ASSERT_TRUE(popInTime(sample));
+    EXPECT_TRUE(sample.drive.fault);
+    EXPECT_GT(sample.period, 0);
+    EXPECT_LE(sample.period, passed) << failure;
+  }
+  loop_->stopThread();
 }
 
 TEST_F(ControlLoopThread, GoesOnWhenTheDriveReturnsATimeThatCannotHavePassed) {

@@ -21,6 +21,7 @@
 #include <pthread.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <thread>
@@ -82,6 +83,7 @@ class ControlLoop : public RequestBox {
   const DriveCapabilities& capabilities() const { return capabilities_; }  ///< of the drive
 
  private:
+  using Clock = std::chrono::steady_clock;
   using AxisFlags = Eigen::Array<bool, kAxisCount, 1>;
 
   /// The drive's powerOff(), since the loop last looked.
@@ -93,8 +95,8 @@ class ControlLoop : public RequestBox {
   template <typename Call>
   void callDrive(const char* function, const Call& call) noexcept;
   /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails, which becomes a fault of the drive
-  /// too. @return time since the last one.
-  ros::Duration awaitCycle() noexcept;
+  /// too. @param last when the last one began. @return time since then.
+  ros::Duration awaitCycle(Clock::time_point last) noexcept;
   /// Tells the drive to switch the power off, when no cycle follows.
   void writeOff(const DriveCycle& cycle) noexcept;
 

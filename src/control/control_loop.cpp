@@ -25,13 +25,15 @@ void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
   try {
     return call();
   } catch (const std::exception& error) {
-    thrown_ = error.what();
+    thrown_ = textOrNone(error);
   } catch (...) {
     thrown_ = "an exception that is no std::exception";
   }
-  thrown_ += " (thrown by its ";
-  thrown_ += function;
-  thrown_ += ")";
+  FaultText by;
+  by = " (thrown by its ";
+  by += function;
+  by += ")";
+  thrown_.endWith(by);
   has_thrown_ = true;
 }
 

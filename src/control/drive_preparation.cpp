@@ -48,7 +48,7 @@ void DrivePreparation::prepare() {
     drive_.prepare();
     result = State::kReady;
   } catch (const std::exception& error) {
-    why_ = error.what();
+    why_ = textOrNone(error);
   } catch (...) {
     why_ = "an exception that is no std::exception";
   }

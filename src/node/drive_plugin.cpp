@@ -61,7 +61,7 @@ void DrivePlugin::call(const char* function, const std::function<void()>& call) 
   } catch (const pluginlib::PluginlibException&) {
     throw;
   } catch (const std::exception& error) {
-    throw ParameterError("the drive " + type_ + ": " + std::string(textOrNone(error.what())));
+    throw ParameterError("the drive " + type_ + ": " + std::string(textOrNone(error)));
   } catch (...) {
     throw ParameterError("the drive " + type_ + ": its " + function + " has thrown what is no std::exception");
   }

@@ -8,6 +8,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <thread>
 
@@ -31,11 +33,16 @@ bool await(std::chrono::seconds timeout, Condition condition) {
   return true;
 }
 
-/// Refuses a drive that cannot hold the control period, or buffers more than the loop keeps.
+/// Refuses a drive whose capabilities are no figures, that cannot hold the control period, or buffers more than the
+/// loop keeps.
 /// @param drive its type. @param rate the parameter's name.
 void checkCapabilities(const DriveCapabilities& can, const std::string& drive, const std::string& rate, double period) {
   std::ostringstream text;
-  if (!(can.shortest_period <= period * (1 + kRounding))) {
+  // With so many digits, or the rate that is refused may look like the one that is allowed.
+  text.precision(std::numeric_limits<double>::digits10);
+  if (!(can.shortest_period >= 0 && std::isfinite(can.shortest_period))) {
+    text << "the drive " << drive << " states a shortest_period of " << can.shortest_period << " s; allowed: 0 or more";
+  } else if (!(can.shortest_period <= period * (1 + kRounding))) {
     text << "parameter " << rate << " = " << 1 / period << "; allowed: up to " << 1 / can.shortest_period
          << ", which the drive " << drive << " can hold";
   } else if (can.buffer > kMaxCommandsWaiting) {

@@ -98,7 +98,7 @@ int run(const ros::NodeHandle& nh, const grinder::EndSignals& signals) {
     std::_Exit(1);
   } catch (const std::exception& error) {
     // Drives and files have their say in it.
-    ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error.what()), "\n"));
+    ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error), "\n"));
     return 1;
   }
 }

@@ -48,6 +48,12 @@ std::vector<FaultCase> faultCases() {
       [](FakeDrive&) { throw Thrown("no answer"); });
   add("ReadThrowsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text (thrown by its read())"},
       [](FakeDrive&) { throw Thrown(nullptr); });
+  add("ReadThrowsAnEmptyText", FaultKind::kDriveFault, {"the drive reports a fault: no text (thrown by its read())"},
+      [](FakeDrive&) { throw Thrown(""); });
+  static const std::string long_text(200, 'x');
+  add("ReadThrowsALongText", FaultKind::kDriveFault,
+      {"the drive reports a fault: " + std::string(FaultText::kMost - 23, 'x') + " (thrown by its read())"},
+      [](FakeDrive&) { throw Thrown(long_text.c_str()); });
   add("DriveFaultIsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text"}, [](FakeDrive& d) {
     const char* none = nullptr;
     d.status.fault = true;
@@ -209,6 +215,14 @@ TEST(FaultText, CutsOffWhatIsTooLong) {
   EXPECT_EQ(text.text(), std::string(FaultText::kMost - 1, 'x') + "y");
   text = "";
   EXPECT_TRUE(text.text().empty());
+  FaultText end;
+  end = "cd";
+  text = "ab";
+  text.endWith(end);
+  EXPECT_EQ(text.text(), "abcd");
+  text = std::string(FaultText::kMost, 'x');
+  text.endWith(end);
+  EXPECT_EQ(text.text(), std::string(FaultText::kMost - 2, 'x') + "cd");
 }
 
 TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {

@@ -10,6 +10,8 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <limits>
+#include <stdexcept>
 #include <string>
 #include <thread>
 
@@ -34,6 +36,9 @@ class AwkwardDrive : public grinder::Drive {
     grinder::DriveCapabilities can;
     can.prepares = how_ == "hangs in prepare";
     if (how_ == "slow bus") can.shortest_period = 0.002;
+    if (how_ == "slightly slow bus") can.shortest_period = 0.0010000001;
+    if (how_ == "no figure") can.shortest_period = std::numeric_limits<double>::quiet_NaN();
+    if (how_ == "negative") can.shortest_period = -0.001;
     if (how_ == "long buffer") can.buffer = 5000;
     return can;
   }
@@ -51,6 +56,7 @@ class AwkwardDrive : public grinder::Drive {
   void misbehave(const std::string& function) const {
     const auto is_to = [&](const std::string& how) { return how_.find(how + " in " + function) != std::string::npos; };
     if (is_to("throws")) throw 7;
+    if (is_to("throws no text")) throw std::runtime_error("");
     if (is_to("hangs")) ROS_WARN("hangs now");
     while (is_to("hangs")) std::this_thread::sleep_for(std::chrono::seconds(1));
   }

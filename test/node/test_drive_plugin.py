@@ -59,6 +59,18 @@ class TestDrivePlugin(unittest.TestCase):
         self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward='slow bus'),
                          r'parameter /doubtful\d+/control_rate = 1000; allowed: up to 500, which the drive tested/Plugin can hold')
 
+        self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward='slightly slow bus'),
+                         r'control_rate = 1000; allowed: up to 999\.9999\d*, which the drive')
+
+    def test_period_that_is_no_figure(self):
+        for how, figure in ('no figure', 'nan'), ('negative', '-0.001'):
+            self.assertRegex(self.refusal('awkward_drive', 'AwkwardDrive', awkward=how),
+                             r'the drive tested/Plugin states a shortest_period of %s s; allowed: 0 or more' % figure)
+
+    def test_exception_without_a_text(self):
+        self.assertIn('the drive tested/Plugin: no text',
+                      self.refusal('awkward_drive', 'AwkwardDrive', awkward='throws no text in init'))
+
     def test_buffer(self):
         self.assertIn('the drive tested/Plugin buffers 5000 commands; allowed: up to 4095',
                       self.refusal('awkward_drive', 'AwkwardDrive', awkward='long buffer'))

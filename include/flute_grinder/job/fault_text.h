@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <exception>
 #include <string>
 #include <string_view>
 
@@ -10,6 +11,11 @@ namespace grinder {
 
 /// What a drive's plugin gives as a text, which may be null.
 inline std::string_view textOrNone(const char* text) noexcept { return text ? text : "no text"; }
+/// What it has thrown as a text; without one, it has thrown all the same.
+inline std::string_view textOrNone(const std::exception& error) noexcept {
+  const std::string_view text = textOrNone(error.what());
+  return text.empty() ? textOrNone(nullptr) : text;
+}
 
 /// A short text that is copied without the heap; what is too long is cut off. Real-time safe.
 class FaultText {
@@ -28,6 +34,11 @@ class FaultText {
     std::copy_n(text.begin(), count, text_.begin() + size_);
     size_ = static_cast<unsigned char>(size_ + count);
     return *this;
+  }
+  /// Appends, and cuts off what is before it if both are too long.
+  void endWith(const FaultText& end) noexcept {
+    size_ = static_cast<unsigned char>(std::min<std::size_t>(size_, kMost - end.size_));
+    *this += std::string_view(end.text_.data(), end.size_);
   }
   /// The only way to read it, since it comes from a drive: escaped(), for people. Not real-time safe.
   std::string text() const;

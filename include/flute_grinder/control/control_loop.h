@@ -189,11 +189,10 @@ class ControlLoop : public RequestBox {
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;
-  FaultText thrown_;         ///< by the drive, since the last readDrive()
-  bool has_thrown_ = false;  ///< the drive
-  bool has_hung_ = false;    ///< the drive, until this cycle
-  bool settled_ =
-      false;  ///< by the last two readings that differ in time, every axis can have come from one to the other
+  FaultText thrown_;            ///< by the drive, since the last readDrive()
+  bool has_thrown_ = false;     ///< the drive
+  bool has_hung_ = false;       ///< the drive, until this cycle
+  bool settled_ = false;        ///< every axis can have come from the last but one reading to the last
   bool has_positions_ = false;  ///< all have been finite once
   bool y_homed_ = false;        ///< as the drive says, and it is not homing
   DriveFeedback feedback_;

@@ -746,10 +746,10 @@ class SlowDisk:
         library = os.path.join(os.path.dirname(os.path.dirname(program('grinder'))), 'libflute_grinder_slow_fsync.so')
         self.environment = {'LD_PRELOAD': library, 'SLOW_FSYNC': self._seconds}
 
-    def stop(self, what=''):
-        """`what`: all that is synchronized, or `folders` alone."""
+    def stop(self, what='', seconds=1e6):
+        """`what`: all that is synchronized, or `folders` alone. `seconds` that each takes."""
         with open(self._seconds, 'w') as file:
-            file.write('1e6 ' + what)
+            file.write('%g %s' % (seconds, what))
 
     def release(self):
         """Once more does nothing."""

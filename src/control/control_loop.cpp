@@ -114,9 +114,8 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   const AxisFlags credible = credibleFrom(last, elapsed);
   if (sample_.feedback_age == 0) settled_ = credible.all();
   // Without power and during homing the commands follow the positions, so nothing moves when commands take effect
-  // again; after a fault the commands do not change. While the power comes on they take effect at any time.
-  const bool follows =
-      (state_ == MachineState::kDisabled && (settled_ || !drive_command_.enable)) || state_ == MachineState::kHoming;
+  // again; after a fault the commands do not change.
+  const bool follows = state_ == MachineState::kDisabled || state_ == MachineState::kHoming;
   if (follows && finite) {
     command_ = sample_.position;
     history_.clear();

@@ -126,7 +126,9 @@ Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
   waited_ += sample_.period;
-  const bool on = drive_command_.enable && sample_.drive.enabled && settled_;
+  // Of two readings that do not agree, nobody knows which is where the axes are: neither is commanded with power.
+  drive_command_.enable &= settled_;
+  const bool on = drive_command_.enable && sample_.drive.enabled;
   Refusal refusal = drive_checks_.powerRefusal(sample_);
   if (refusal == Refusal::kNone) refusal = commandPower();
   if (refusal == Refusal::kNone && !on && !(waited_ <= config_.enable_timeout)) refusal = refusalWithoutPower();

@@ -156,7 +156,10 @@ Real Watch::clearHeight() const {
 /// Whatever a job leaves in the work goes up, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
   if (!row.moves && !row.free) return;
-  if ((row.free ? row.y : row.at[1] - row.y_off) - asked_.offset_y >= clearHeight() - noiseOf(1)) {
+  // An axis may rest a little below where it was lifted to.
+  constexpr Real rest = 10e-6L;
+  const Real y = row.free ? row.y + rest : row.at[1] - row.y_off;
+  if (y - asked_.offset_y >= clearHeight() - noiseOf(1)) {
     progress_.in_work = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);

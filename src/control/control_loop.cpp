@@ -269,9 +269,13 @@ void ControlLoop::awaitHoming() {
   waited_ += sample_.period;
   homing_of_before_ &= sample_.drive.homing;
   homing_seen_ |= sample_.drive.homing && !homing_of_before_;
-  const bool over = homing_seen_ && !sample_.drive.homing;
-  const bool failed = over && !sample_.drive.homed;
-  if (over && !failed && settled_) {
+  const bool over = homing_seen_ && !sample_.drive.homing, is_fresh = sample_.feedback_age == 0;
+  // With the reference the readings may jump, once.
+  const bool jumps_again = homing_over_ && is_fresh && !settled_;
+  homing_over_ = over && (homing_over_ || is_fresh);
+  const bool failed = over && (jumps_again || !sample_.drive.homed);
+  if (jumps_again) wheel_.doubtY(true);
+  if (homing_over_ && !failed && settled_) {
     wheel_.doubtY(false);
     return apply(MachineEvent::kDone);
   }

@@ -187,7 +187,7 @@ Refusal ControlLoop::reset() {
 
 Refusal ControlLoop::home() {
   if (const Refusal refusal = refusalOfWheel(); refusal != Refusal::kNone) return refusal;
-  homing_seen_ = false;
+  homing_seen_ = homing_over_ = false;
   homing_of_before_ = sample_.drive.homing;
   waited_ = 0;
   apply(MachineEvent::kHome);

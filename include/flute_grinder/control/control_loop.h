@@ -213,6 +213,7 @@ class ControlLoop : public RequestBox {
   double unwanted_power_ = 0;       ///< for so long the drive has reported power that is commanded off [s]
   bool homing_seen_ = false;
   bool homing_of_before_ = false;  ///< reported since before the request
+  bool homing_over_ = false;       ///< and the axes were read since
   CycleSample sample_;
   LoopStatus next_status_;  ///< published at the end of the cycle
 

@@ -121,6 +121,26 @@ std::optional<double> heelOf(const ToothLand& tooth, const RelievedLand& land, d
   return crossing(foot, deepest, short_of_flute).value_or(deepest);
 }
 
+/// The radius at which the second relief begins, from a circle inwards.
+std::optional<double> secondBegin(const RelievedLand& land, double outer) {
+  const auto first_ends = [&](double r) { return land.begin(land.surface(0, r)) - land.begin(land.surface(1, r)); };
+  return crossing(outer, std::max(land.lowest(0), land.lowest(1)), first_ends);
+}
+
+/// The first relief's land. @param below the edge, where the relief is looked at. @param end radius where it ends.
+void measureLand(const ToothLand& tooth, const Reliefs& reliefs, const LandPlace& edge, double below, double end,
+                 ReliefSection& measured) {
+  const auto last = tooth.surface(reliefs[0], end);
+  if (!last) return;
+  // Where its surface, straight over so short a way, is as high as the edge; in front of that, the blank is left.
+  const auto first = tooth.surface(reliefs[0], below);
+  const double begin = first ? first->behind + first->slope * (edge.radius - below) : 0;
+  measured.land = distance({edge.radius, std::max(edge.behind, begin)}, {end, last->behind});
+  measured.land_end_clearance = clearanceOf(end, *last);
+  const auto second = reliefs.size() < 2 ? std::nullopt : tooth.surface(reliefs[1], end);
+  if (second) measured.second_clearance = clearanceOf(end, *second);
+}
+
 }  // namespace
 
 ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& section, std::size_t number,
@@ -141,18 +161,8 @@ ReliefSection measureRelief(const GroundCutter& cutter, const GroundSection& sec
   const LandPlace edge{measured.edge_radius, tooth.rakeFace(measured.edge_radius)};
   const auto heel = heelOf(tooth, land, below, foot, deepest);
   if (heel) measured.heel = distance(edge, {*heel, tooth.heelWall(*heel)});
-  const auto second_first = [&](double r) { return land.begin(land.surface(0, r)) - land.begin(land.surface(1, r)); };
-  const auto land_end =
-      reliefs.size() < 2 ? heel : crossing(below, std::max(land.lowest(0), land.lowest(1)), second_first);
-  if (const auto end = land_end ? tooth.surface(reliefs[0], *land_end) : std::nullopt) {
-    // Where its surface, straight over so short a way, is as high as the edge; in front of that, the blank is left.
-    const auto first = tooth.surface(reliefs[0], below);
-    const double begin = first ? first->behind + first->slope * (edge.radius - below) : 0;
-    measured.land = distance({edge.radius, std::max(edge.behind, begin)}, {*land_end, end->behind});
-    measured.land_end_clearance = clearanceOf(*land_end, *end);
-    const auto second = reliefs.size() < 2 ? std::nullopt : tooth.surface(reliefs[1], *land_end);
-    if (second) measured.second_clearance = clearanceOf(*land_end, *second);
-  }
+  const auto land_end = reliefs.size() < 2 ? heel : secondBegin(land, below);
+  if (land_end) measureLand(tooth, reliefs, edge, below, *land_end, measured);
 
   measured.next_edge = kNone;
   for (int i = 0; i <= kNextEdgeRings; ++i) {

@@ -72,8 +72,8 @@ struct ZCorrection {
     bounds.max_first = *max;
     for (const int order : {2, 3}) {
       const auto [lowest, highest] = differentiate(order);
-      (order == 2 ? bounds.second : bounds.third) =
-          std::max({0.0, -*lowest, *highest});  // no -0.0, by which a limit is divided
+      // Never -0.0: limits are divided by it.
+      (order == 2 ? bounds.second : bounds.third) = std::max({0.0, -*lowest, *highest});
     }
     return bounds;
   }

@@ -24,6 +24,41 @@ constexpr int kAngleDecimals = 4;
 constexpr int kLengthDecimals = 5;
 constexpr int kOvertravelDecimals = 2;
 
+/// Of the numbers for which a set-up is looked for. Of set-ups that are equally good, or all but, the noise behind them
+/// would choose another one for the same tool.
+constexpr int kFigureDigits = 9;
+
+void roundOff(double& si, Unit unit) {
+  si = parseNumber(format("%.*g", kFigureDigits, si / shopScale(unit)).c_str()) * shopScale(unit);
+}
+
+void roundOff(std::vector<double>& angles) {
+  for (double& angle : angles) roundOff(angle, Unit::kRadian);
+}
+
+void roundOff(std::vector<ProfilePoint>& points) {
+  for (ProfilePoint& point : points) roundOff(point.w, Unit::kMetre), roundOff(point.radius, Unit::kMetre);
+}
+
+/// A job of one operation.
+void roundOffOne(GrindJob& job) {
+  visitJobFields([&](const JobField& field, auto of) { roundOff(of(job), field.unit); });
+  roundOff(job.wheel_points);
+}
+
+/// A job with all its numbers rounded to kFigureDigits.
+GrindJob roundedOff(GrindJob job) {
+  roundOff(job.tooth_angles);
+  roundOff(job.spiral_angles);
+  roundOffOne(job);
+  for (std::size_t i = 0; i < job.operations.size(); ++i) {
+    GrindJob one = job.ofOperation(static_cast<int>(i));
+    roundOffOne(one);
+    job.operations[i] = {one.process, one.wheel_points};
+  }
+  return job;
+}
+
 /// The number that a file has with so many decimals [SI].
 double rounded(double value, double scale, int decimals) {
   const double unit = std::pow(10, decimals);
@@ -235,9 +270,10 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   if (keep && *keep != SetupFigure::kSwivel) {
     return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
   }
-  const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
+  const GrindJob rounded = roundedOff(job);
+  const ValidJob flutes = withLaws(ValidJob(rounded.ofOperation(0)));
   const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
-  const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
+  const ReliefSetup found = findReliefSetup(rounded, flutes, swivel, asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
            found.refused;
@@ -281,8 +317,9 @@ bool isAccepted(const SolvedSetup& solved, const GrindJob& job, std::optional<Se
 
 std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,
                                                     std::optional<SetupFigure> keep) {
-  SetupRequest request = requestOf(job, swivel, keep);
-  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, job, keep); };
+  const GrindJob rounded = roundedOff(job);
+  SetupRequest request = requestOf(rounded, swivel, keep);
+  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, rounded, keep); };
   const auto result = solveSetup(request);
   if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
   return setupWith(std::get<SolvedSetup>(result), job, keep);

@@ -133,7 +133,9 @@ class Trials {
     const bool goes_on = static_cast<std::size_t>(job.operation) + 1 < job.operations.size();
     land_ = goes_on ? job.cutter.land : 0;
     for (const Land& land : lands_) {
-      teeth_.emplace_back(flutes.cutterOf(static_cast<int>(land.tooth)));
+      CutterGeometry geometry = job.cutter;
+      geometry.spiral_angle = edges_[land.tooth].spiral_angle;
+      teeth_.emplace_back(geometry);
       starts_.push_back(reliefStartOf(job, teeth_.back()));
     }
   }
@@ -310,7 +312,7 @@ class Trials {
 
   const GrindJob& job_;
   const ValidJob& flutes_;
-  const std::vector<double> edges_;
+  const std::vector<EdgeHelix> edges_;
   const std::vector<Land> lands_;
   double land_;                       ///< width at the small end, where another relief follows; 0: to the heel [m]
   std::vector<ConicalCutter> teeth_;  ///< of the lands

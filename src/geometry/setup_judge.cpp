@@ -66,6 +66,7 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   Judged judged;
   SolvedSetup& s = judged.solved;
   judged.point = point;
+  judged.away = std::abs(point.swivel - request.cutter.spiral_angle) + point.depth / trial.cutter().radius(0);
   s.setup = {point.swivel, point.height, point.lead};
   s.depth = point.depth;
   s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
@@ -114,7 +115,7 @@ bool isBetter(const Judged& a, const Judged& b) {
     const double spread = s.max_rake - s.min_rake;
     return std::tuple(j.problem ? -static_cast<int>(*j.problem) : -countOf<SetupProblem>(), j.cut_short, j.is_facet,
                       std::floor(j.error / kSameError), std::floor(spread / kSameRake),
-                      std::floor(j.chord_off / kSameChord), -j.formed_by_face, spread);
+                      std::floor(j.chord_off / kSameChord), -j.formed_by_face, j.away);
   };
   return order(a) < order(b);
 }

@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/setup_solver.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/on_all_cores.h"
 #include "geometry/fit_setup.h"
 #include "geometry/setup_judge.h"
 
@@ -205,22 +206,27 @@ void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vec
     }
     fitted.take(judged);
   };
-  for (const SetupPoint& start : starts) {
-    const auto fit = fitEnds(trial, request, start);
+  std::vector<std::optional<EndsFit>> fits(starts.size());
+  onAllCores(starts.size(), [&](std::size_t i) { fits[i] = fitEnds(trial, request, starts[i]); });
+  for (const auto& fit : fits) {
     if (!fit) continue;
     add_new(fit->point, ends, kAlike);
     if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
   }
   if (fitted.settle(request)) return;
-  for (const SetupPoint& start : ends) {
-    const auto fit = nearestSetup(trial, request, start);
+  std::vector<std::optional<SetupPoint>> nearest_to(ends.size());
+  onAllCores(ends.size(), [&](std::size_t i) { nearest_to[i] = nearestSetup(trial, request, ends[i]); });
+  for (const auto& fit : nearest_to) {
     if (fit) add_new(*fit, nearest, kAlike);
   }
-  std::map<double, SetupPoint> by_error;
+  std::multimap<double, SetupPoint> by_error;
   for (const SetupPoint& fit : nearest) by_error.emplace(worst(fit), fit);
-  int evened = 0;
-  for (const auto& [error, fit] : by_error) {
-    const SetupPoint best = error > kWithin && evened++ < kMostEvened ? evenedSetup(trial, request, fit) : fit;
+  std::vector<SetupPoint> bests;
+  for (const auto& [error, fit] : by_error) bests.push_back(fit);
+  const auto within = static_cast<std::size_t>(std::distance(by_error.begin(), by_error.upper_bound(kWithin)));
+  onAllCores(std::min<std::size_t>(bests.size() - within, kMostEvened),
+             [&](std::size_t i) { bests[within + i] = evenedSetup(trial, request, bests[within + i]); });
+  for (const SetupPoint& best : bests) {
     const double here = worst(best);
     if (here < fitted.error || !fitted.nearest) {
       fitted.error = here;

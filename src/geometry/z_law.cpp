@@ -5,6 +5,7 @@
 #include "geometry/rake_correction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string>
@@ -15,7 +16,20 @@ namespace grinder {
 
 namespace {
 
-constexpr int kEdgeSections = 9;  ///< of the flute
+constexpr std::size_t kEdgeSections = 9;  ///< of the flute
+using EdgeAngles = std::array<double, kEdgeSections>;
+
+double sectionOf(const ValidJob& flutes, std::size_t i) {
+  return flutes->cutter.flute_length * static_cast<double>(i) / (kEdgeSections - 1);
+}
+
+/// As EdgeHelix::ahead. @param cutter with the helix. @param edge in the sections, less the tooth's own angle [rad].
+double aheadOf(const ConicalCutter& cutter, const ValidJob& flutes, EdgeAngles edge) {
+  const LogCurve helix(cutter);
+  for (std::size_t i = 0; i < edge.size(); ++i) edge[i] -= helix.a(sectionOf(flutes, i));
+  const auto [least, most] = std::minmax_element(edge.begin(), edge.end());
+  return (*least + *most) / 2;
+}
 
 /// @param job with the published law.
 ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch) {
@@ -35,23 +49,32 @@ ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch)
 
 }  // namespace
 
-std::vector<double> edgesOf(const ValidJob& flutes) {
+std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
   const GroundCutter cutter = groundCutterOf(flutes);
-  std::vector<Range> off(cutter.teeth().size());
-  for (int i = 0; i < kEdgeSections; ++i) {
-    const GroundSection section = cutter.section(flutes->cutter.flute_length * i / (kEdgeSections - 1));
-    for (std::size_t tooth = 0; tooth < off.size(); ++tooth) {
-      if (!section.teeth[tooth].edge) {
+  std::vector<EdgeAngles> angles(cutter.teeth().size());
+  for (std::size_t i = 0; i < kEdgeSections; ++i) {
+    const GroundSection section = cutter.section(sectionOf(flutes, i));
+    for (std::size_t tooth = 0; tooth < angles.size(); ++tooth) {
+      const auto& edge = section.teeth[tooth].edge;
+      if (!edge) {
         throw ReasonError(otherReason("tooth " + std::to_string(tooth + 1) + " has no edge at X = " +
                                       text(Quantity{section.x, Unit::kMetre}) + ": a relief has nothing to follow"));
       }
-      const LogCurve asked(ConicalCutter(flutes.cutterOf(static_cast<int>(tooth))));
-      const double here = *section.teeth[tooth].edge - cutter.teeth()[tooth].angle - asked.a(section.x);
-      off[tooth] = i == 0 ? Range{here, here} : Range{std::min(off[tooth].from, here), std::max(off[tooth].to, here)};
+      angles[tooth][i] = *edge - cutter.teeth()[tooth].angle;
     }
   }
-  std::vector<double> edges;
-  for (const Range& range : off) edges.push_back((range.from + range.to) / 2);
+  std::map<std::size_t, double> spirals;  // by flute: teeth that share one have the same to the last bit
+  std::vector<EdgeHelix> edges;
+  for (std::size_t tooth = 0; tooth < angles.size(); ++tooth) {
+    CutterGeometry own = flutes.cutterOf(static_cast<int>(tooth));
+    const auto [place, is_new] = spirals.try_emplace(cutter.teeth()[tooth].flute);
+    if (is_new) {
+      const double turn = angles[tooth].back() - angles[tooth].front();
+      place->second = meanSpiral(ConicalCutter(own), 0, own.flute_length, turn);
+    }
+    own.spiral_angle = place->second;
+    edges.push_back({own.spiral_angle, aheadOf(ConicalCutter(own), flutes, angles[tooth])});
+  }
   return edges;
 }
 

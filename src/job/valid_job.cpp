@@ -49,7 +49,7 @@ std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterG
 /// The laws of the strokes of all teeth; of reliefs, X goes as far in each as the farthest needs.
 /// @param edges of the teeth; none for flutes.
 std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters,
-                              const std::vector<ReliefPath>& reliefs, const std::vector<double>& edges) {
+                              const std::vector<ReliefPath>& reliefs, const std::vector<EdgeHelix>& edges) {
   const GrindProcess& p = job.process;
   const double length = job.cutter.flute_length;
   std::vector<StrokeLaw> laws;
@@ -65,7 +65,7 @@ std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeome
     if (reliefs.empty()) continue;
     laws[i].cutter = reliefs[i].cutter().geometry();
     laws[i].lead = reliefs[i].lead();
-    laws[i].a += reliefs[i].a() + edges[i];
+    laws[i].a += reliefs[i].a() + edges[i].ahead;
   }
   return laws;
 }
@@ -99,22 +99,31 @@ ValidJob::ValidJob(GrindJob job) {
   content.cutters.assign(job.tooth_angles.size(), job.cutter);
   for (std::size_t i = 0; i < job.spiral_angles.size(); ++i) content.cutters[i].spiral_angle = job.spiral_angles[i];
   if (isRelief(job.process.kind)) {
-    content.reliefs = reliefsOf(job, content.cutters);
-    for (const ReliefPath& path : content.reliefs) content.deepest = std::max(content.deepest, path.depth());
-    const double passes = content.deepest / job.process.infeed + job.process.spark_out + 2;
-    if (!(passes * static_cast<double>(job.tooth_angles.size()) <= kMaxPassesOfAll)) {
-      throw InvalidJob({otherReason("process.infeed_mm is too small for a relief as deep as this: more than " +
-                                    std::to_string(kMaxPassesOfAll) + " passes of all teeth")});
-    }
+    content.job = std::move(job);
+    takeReliefs(content, content.cutters);
   } else {
     content.deepest = job.process.deepest();
+    content.depths = passDepths(job.process);
+    content.passes = passesOf(job, content.depths);
     content.laws = lawsOf(job, content.cutters, {}, {});
+    content.job = std::move(job);
   }
-  content.depths = passDepths(job.process, content.deepest);
-  content.passes = passesOf(job, content.depths);
-  if (job.process.z_law == ZLaw::kPublished) content.z_corrections.resize(job.tooth_angles.size());
-  content.job = std::move(job);
+  if (content.job.process.z_law == ZLaw::kPublished) content.z_corrections.resize(content.cutters.size());
   content_ = std::make_shared<const Content>(std::move(content));
+}
+
+void ValidJob::takeReliefs(Content& content, const std::vector<CutterGeometry>& edges) {
+  const GrindProcess& p = content.job.process;
+  content.reliefs = reliefsOf(content.job, edges);
+  content.deepest = 0;
+  for (const ReliefPath& path : content.reliefs) content.deepest = std::max(content.deepest, path.depth());
+  const double passes = content.deepest / p.infeed + p.spark_out + 2;
+  if (!(passes * static_cast<double>(edges.size()) <= kMaxPassesOfAll)) {
+    throw InvalidJob({otherReason("process.infeed_mm is too small for a relief as deep as this: more than " +
+                                  std::to_string(kMaxPassesOfAll) + " passes of all teeth")});
+  }
+  content.depths = passDepths(p, content.deepest);
+  content.passes = passesOf(content.job, content.depths);
 }
 
 const StrokeLaw& ValidJob::strokeLaw(int tooth) const {
@@ -141,13 +150,16 @@ const ReliefPath* ValidJob::relief(int tooth) const noexcept {
   return content_->reliefs.empty() ? nullptr : &content_->reliefs[static_cast<std::size_t>(tooth)];
 }
 
-ValidJob ValidJob::withEdges(const ValidJob& flutes, std::vector<double> edges) const {
+ValidJob ValidJob::withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edges) const {
   if (edges.size() != content_->cutters.size()) {
     throw std::invalid_argument(std::to_string(edges.size()) + " edges; allowed: " + std::to_string(teeth()) +
                                 ", one for each tooth");
   }
   ValidJob job = *this;
   Content content = *content_;
+  std::vector<CutterGeometry> as_ground = content.cutters;
+  for (std::size_t i = 0; i < edges.size(); ++i) as_ground[i].spiral_angle = edges[i].spiral_angle;
+  takeReliefs(content, as_ground);
   content.laws = lawsOf(content.job, content.cutters, content.reliefs, edges);
   content.flutes = std::make_shared<const ValidJob>(flutes);
   content.edges = std::move(edges);

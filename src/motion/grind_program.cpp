@@ -124,7 +124,7 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       terms_(termsOf(job, helices_, stroke_)),
       clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process.clearance) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
-    helix_of_tooth_[tooth] = indexOf(helices_, job.cutterOf(static_cast<int>(tooth)).spiral_angle);
+    helix_of_tooth_[tooth] = indexOf(helices_, job.strokeLaw(static_cast<int>(tooth)).cutter.spiral_angle);
   }
   for (const Helix& helix : helices_) requireGrindableFeed(helix.schedule, helix.edge.cutter);
   requireSwivel(machine, job);

@@ -6,6 +6,7 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_fields.h"
 
 #include <gtest/gtest.h>
 
@@ -281,6 +282,35 @@ TEST(JobSetup, IsFoundOnAnotherBranch) {
     job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
     const JobSetup setup = solved(job);
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
+  }
+}
+
+// Of a valley of set-ups that grind the same, all but, each conversion of a number led to another one, of the last tool
+// with another swivel by 4.4 deg.
+TEST(JobSetup, TheLastBitOfANumberChoosesNoOtherSetup) {
+  GrindJob slender = steep(9.33, 2, 23.2, 6.5, 18.32, 6.11, 125, 2.02);
+  slender.cutter.core_diameter_end = 7.455 * kMillimetre;
+  GrindJob back_taper = steep(2.74, -0.4, 13.9, 10.8, 3.64, 1.863, 125, 1.14);
+  back_taper.cutter.core_diameter_end = 1.812 * kMillimetre;
+  GrindJob small = steep(2.12, 3.4, 17, 6.4, 3.96, 1.379, 50, 1.12);
+  small.cutter.core_diameter_end = 1.797 * kMillimetre;
+  back_taper.process.z_law = small.process.z_law = ZLaw::kConstantRake;
+  for (GrindJob job : {slender, back_taper, small}) {
+    job.cutter.rake_tolerance = 0.5 * kDegree;
+    job.cutter.spiral_tolerance = 0.3 * kDegree;
+    job.cutter.chordal_rake_tolerance = 8 * kDegree;
+    job.cutter.core_tolerance = 0.02 * kMillimetre;
+    const JobSetup setup = solved(job);
+    ASSERT_GE(setup.edits.size(), 4u);
+    for (int i = 1; i <= 3; ++i) {
+      int nth = 0;
+      visitJobFields([&](const JobField&, auto of) { of(job) *= 1 + 1e-12 * ((++nth * i) % 3 - 1); });
+      const JobSetup shaken = solved(job);
+      ASSERT_EQ(shaken.edits.size(), setup.edits.size()) << i;
+      for (std::size_t k = 0; k < setup.edits.size(); ++k) {
+        EXPECT_EQ(shaken.edits[k].value, setup.edits[k].value) << setup.edits[k].key << ", " << i;
+      }
+    }
   }
 }
 

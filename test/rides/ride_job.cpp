@@ -112,8 +112,10 @@ ValidJob withRelief(Random& random, GrindJob job) {
   }
   const ValidJob flutes(job.ofOperation(0));
   const int index = flip(random, 0.5) || !secondary ? 1 : 2;
-  std::vector<double> edges;
-  for (std::size_t i = 0; i < job.tooth_angles.size(); ++i) edges.push_back(between(random, -0.01, 0.01));
+  std::vector<EdgeHelix> edges;
+  for (int i = 0; i < flutes.teeth(); ++i) {
+    edges.push_back({flutes.cutterOf(i).spiral_angle * between(random, 0.98, 1.02), between(random, -0.01, 0.01)});
+  }
   return ValidJob(job.ofOperation(index)).withEdges(flutes, edges);
 }
 

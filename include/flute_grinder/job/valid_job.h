@@ -41,6 +41,12 @@ struct StrokeLaw {
   double a = 0;             ///< added to A [rad]
 };
 
+/// The helix through the ends of a tooth's edge, as its flute leaves it.
+struct EdgeHelix {
+  double spiral_angle = 0;  ///< [rad]
+  double ahead = 0;  ///< the edge's angle amid where it departs from the helix through the tooth's own angle [rad]
+};
+
 /// A pass of a job.
 struct JobPass {
   ToothPass place;
@@ -85,12 +91,12 @@ class ValidJob {
 
   /// The path of a relief. @return null for flutes.
   const ReliefPath* relief(int tooth) const noexcept;
-  /// A relief's job with what it is ground on. @param flutes the job of the flutes, with their law of Z.
-  /// @param edges of every tooth: angle by which its edge is ahead of its asked helix [rad].
-  ValidJob withEdges(const ValidJob& flutes, std::vector<double> edges) const;
+  /// A relief's job with what it is ground on: the reliefs follow the edges as they are.
+  /// @param flutes the job of the flutes, with their law of Z. @param edges of every tooth. @throw InvalidJob
+  ValidJob withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edges) const;
   /// Of a relief after withEdges().
   const ValidJob& flutes() const { return *content_->flutes; }
-  const std::vector<double>& edges() const { return content_->edges; }
+  const std::vector<EdgeHelix>& edges() const { return content_->edges; }
 
  private:
   struct Content {
@@ -103,8 +109,11 @@ class ValidJob {
     std::vector<ReliefPath> reliefs;         ///< of the teeth; empty for flutes
     std::vector<StrokeLaw> laws;             ///< of the teeth; empty if a relief's edges are yet to be computed
     std::shared_ptr<const ValidJob> flutes;  ///< of a relief
-    std::vector<double> edges;               ///< of the teeth, for a relief
+    std::vector<EdgeHelix> edges;            ///< of the teeth, for a relief
   };
+
+  /// Computes the reliefs behind edges, and their depths. @param edges the cutters with the spiral angles of these.
+  static void takeReliefs(Content& content, const std::vector<CutterGeometry>& edges);
 
   std::shared_ptr<const Content> content_;
 };

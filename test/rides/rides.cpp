@@ -37,6 +37,7 @@ constexpr std::uint64_t kMostRideCycles = 300000;
 constexpr int kMostEvents = 30;
 constexpr int kMostBuffered = 50;
 constexpr double kJogTimeout = 0.05;  ///< [s]
+constexpr double kStall = 20;         ///< periods of a cycle in which nobody was heard
 /// Cycles in which the spindle runs up, and in which it is still at speed once it was switched off.
 constexpr int kRunUp = 20, kRunDown = 100;
 constexpr double kTurn = 10e-3;  ///< of Y's screw [m]
@@ -242,6 +243,7 @@ class Ride {
     const ros::Duration period(job_.machine.period * periods);
     time_ += period;
     loop_->cycle(time_, period);
+    if (periods > kStall) button_.stall();
     seeButton(std::min(period.toSec(), 2 * job_.machine.period));
     if (const auto reply = loop_->reply()) last_reply_ = reply->text;
     loop_->jogReply();
@@ -338,7 +340,7 @@ class Ride {
     using F = RideDrive::Failure;
     switch (static_cast<int>(fraction(random_) * 10)) {
       case 0: periods_ = 3; return;
-      case 1: periods_ = 20; return;
+      case 1: periods_ = kStall + (flip(random_, 0.5) ? -1 : 1); return;
       case 2: return drive_.fail(F::kEmergencyStop, axis, some);
       case 3: return drive_.fail(F::kFault, axis, some);
       case 4: return drive_.fail(flip(random_, 0.3) ? F::kTurn : flip(random_, 0.5) ? F::kJump : F::kNan, axis, 1);

@@ -256,11 +256,17 @@ void Button::wait(Real period) {
   barred_ = barred_ || (pressed_ && age_ > timeout_);
 }
 
+void Button::stall() {
+  if (!stalled_ && age_ <= timeout_) age_ = 0;
+  stalled_ = true;
+}
+
 void Button::press(int axis) {
   if (pressed_ && axis != axis_) return;
   pressed_ = true;
   axis_ = axis;
   age_ = 0;
+  stalled_ = false;
 }
 
 }  // namespace second_opinion

@@ -124,6 +124,9 @@ class Button {
 
   /// @param period as it counts [s].
   void wait(Real period);
+  /// The process stands still for some cycles, in which a message may have come: once, until the next one, the time
+  /// counts from here.
+  void stall();
   /// A message has come for an axis. Those for another one than it was pressed for do not count.
   void press(int axis);
   void release() { pressed_ = barred_ = false; }
@@ -135,6 +138,7 @@ class Button {
   Real age_ = 0;  ///< of the last message [s]
   int axis_ = 0;
   bool pressed_ = false, barred_ = false;
+  bool stalled_ = false;  ///< since the last message
 };
 
 }  // namespace second_opinion

@@ -6,6 +6,8 @@ namespace grinder {
 
 namespace {
 
+constexpr double kRounding = 1e-12;  ///< of the flute's length: a pair that ends so near to its end ends there
+
 void add(StepTable& table, const LogCurve& curve, const CurvePoint& point) {
   double& max = table.rows.size() % 2 == 1 ? table.max_odd_error : table.max_even_error;
   table.rows.push_back({point, curve.a(point.x)});
@@ -19,7 +21,8 @@ StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, E
   OddEvenInterpolator interpolator(curve, rotary_scale, rule, 0);
   StepTable table;
   add(table, curve, interpolator.position());
-  while (interpolator.position().x < cutter.geometry().flute_length) {
+  const double end = cutter.geometry().flute_length * (1 - kRounding);
+  while (interpolator.position().x < end) {
     const double x = interpolator.position().x;
     const OddEvenPair pair = interpolator.next(step_length);
     if (!(pair.even.x > x && curve.u(pair.odd.x) > 0 && curve.u(pair.even.x) > 0 && std::isfinite(pair.even.a))) {

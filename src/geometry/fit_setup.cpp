@@ -1,6 +1,7 @@
 #include "geometry/fit_setup.h"
 
 #include "flute_grinder/curve/units.h"
+#include "geometry/setup_judge.h"
 
 #include <Eigen/Dense>
 
@@ -16,11 +17,17 @@ namespace {
 
 constexpr double kExact = 1e-6;  ///< of the angles [rad], and of the cores by the asked ones
 constexpr double kEven = 0.001 * units::kDegree;
-constexpr int kShifts = 4;                ///< of the rake at the ends
-constexpr double kNearEnough = 5;         ///< by the tolerances: an error that more weight may bring within them
-constexpr int kFitSteps = 40;             ///< of a fit
-constexpr int kStepsBetweenSections = 4;  ///< where errors are weighed by their tolerances
-constexpr double kNoGain = 1e-2;          ///< of a step, of the errors, that ends a fit
+constexpr int kShifts = 4;                       ///< of the rake at the ends
+constexpr double kNearEnough = 5;                ///< by the tolerances: an error that more weight may bring within them
+constexpr double kWellWithin = 0.9;              ///< of the tolerances, that such a fit aims at
+constexpr int kEveningPowers[] = {3, 5, 9, 15};  ///< odd, for the errors to keep their signs
+constexpr int kEvenings = 4;                     ///< with each of them, as long as they gain
+constexpr double kNoEvening = 1e-3;              ///< of the tolerances
+constexpr double kLandAsked = 0.01;              ///< of the diameter, where a land is looked for
+constexpr double kNoLack = 1e-3;                 ///< of it and of the tolerances, that is left lacking
+constexpr int kFitSteps = 40;                    ///< of a fit
+constexpr int kStepsBetweenSections = 4;         ///< where errors are weighed by their tolerances
+constexpr double kNoGain = 1e-2;                 ///< of a step, of the errors, that ends a fit
 /// [rad], of the taper, and of the small end's radius: large enough that the places of extrema, known to 1e-8, are no
 /// noise in a difference.
 constexpr double kFigureStep = 1e-4;
@@ -249,10 +256,38 @@ std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupReque
 }
 
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
-  const auto cubed = [&](const SetupPoint& p) -> Eigen::ArrayXd { return weighedErrors(trial, request, p, 0).cube(); };
-  const double error = maxOf(weighedErrors(trial, request, nearest, 0));
-  if (!(error > kWithin && error < kNearEnough)) return nearest;
-  return DampedFit(trial, request).solve(nearest, cubed, std::pow(kWithin, 3)).value_or(nearest);
+  const auto worst = [&](const SetupPoint& p) { return maxOf(weighedErrors(trial, request, p, 0)); };
+  SetupPoint best = nearest;
+  double error = worst(best);
+  for (const int power : kEveningPowers) {
+    const auto raised = [&](const SetupPoint& p) -> Eigen::ArrayXd {
+      return weighedErrors(trial, request, p, 0).pow(power);
+    };
+    for (int i = 0; i < kEvenings && error > kWithin && error < kNearEnough; ++i) {
+      const auto next = DampedFit(trial, request).solve(best, raised, std::pow(kWellWithin, power));
+      const double there = next ? worst(*next) : error;
+      if (!(there < error - kNoEvening)) break;
+      best = *next;
+      error = there;
+    }
+  }
+  return best;
+}
+
+SetupPoint setupWithLand(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
+  const double pitch = minPitch(request.tooth_angles), diameter = request.cutter.end_diameter;
+  const auto lacking = [&](const SetupPoint& point) {
+    const Eigen::ArrayXd errors = weighedErrors(trial, request, point, 0);
+    Eigen::ArrayXd all(errors.size() + SetupTrial::kSections + 1);
+    const WheelSweep sweep = trial.sweep(point);
+    for (int i = 0; i <= SetupTrial::kSections; ++i) {
+      const double land = trial.land(sweep, trial.section(i), pitch);
+      all[i] = std::isnan(land) ? land : std::max(0.0, (kLandAsked - land / diameter) / kLandAsked);
+    }
+    all.tail(errors.size()) = errors.sign() * (errors.abs() - kWellWithin).max(0);
+    return all;
+  };
+  return DampedFit(trial, request).solve(start, lacking, kNoLack).value_or(start);
 }
 
 }  // namespace grinder

@@ -57,8 +57,11 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
 /// @return nothing if the start gives no tool.
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
-/// The same with the least sum of sixth powers, in which the maximum error counts most: what it takes to bring the last
-/// error within its tolerance. As it is where all are, or one is far beyond.
+/// The same with the least sums of ever higher powers, in which the maximum error counts most: what it takes to bring
+/// the last error within its tolerance. As it is where all are, or one is far beyond.
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest);
+
+/// The set-up near a start whose teeth have a land, with all errors within their tolerances, as far as there is one.
+SetupPoint setupWithLand(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
 }  // namespace grinder

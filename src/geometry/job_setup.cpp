@@ -4,6 +4,7 @@
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/rounded_job.h"
 #include "geometry/relief_setup.h"
 
 #include <algorithm>
@@ -23,41 +24,6 @@ constexpr double kRoom = 0.02;       ///< of the flute's length, for a law of Z
 constexpr int kAngleDecimals = 4;
 constexpr int kLengthDecimals = 5;
 constexpr int kOvertravelDecimals = 2;
-
-/// Of the numbers for which a set-up is looked for. Of set-ups that are equally good, or all but, the noise behind them
-/// would choose another one for the same tool.
-constexpr int kFigureDigits = 9;
-
-void roundOff(double& si, Unit unit) {
-  si = parseNumber(format("%.*g", kFigureDigits, si / shopScale(unit)).c_str()) * shopScale(unit);
-}
-
-void roundOff(std::vector<double>& angles) {
-  for (double& angle : angles) roundOff(angle, Unit::kRadian);
-}
-
-void roundOff(std::vector<ProfilePoint>& points) {
-  for (ProfilePoint& point : points) roundOff(point.w, Unit::kMetre), roundOff(point.radius, Unit::kMetre);
-}
-
-/// A job of one operation.
-void roundOffOne(GrindJob& job) {
-  visitJobFields([&](const JobField& field, auto of) { roundOff(of(job), field.unit); });
-  roundOff(job.wheel_points);
-}
-
-/// A job with all its numbers rounded to kFigureDigits.
-GrindJob roundedOff(GrindJob job) {
-  roundOff(job.tooth_angles);
-  roundOff(job.spiral_angles);
-  roundOffOne(job);
-  for (std::size_t i = 0; i < job.operations.size(); ++i) {
-    GrindJob one = job.ofOperation(static_cast<int>(i));
-    roundOffOne(one);
-    job.operations[i] = {one.process, one.wheel_points};
-  }
-  return job;
-}
 
 /// The number that a file has with so many decimals [SI].
 double rounded(double value, double scale, int decimals) {

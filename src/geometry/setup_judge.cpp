@@ -22,12 +22,6 @@ constexpr double kSameRake = 0.1 * units::kDegree;
 constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
 constexpr double kBeyond = 1e-5;   ///< added to the overtravel, for the precision of an extremum's place [m]
 
-double minPitch(const std::vector<double>& angles) {
-  double min = angles.front() + 2 * units::kPi - angles.back();
-  for (std::size_t i = 1; i < angles.size(); ++i) min = std::min(min, angles[i] - angles[i - 1]);
-  return min;
-}
-
 /// The stroke that the flute needs, and where it is then complete by the plan's own measure.
 void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup& solved) {
   const double length = trial.cutter().geometry().flute_length;
@@ -59,6 +53,12 @@ void findLimit(const SetupRequest& request, double pitch, SolvedSetup& s) {
 }
 
 }  // namespace
+
+double minPitch(const std::vector<double>& angles) {
+  double min = angles.front() + 2 * units::kPi - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) min = std::min(min, angles[i] - angles[i - 1]);
+  return min;
+}
 
 Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point) {
   const double pitch = minPitch(request.tooth_angles);

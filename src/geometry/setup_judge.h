@@ -20,6 +20,9 @@ struct Judged {
   std::optional<SetupProblem> problem;
 };
 
+/// The least angle from one tooth to the next. @param angles ascending within one turn [rad].
+double minPitch(const std::vector<double>& angles);
+
 /// @param trial of a right-hand cutter. @param request of the same.
 Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point);
 

@@ -19,10 +19,12 @@ namespace {
 
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr double kQuarter = units::kPi / 2;
-constexpr double kSame = 1e-4;        ///< [rad], of the taper and of the radius: of two fits that came to the same
-constexpr double kAlike = 0.02;       ///< likewise, of two that lead on to the same
-constexpr double kMeasurable = 1e-3;  ///< [rad], and of the end diameter
-constexpr int kMostEvened = 8;        ///< of those nearest to the tolerances
+constexpr double kSame = 1e-4;          ///< [rad], of the taper and of the radius: of two fits that came to the same
+constexpr double kAlike = 0.02;         ///< likewise, of two that lead on to the same
+constexpr double kMeasurable = 1e-3;    ///< [rad], and of the end diameter
+constexpr std::size_t kMostEvened = 8;  ///< of those nearest to the tolerances
+/// Of the rake, and of spiral angle and core, by the asked ones: in which set-ups for a correction of Z are looked for.
+constexpr std::pair<double, double> kTolerancesForCorrection[] = {{4, 0.8}, {2, 0.8}, {4, 1}};
 /// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
 /// A wheel in the plane of the helix may give the maximum rake on a cylinder, and that be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
@@ -110,18 +112,23 @@ std::vector<double> startDepths(const SetupTrial& trial, const SetupRequest& req
   return depths;
 }
 
+/// The height up to which a wheel reaches the flute's depth, on either side of the axis [m].
+double highestOf(const SetupTrial& trial, const SetupRequest& request, double swivel) {
+  const double radius = request.cutter.end_diameter / 2;
+  const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : std::min(request.depth, radius);
+  return radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(swivel));
+}
+
 /// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a lead.
 /// @param swivels less the spiral angle [rad]. @param most heights, on either side of the axis.
 std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request,
                                  const std::vector<double>& swivels, int most) {
-  const double radius = request.cutter.end_diameter / 2;
-  const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : std::min(request.depth, radius);
   std::vector<SetupPoint> starts;
   for (const double swivel : swivels) {
     SetupPoint p;
     p.swivel = std::clamp(request.cutter.spiral_angle + swivel, request.min_swivel, request.max_swivel);
     if (request.keep == SetupFigure::kSwivel) p.swivel = request.kept.swivel;
-    const double highest = radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(p.swivel));
+    const double highest = highestOf(trial, request, p.swivel);
     const bool has_heights = request.keep != SetupFigure::kHeight && !isHeightTied(trial, request);
     const int heights = has_heights ? most : 0;
     for (int i = -heights; i <= heights; ++i) {
@@ -162,79 +169,118 @@ SetupRequest measurable(SetupRequest r) {
 /// The best set-up with all that is asked: exact, or else within the tolerances. If there is none, the nearest.
 struct Fitted {
   std::optional<Judged> best;
-  std::vector<Judged> unasked;  ///< that would do, and may yet be accepted
-  bool settled = false;         ///< the best one is accepted
+  bool settled = false;  ///< the best one is accepted
   std::optional<SetupPoint> nearest;
   double error = std::numeric_limits<double>::infinity();  ///< of the nearest one, by the tolerances
-
-  void take(const Judged& judged) {
-    if (!best || isBetter(judged, *best)) best = judged;
-    if (!judged.problem && !judged.cut_short && !judged.is_facet) unasked.push_back(judged);
-  }
-
-  /// Asks of what would do, the best first. @return whether one is accepted, which then is the best.
-  bool settle(const SetupRequest& request) {
-    std::stable_sort(unasked.begin(), unasked.end(), isBetter);
-    for (const Judged& judged : std::exchange(unasked, {})) {
-      if (settled || (request.accepts && !request.accepts(judged.solved))) continue;
-      best = judged;
-      settled = true;
-    }
-    return settled;
-  }
 };
 
-/// Fits all that is asked from some starts. @param fitted what others came to.
-void fitAll(const SetupTrial& trial, const SetupRequest& request, const std::vector<SetupPoint>& starts,
-            Fitted& fitted) {
-  const bool has_tolerances = hasTolerances(request);
-  const auto worst = [&](const SetupPoint& p) {
-    return setupErrors(trial, request, p, SetupTrial::kSections).worst(request);
-  };
-  std::vector<SetupPoint> seen, ends, nearest;
-  const auto add_new = [&](const SetupPoint& fit, std::vector<SetupPoint>& others, double difference) {
-    const auto same = [&](const SetupPoint& other) { return isSame(fit, other, difference, trial.cutter().radius(0)); };
+/// What a function makes of each point, in their order.
+template <typename Function>
+auto all(const std::vector<SetupPoint>& points, const Function& function) {
+  std::vector<decltype(function(points.front()))> results(points.size());
+  onAllCores(points.size(), [&](std::size_t i) { results[i] = function(points[i]); });
+  return results;
+}
+
+/// Looks for a set-up from one lot of starts after the other, until one is accepted.
+class Search {
+ public:
+  Search(const SetupTrial& trial, const SetupRequest& request) : trial_(trial), request_(request) {}
+
+  /// Fits all that is asked, first at the flute's ends. @return whether a set-up is accepted.
+  bool findFromEnds(const std::vector<SetupPoint>& starts) {
+    const bool has_tolerances = hasTolerances(request_);
+    std::vector<SetupPoint> ends;
+    for (const auto& fit : all(starts, [&](const SetupPoint& p) { return fitEnds(trial_, request_, p); })) {
+      if (!fit) continue;
+      addNew(fit->point, ends, kAlike);
+      if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
+    }
+    if (settle()) return true;
+    takeNearest(ends);
+    return settle();
+  }
+
+  /// Fits what is asked over the flute at once, and a land where all that is found has none.
+  bool findFrom(const std::vector<SetupPoint>& starts) {
+    const std::vector<SetupPoint> best = takeNearest(starts);
+    if (settle()) return true;
+    if (!fitted_.best || fitted_.best->problem != SetupProblem::kLand) return false;
+    const auto with_land = all(best, [&](const SetupPoint& p) { return setupWithLand(trial_, request_, p); });
+    for (const SetupPoint& point : with_land) {
+      if (worst(point) <= kWithin) take(point);
+    }
+    return settle();
+  }
+
+  Fitted result() && { return std::move(fitted_); }
+
+ private:
+  double worst(const SetupPoint& p) const {
+    return setupErrors(trial_, request_, p, SetupTrial::kSections).worst(request_);
+  }
+
+  bool addNew(const SetupPoint& fit, std::vector<SetupPoint>& others, double difference) const {
+    const double radius = trial_.cutter().radius(0);
+    const auto same = [&](const SetupPoint& other) { return isSame(fit, other, difference, radius); };
     if (std::any_of(others.begin(), others.end(), same)) return false;
     others.push_back(fit);
     return true;
-  };
-  const auto take = [&](const SetupPoint& fit) {
-    if (!add_new(fit, seen, kSame)) return;
-    Judged judged = judge(trial, request, fit);
-    if (request.z_law == ZLaw::kPublished) {
-      judged.error = setupErrors(trial, request, fit, SetupTrial::kSections).worst(measurable(request));
+  }
+
+  void take(const SetupPoint& fit) {
+    if (!addNew(fit, seen_, kSame)) return;
+    Judged judged = judge(trial_, request_, fit);
+    if (request_.z_law == ZLaw::kPublished) {
+      judged.error = setupErrors(trial_, request_, fit, SetupTrial::kSections).worst(measurable(request_));
     }
-    fitted.take(judged);
-  };
-  std::vector<std::optional<EndsFit>> fits(starts.size());
-  onAllCores(starts.size(), [&](std::size_t i) { fits[i] = fitEnds(trial, request, starts[i]); });
-  for (const auto& fit : fits) {
-    if (!fit) continue;
-    add_new(fit->point, ends, kAlike);
-    if (fit->is_exact && !(has_tolerances && !(worst(fit->point) <= kWithin))) take(fit->point);
+    if (!fitted_.best || isBetter(judged, *fitted_.best)) fitted_.best = judged;
+    if (!judged.problem && !judged.cut_short && !judged.is_facet) unasked_.push_back(judged);
   }
-  if (fitted.settle(request)) return;
-  std::vector<std::optional<SetupPoint>> nearest_to(ends.size());
-  onAllCores(ends.size(), [&](std::size_t i) { nearest_to[i] = nearestSetup(trial, request, ends[i]); });
-  for (const auto& fit : nearest_to) {
-    if (fit) add_new(*fit, nearest, kAlike);
-  }
-  std::multimap<double, SetupPoint> by_error;
-  for (const SetupPoint& fit : nearest) by_error.emplace(worst(fit), fit);
-  std::vector<SetupPoint> bests;
-  for (const auto& [error, fit] : by_error) bests.push_back(fit);
-  const auto within = static_cast<std::size_t>(std::distance(by_error.begin(), by_error.upper_bound(kWithin)));
-  onAllCores(std::min<std::size_t>(bests.size() - within, kMostEvened),
-             [&](std::size_t i) { bests[within + i] = evenedSetup(trial, request, bests[within + i]); });
-  for (const SetupPoint& best : bests) {
-    const double here = worst(best);
-    if (here < fitted.error || !fitted.nearest) {
-      fitted.error = here;
-      fitted.nearest = best;
+
+  /// Takes what is within the tolerances near some starts. @return what comes nearest to them.
+  std::vector<SetupPoint> takeNearest(const std::vector<SetupPoint>& starts) {
+    std::vector<SetupPoint> nearest;
+    for (const auto& fit : all(starts, [&](const SetupPoint& p) { return nearestSetup(trial_, request_, p); })) {
+      if (fit) addNew(*fit, nearest, kAlike);
     }
-    if (here <= kWithin) take(best);
+    const std::vector<double> errors = all(nearest, [&](const SetupPoint& p) { return worst(p); });
+    std::multimap<double, SetupPoint> by_error;
+    for (std::size_t i = 0; i < nearest.size(); ++i) by_error.emplace(errors[i], nearest[i]);
+    std::vector<SetupPoint> best;
+    for (const auto& [error, fit] : by_error) {
+      if (error <= kWithin) take(fit);
+      if (best.size() < kMostEvened) best.push_back(fit);
+    }
+    best = all(best, [&](const SetupPoint& p) { return evenedSetup(trial_, request_, p); });
+    for (const SetupPoint& fit : best) {
+      const double here = worst(fit);
+      if (here < fitted_.error || !fitted_.nearest) {
+        fitted_.error = here;
+        fitted_.nearest = fit;
+      }
+      if (here <= kWithin) take(fit);
+    }
+    return best;
   }
-}
+
+  /// Asks of what would do, the best first. @return whether one is accepted, which then is the best.
+  bool settle() {
+    std::stable_sort(unasked_.begin(), unasked_.end(), isBetter);
+    for (const Judged& judged : std::exchange(unasked_, {})) {
+      if (fitted_.settled || (request_.accepts && !request_.accepts(judged.solved))) continue;
+      fitted_.best = judged;
+      fitted_.settled = true;
+    }
+    return fitted_.settled;
+  }
+
+  const SetupTrial& trial_;
+  const SetupRequest& request_;
+  Fitted fitted_;
+  std::vector<SetupPoint> seen_;  ///< that were judged
+  std::vector<Judged> unasked_;   ///< that would do, and may yet be accepted
+};
 
 /// The set-up that would be without the figure that is kept, with that figure: near it are those with it.
 std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest request) {
@@ -242,8 +288,9 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
   if (!keep || trial.isCylinder() || !request.core_diameter) return {};
   request.keep.reset();
   request.accepts = {};
-  Fitted free;
-  fitAll(trial, request, startsOf(trial, request, kFirstSwivels, kStartHeights), free);
+  Search search(trial, request);
+  search.findFromEnds(startsOf(trial, request, kFirstSwivels, kStartHeights));
+  const Fitted free = std::move(search).result();
   if (!free.best) return {};
   SetupPoint point = free.best->point;
   switch (*keep) {
@@ -254,21 +301,57 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
   return {point};
 }
 
+/// Of a cylinder whose rake face need not pass the axis at R sin r: at other heights, the nearest first.
+std::optional<Fitted> fittedAtOtherHeights(const SetupTrial& trial, SetupRequest request) {
+  if (!isHeightTied(trial, request) || request.keep) return std::nullopt;
+  const double tied = tiedHeight(trial, request, request.cutter.spiral_angle);
+  const double highest = highestOf(trial, request, request.cutter.spiral_angle);
+  std::vector<double> heights;
+  for (int i = -kMoreHeights; i <= kMoreHeights; ++i) {
+    heights.push_back(highest * i / kMoreHeights - trial.wheel().upperFace());
+  }
+  std::stable_sort(heights.begin(), heights.end(),
+                   [&](double a, double b) { return std::abs(a - tied) < std::abs(b - tied); });
+  request.keep = SetupFigure::kHeight;
+  for (const double height : heights) {
+    request.kept.height = height;
+    Search search(trial, request);
+    if (search.findFrom(startsOf(trial, request, kSwivelsOfCylinder, 0))) return std::move(search).result();
+  }
+  return std::nullopt;
+}
+
+/// A law that corrects Z changes core and edge by so much that other set-ups may do than those without it.
+std::optional<Fitted> fittedForCorrection(const SetupTrial& trial, const SetupRequest& request,
+                                          const std::vector<SetupPoint>& starts) {
+  if (request.z_law == ZLaw::kPublished) return std::nullopt;
+  for (const auto& [rake, others] : kTolerancesForCorrection) {
+    SetupRequest wider = request;
+    wider.cutter.rake_tolerance *= rake;
+    wider.cutter.spiral_tolerance *= others;
+    wider.cutter.core_tolerance *= others;
+    Search search(trial, wider);
+    if (search.findFrom(starts)) return std::move(search).result();
+  }
+  return std::nullopt;
+}
+
 /// @param everywhere starts from the other swivels, too, if the first ones lead nowhere.
 Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywhere) {
-  Fitted all;
-  fitAll(trial, request, startsBesideFree(trial, request), all);
-  if (all.settle(request)) return all;
+  Search search(trial, request);
   const bool asks_edge = request.asks_spiral || request.core_diameter_end;
   const bool is_alone = !trial.isCylinder() && asks_edge;
-  const std::vector<double>& first = is_alone ? kFirstSwivels : kSwivelsOfCylinder;
-  fitAll(trial, request, startsOf(trial, request, first, kStartHeights), all);
-  if (all.settle(request) || !everywhere) return all;
-  fitAll(trial, request, startsOf(trial, request, kOtherSwivels, kStartHeights), all);
-  if (all.settle(request)) return all;
-  fitAll(trial, request, startsOf(trial, request, kFirstSwivels, kMoreHeights), all);
-  all.settle(request);
-  return all;
+  std::vector<SetupPoint> starts =
+      startsOf(trial, request, is_alone ? kFirstSwivels : kSwivelsOfCylinder, kStartHeights);
+  const std::vector<SetupPoint> others = startsOf(trial, request, kOtherSwivels, kStartHeights);
+  const bool found = search.findFromEnds(startsBesideFree(trial, request)) || search.findFromEnds(starts) ||
+                     !everywhere || search.findFromEnds(others);
+  starts = startsOf(trial, request, kFirstSwivels, kMoreHeights);
+  starts.insert(starts.end(), others.begin(), others.end());
+  if (found || search.findFrom(starts)) return std::move(search).result();
+  if (auto other = fittedAtOtherHeights(trial, request)) return std::move(*other);
+  if (auto other = fittedForCorrection(trial, request, starts)) return std::move(*other);
+  return std::move(search).result();
 }
 
 /// The nearest set-up with a changed request, if it is one, and leads on to the next change.

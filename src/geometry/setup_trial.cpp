@@ -84,6 +84,12 @@ double SetupTrial::chordalRake(const WheelSweep& sweep, double x) const {
   return edge && face ? chordAngle(r, inner, face->angle - edge->angle) : kNowhere;
 }
 
+double SetupTrial::land(const WheelSweep& sweep, double x, double pitch) const {
+  const double r = cutter_.radius(x);
+  const auto high = sweep.wall(x, r, true), low = sweep.wall(x, r, false);
+  return high && low ? r * (pitch - (high->angle - low->angle)) : kNowhere;
+}
+
 double SetupTrial::coreRadius(const WheelSweep& sweep, double x) const {
   const double radius = sweep.minRadius(x, std::numeric_limits<double>::max());
   return std::isfinite(radius) ? radius : kNowhere;

@@ -53,6 +53,9 @@ class SetupTrial {
   /// Of the rake face, as ToothSection has it; NaN as Edge [rad].
   double chordalRake(const WheelSweep& sweep, double x) const;
 
+  /// Of a section, along the circle: what a flute leaves of the pitch; negative where flutes meet, NaN as Edge [m].
+  double land(const WheelSweep& sweep, double x, double pitch) const;
+
   /// Of a section; 0 if the wheel cuts through the axis, NaN if it does not reach the cutter [m].
   double coreRadius(const WheelSweep& sweep, double x) const;
 

@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/z_law.h"
 
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/job/rounded_job.h"
 #include "flute_grinder/job/valid_job.h"
 #include "geometry/rake_correction.h"
 
@@ -84,11 +85,12 @@ ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
     return job.withEdges(flutes, edgesOf(flutes));
   }
   if (job->process.z_law == ZLaw::kPublished) return job;
-  const ValidJob published = job.withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
+  const ValidJob published =
+      ValidJob(roundedOff(*job)).withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
   std::map<double, ZCorrection> by_spiral;
   std::vector<ZCorrection> corrections;
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    const auto [place, is_new] = by_spiral.try_emplace(job.cutterOf(tooth).spiral_angle);
+    const auto [place, is_new] = by_spiral.try_emplace(published.cutterOf(tooth).spiral_angle);
     if (is_new) place->second = correctionOf(published, tooth, watch);
     corrections.push_back(place->second);
   }

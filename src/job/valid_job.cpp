@@ -1,5 +1,7 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include "flute_grinder/job/job_fields.h"
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -85,7 +87,12 @@ ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth) {
   const GrindJob primary = job.ofOperation(1);
   const ReliefPath path(tooth, reliefStartOf(primary, tooth), reliefWheelOf(primary.process));
   const ReliefPath::Place end = path.surfaceAt(0, c.land);
-  if (!(end.radius > 0)) throw std::invalid_argument("the primary relief is not as wide as cutter.land_mm");
+  if (!(end.radius > 0)) {
+    throw std::invalid_argument(fieldName("cutter.land") + " = " + text(Quantity{c.land, Unit::kMetre}) +
+                                ": the rim of the primary relief's wheel reaches only " +
+                                text(Quantity{path.reach(), Unit::kMetre}, 3) +
+                                " behind the edge; change the height of its set-up, or take a wider wheel");
+  }
   return {c.second_clearance, end.radius / tooth.radius(0), end.behind};
 }
 

@@ -86,6 +86,14 @@ TEST(StepTable, TakesTheRuleThatItIsGiven) {
   EXPECT_LE(exact.max_even_error, 2e-15);
 }
 
+// The sum of its steps is less than the length of the flute by the last bit.
+TEST(StepTable, EndsWithThePairThatEndsAtTheFlutesEnd) {
+  const CutterGeometry straight{10 * kMm, 0, 0, 0, 9.4 * kMm};
+  const StepTable table = tableOf(straight, EvenStepRule::kPublished, 0.05 * kMm);
+  EXPECT_EQ(table.rows.size() - 1, 188u);
+  EXPECT_NEAR(table.rows.back().point.x, 9.4 * kMm, 1e-15);
+}
+
 TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
   // A back taper whose cone closes within the first step.
   const CutterGeometry back{10 * kMm, -3 * units::kDegree, 30 * units::kDegree, 0, 30 * kMm};

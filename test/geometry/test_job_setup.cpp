@@ -201,8 +201,8 @@ TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
   job.process.setup_swivel = 70 * kDegree;
   expectContains(refused(job, kMachine, SetupFigure::kSwivel), "process.setup.swivel_deg = 70 deg");
   job = shipped("roughing_d10_t4");
-  job.process.finish_infeed = 3 * kMillimetre;
-  expectContains(refused(job), "process.finish_infeed_mm = 3 mm");
+  job.process.finish_infeed = 6 * kMillimetre;  // more than the radius
+  expectContains(refused(job), "process.finish_infeed_mm = 6 mm");
 }
 
 /// The number behind a text.
@@ -310,6 +310,11 @@ TEST(JobSetup, TheLastBitOfANumberChoosesNoOtherSetup) {
       for (std::size_t k = 0; k < setup.edits.size(); ++k) {
         EXPECT_EQ(shaken.edits[k].value, setup.edits[k].value) << setup.edits[k].key << ", " << i;
       }
+      const CutterFigures &now = shaken.check.figures, &was = setup.check.figures;
+      EXPECT_NEAR(now.rake.from, was.rake.from, 1e-3 * job.cutter.rake_tolerance) << i;
+      EXPECT_NEAR(now.rake.to, was.rake.to, 1e-3 * job.cutter.rake_tolerance) << i;
+      EXPECT_NEAR(now.core_diameter[0], was.core_diameter[0], 1e-3 * job.cutter.core_tolerance) << i;
+      EXPECT_NEAR(now.core_diameter[1], was.core_diameter[1], 1e-3 * job.cutter.core_tolerance) << i;
     }
   }
 }

@@ -25,7 +25,6 @@ constexpr int kEvenings = 4;                     ///< with each of them, as long
 constexpr double kNoEvening = 1e-3;              ///< of the tolerances
 constexpr double kLandAsked = 0.01;              ///< of the diameter, where a land is looked for
 constexpr double kNoLack = 1e-3;                 ///< of it and of the tolerances, that is left lacking
-constexpr int kFitSteps = 40;                    ///< of a fit
 constexpr int kStepsBetweenSections = 4;         ///< where errors are weighed by their tolerances
 constexpr double kNoGain = 1e-2;                 ///< of a step, of the errors, that ends a fit
 /// [rad], of the taper, and of the small end's radius: large enough that the places of extrema, known to 1e-8, are no
@@ -57,12 +56,14 @@ class DampedFit {
     if (request.core_diameter_end && !trial.isCylinder()) figures_.push_back(&SetupPoint::taper);
   }
 
-  /// @param enough the maximum error at which the fit may end. @return nothing if the start gives no tool.
-  std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough) const {
+  /// @param enough the maximum error at which the fit may end. @param most steps.
+  /// @return nothing if the start gives no tool.
+  std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough,
+                                  int most = kFitSteps) const {
     Eigen::VectorXd errors = at(point, errors_of);
     if (!errors.allFinite()) return std::nullopt;
     double damping = kDamping;
-    for (int i = 0; i < kFitSteps && maxOf(errors) > enough; ++i) {
+    for (int i = 0; i < most && maxOf(errors) > enough; ++i) {
       const double before = errors.norm();
       if (!step(point, errors, damping, errors_of) || errors.norm() > (1 - kNoGain) * before) break;
     }
@@ -214,12 +215,14 @@ SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, co
       const double mean = meanSpiral(trial.cutter(), length * (i - 1) / steps, x, edge.angle - before);
       turns.push_back(mean - request.cutter.spiral_angle);
     }
-    if (judges) chords.push_back(trial.chordalRake(sweep, x) - request.rake);
+    const bool asks_core = core && core_end ? true : core ? i == 0 : core_end && i == steps;
+    const double radius = judges || asks_core ? trial.coreRadius(sweep, x) : 0;
+    if (judges) chords.push_back(trial.chordalRake(sweep, x, edge.angle, radius) - request.rake);
     if (steps > 1 && request.asks_spiral) spirals.push_back(trial.spiral(sweep, x) - request.cutter.spiral_angle);
     before = edge.angle;
-    if (!(core && core_end ? true : core ? i == 0 : core_end && i == steps)) continue;
+    if (!asks_core) continue;
     const double asked = core && core_end ? *core + part * (*core_end - *core) : core ? *core : *core_end;
-    cores.push_back((2 * trial.coreRadius(sweep, x) - asked) / diameter);
+    cores.push_back((2 * radius - asked) / diameter);
   }
   const auto array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
     return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -249,10 +252,11 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
   return best;
 }
 
-std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start) {
+std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                                       int most) {
   // Within its tolerance a chord is none of the errors: the rake at the edge is to be as asked.
   const auto errors_of = [&](const SetupPoint& point) { return weighedErrors(trial, request, point, kWithin); };
-  return DampedFit(trial, request).solve(start, errors_of, 0);
+  return DampedFit(trial, request).solve(start, errors_of, 0, most);
 }
 
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {

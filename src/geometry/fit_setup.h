@@ -9,6 +9,7 @@
 
 namespace grinder {
 
+constexpr int kFitSteps = 40;     ///< at most
 constexpr double kWithin = 0.98;  ///< of the tolerances, for a set-up to be taken: figures are rounded, the wheel wears
 
 /// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
@@ -54,8 +55,9 @@ struct EndsFit {
 std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
 /// The set-up near a start with the least sum of squares of all errors over the flute, each by its tolerance.
-/// @return nothing if the start gives no tool.
-std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
+/// @param most steps of the fit. @return nothing if the start gives no tool.
+std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
+                                       int most = kFitSteps);
 
 /// The same with the least sums of ever higher powers, in which the maximum error counts most: what it takes to bring
 /// the last error within its tolerance. As it is where all are, or one is far beyond.

@@ -17,6 +17,7 @@ namespace grinder {
 namespace {
 
 constexpr int kMaxLengthenings = 4;  ///< of the overtravel
+constexpr double kSpare = 2e-5;      ///< added to what it lacks, for the precision of that [m]
 constexpr double kRoom = 0.02;       ///< of the flute's length, for a law of Z
 
 // Decimals in a file. The rake changes by up to 1/R for a height, 0.0006 deg for 10 nm at a radius of 1 mm, and by a
@@ -220,8 +221,8 @@ bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   const double length = setup.job.cutter.flute_length;
   const auto& complete = setup.check.complete;
   if (!complete || solved.complete_from > 0 || solved.complete_to < length) return false;
-  if (complete->from > 0) setup.overtravel[0] = p.overtravel_end + complete->from;
-  if (complete->to < length) setup.overtravel[1] = p.overtravel_shank + length - complete->to;
+  if (complete->from > 0) setup.overtravel[0] = p.overtravel_end + complete->from + kSpare;
+  if (complete->to < length) setup.overtravel[1] = p.overtravel_shank + length - complete->to + kSpare;
   takeOvertravel(setup);
   return complete->from > 0 || complete->to < length;
 }
@@ -236,10 +237,9 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   if (keep && *keep != SetupFigure::kSwivel) {
     return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
   }
-  const GrindJob rounded = roundedOff(job);
-  const ValidJob flutes = withLaws(ValidJob(rounded.ofOperation(0)));
+  const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
   const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
-  const ReliefSetup found = findReliefSetup(rounded, flutes, swivel, asked);
+  const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
            found.refused;
@@ -283,9 +283,8 @@ bool isAccepted(const SolvedSetup& solved, const GrindJob& job, std::optional<Se
 
 std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,
                                                     std::optional<SetupFigure> keep) {
-  const GrindJob rounded = roundedOff(job);
-  SetupRequest request = requestOf(rounded, swivel, keep);
-  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, rounded, keep); };
+  SetupRequest request = requestOf(job, swivel, keep);
+  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, job, keep); };
   const auto result = solveSetup(request);
   if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
   return setupWith(std::get<SolvedSetup>(result), job, keep);
@@ -301,8 +300,9 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
   return fields;
 }
 
-std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
+std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep) {
+  const GrindJob job = roundedOff(asked);
   try {
     if (isRelief(job.process.kind)) return solveReliefSetup(job, swivel, keep);
     return solveFluteSetup(job, swivel, keep);

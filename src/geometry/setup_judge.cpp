@@ -83,7 +83,8 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
     const double rake = std::atan(-r * high->slope);
     const auto below = sweep.wall(x, kBelowEdge * r, true);
     if (!below || !(std::abs(std::atan(-kBelowEdge * r * below->slope) - rake) < kSameFace)) judged.is_facet = true;
-    const double chord_off = std::abs(trial.chordalRake(sweep, x) - request.rake);
+    const double chord_off =
+        std::abs(trial.chordalRake(sweep, x, high->angle, trial.coreRadius(sweep, x)) - request.rake);
     judged.chord_off = std::max(judged.chord_off, std::isnan(chord_off) ? kNotThere : chord_off);
     s.min_rake = std::min(s.min_rake, rake);
     s.max_rake = std::max(s.max_rake, rake);

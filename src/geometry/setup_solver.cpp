@@ -19,9 +19,11 @@ namespace {
 
 constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
 constexpr double kQuarter = units::kPi / 2;
-constexpr double kSame = 1e-4;          ///< [rad], of the taper and of the radius: of two fits that came to the same
-constexpr double kAlike = 0.02;         ///< likewise, of two that lead on to the same
-constexpr double kMeasurable = 1e-3;    ///< [rad], and of the end diameter
+constexpr double kSame = 1e-4;        ///< [rad], of the taper and of the radius: of two fits that came to the same
+constexpr double kAlike = 0.02;       ///< likewise, of two that lead on to the same
+constexpr double kMeasurable = 1e-3;  ///< [rad], and of the end diameter
+constexpr int kFirstSteps = 10;       ///< of all fits, after which the most promising ones go on
+constexpr std::size_t kMostPromising = 24;
 constexpr std::size_t kMostEvened = 8;  ///< of those nearest to the tolerances
 /// Of the rake, and of spiral angle and core, by the asked ones: in which set-ups for a correction of Z are looked for.
 constexpr std::pair<double, double> kTolerancesForCorrection[] = {{4, 0.8}, {2, 0.8}, {4, 1}};
@@ -238,15 +240,26 @@ class Search {
     if (!judged.problem && !judged.cut_short && !judged.is_facet) unasked_.push_back(judged);
   }
 
-  /// Takes what is within the tolerances near some starts. @return what comes nearest to them.
-  std::vector<SetupPoint> takeNearest(const std::vector<SetupPoint>& starts) {
+  /// Those that fits come to, without what comes to the same, the nearest to the tolerances first.
+  std::multimap<double, SetupPoint> nearestTo(const std::vector<SetupPoint>& starts, int steps) const {
+    const auto fit = [&](const SetupPoint& p) { return nearestSetup(trial_, request_, p, steps); };
     std::vector<SetupPoint> nearest;
-    for (const auto& fit : all(starts, [&](const SetupPoint& p) { return nearestSetup(trial_, request_, p); })) {
-      if (fit) addNew(*fit, nearest, kAlike);
+    for (const auto& found : all(starts, fit)) {
+      if (found) addNew(*found, nearest, kAlike);
     }
     const std::vector<double> errors = all(nearest, [&](const SetupPoint& p) { return worst(p); });
     std::multimap<double, SetupPoint> by_error;
     for (std::size_t i = 0; i < nearest.size(); ++i) by_error.emplace(errors[i], nearest[i]);
+    return by_error;
+  }
+
+  /// Takes what is within the tolerances near some starts. @return what comes nearest to them.
+  std::vector<SetupPoint> takeNearest(const std::vector<SetupPoint>& starts) {
+    std::vector<SetupPoint> promising;
+    for (const auto& [error, fit] : nearestTo(starts, kFirstSteps)) {
+      if (promising.size() < kMostPromising) promising.push_back(fit);
+    }
+    const std::multimap<double, SetupPoint> by_error = nearestTo(promising, kFitSteps);
     std::vector<SetupPoint> best;
     for (const auto& [error, fit] : by_error) {
       if (error <= kWithin) take(fit);

@@ -77,11 +77,11 @@ double SetupTrial::spiral(const WheelSweep& sweep, double x) const {
   return std::atan(r * (edge(sweep, x + h).angle - edge(sweep, x - h).angle) / (2 * h));
 }
 
-double SetupTrial::chordalRake(const WheelSweep& sweep, double x) const {
+double SetupTrial::chordalRake(const WheelSweep& sweep, double x, double edge, double core) const {
   const double r = cutter_.radius(x);
-  const double inner = r - chordDepth(cutter_.geometry(), r - coreRadius(sweep, x));
-  const auto edge = sweep.wall(x, r, true), face = sweep.wall(x, inner, true);
-  return edge && face ? chordAngle(r, inner, face->angle - edge->angle) : kNowhere;
+  const double inner = r - chordDepth(cutter_.geometry(), r - core);
+  const auto face = sweep.wall(x, inner, true);
+  return face ? chordAngle(r, inner, face->angle - edge) : kNowhere;
 }
 
 double SetupTrial::land(const WheelSweep& sweep, double x, double pitch) const {

@@ -51,7 +51,8 @@ class SetupTrial {
   double spiral(const WheelSweep& sweep, double x) const;
 
   /// Of the rake face, as ToothSection has it; NaN as Edge [rad].
-  double chordalRake(const WheelSweep& sweep, double x) const;
+  /// @param edge its angle [rad]. @param core radius of the section [m].
+  double chordalRake(const WheelSweep& sweep, double x, double edge, double core) const;
 
   /// Of a section, along the circle: what a flute leaves of the pitch; negative where flutes meet, NaN as Edge [m].
   double land(const WheelSweep& sweep, double x, double pitch) const;

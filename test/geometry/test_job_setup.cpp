@@ -342,7 +342,7 @@ TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
   const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
   EXPECT_EQ(refused(job, kMachine, SetupFigure::kHeight), "--keep height; allowed for a relief: swivel");
   GrindJob kept = job;
-  kept.process.setup_swivel += 0.5 * kDegree;
+  kept.process.setup_swivel = 13.6 * kDegree;
   const GrindProcess with_kept = solved(kept, SetupFigure::kSwivel).job.process;
   EXPECT_EQ(with_kept.setup_swivel, kept.process.setup_swivel);
   EXPECT_NE(with_kept.setup_height, solved(job).job.process.setup_height);

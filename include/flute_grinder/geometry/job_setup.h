@@ -41,10 +41,10 @@ std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 /// is written into a file, and measured as such, and the overtravel is lengthened to what the job's law of Z needs.
 /// Takes up to some tenths of a second, and seconds if it is refused. Of a relief, swivel and height are found: the
 /// swivel nearest to the flutes' with which the rim reaches over the land, and nothing of the next tooth.
-/// @param job read with unsolvedFields().
+/// @param asked read with unsolvedFields(); its numbers count with nine digits, see roundedOff().
 /// @param swivel that the machine allows [rad].
 /// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.
-std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& job, const Range& swivel,
+std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep);
 
 }  // namespace grinder

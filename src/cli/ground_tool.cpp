@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/section_outline.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/job/format.h"
 
 #include <algorithm>
@@ -20,26 +21,18 @@ constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth tog
 constexpr double kMinGouge = 1e-6;            ///< below that it is the averaging of positions [m]
 constexpr double kBadGouge = 10e-6;           ///< above that it is not the following error alone [m]
 
-/// A tooth in a section.
-struct Place {
-  const ValidJob& job;
-  const MeasuredSection& section;
-  std::size_t number;
+struct Place : FigurePlace {
+  Place(const ValidJob& job, const MeasuredSection& section, std::size_t tooth)
+      : FigurePlace{job, section.ground, tooth}, area_removed(section.area_removed) {}
 
-  const ToothSection& tooth() const { return section.ground.teeth[number]; }
-  const CutterGeometry& cutter() const { return job.cutterOf(static_cast<int>(number)); }
-  double askedDepth() const { return grinder::askedDepth(*job, section.ground.x); }
+  double area_removed;  ///< of the section [m^2]
 };
-
-using Value = std::optional<double>;
+using Value = FigureValue;
 
 Value onOuterCircle(const Place& p, Value angle) {
-  if (angle) *angle *= p.section.ground.radius;
+  if (angle) *angle *= p.section.radius;
   return angle;
 }
-
-/// The rake face of a flute that is not complete is not the one that a longer stroke would leave.
-Value ifComplete(const Place& p, Value value) { return p.tooth().complete ? value : std::nullopt; }
 
 /// A figure of a tooth in a section.
 struct Figure {
@@ -54,34 +47,40 @@ struct Figure {
 
 Value notAsked(const Place&) { return std::nullopt; }
 
+/// A figure that a job asks for.
+template <ToolFigure figure>
+constexpr Figure askedFigure(const char* key, const char* title, const char* head) {
+  return {key,
+          title,
+          head,
+          rowOf(figure).unit == Unit::kRadian ? kDegree : kMillimetre,
+          figure == ToolFigure::kCore,
+          [](const Place& p) { return rowOf(figure).measured(p); },
+          [](const Place& p) { return rowOf(figure).asked(p); }};
+}
+
 constexpr Figure kFigures[]{
     {"edge_deg", "", "", kDegree, false, [](const Place& p) { return p.tooth().edge; }, notAsked},
-    {"rake_deg", "radial rake, deg", "rake deg", kDegree, false,
-     [](const Place& p) { return ifComplete(p, p.tooth().rake); },
-     [](const Place& p) { return Value(p.job->cutter.rake_angle); }},
-    {"chordal_rake_deg", "chordal rake, deg", "chordal deg", kDegree, false,
-     [](const Place& p) { return ifComplete(p, p.tooth().chordal_rake); },
-     [](const Place& p) { return Value(p.job->cutter.rake_angle); }},
+    askedFigure<ToolFigure::kRake>("rake_deg", "radial rake, deg", "rake deg"),
+    askedFigure<ToolFigure::kChordalRake>("chordal_rake_deg", "chordal rake, deg", "chordal deg"),
     {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
-     [](const Place& p) { return ifComplete(p, p.tooth().normal_rake); },
+     [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); },
      [](const Place& p) {
-       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(p.cutter().spiral_angle)));
+       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(*tool_figures::askedSpiral(p))));
      }},
-    {"core_diameter_mm", "core diameter, mm", "core mm", kMillimetre, true,
-     [](const Place& p) { return Value(2 * p.section.ground.core_radius); },
-     [](const Place& p) { return Value(2 * std::max(0.0, p.section.ground.radius - p.askedDepth())); }},
+    askedFigure<ToolFigure::kCore>("core_diameter_mm", "core diameter, mm", "core mm"),
     {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, false,
-     [](const Place& p) { return Value(p.tooth().depth); }, [](const Place& p) { return Value(p.askedDepth()); }},
+     [](const Place& p) { return Value(p.tooth().depth); },
+     [](const Place& p) { return Value(askedDepth(*p.job, p.section.x)); }},
     {"flute_deg", "flute, deg", "flute deg", kDegree, false, [](const Place& p) { return p.tooth().flute; }, notAsked},
     {"flute_mm", "flute, mm", "flute mm", kMillimetre, false,
      [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }, notAsked},
     {"land_deg", "land, deg", "land deg", kDegree, false, [](const Place& p) { return p.tooth().land; }, notAsked},
     {"land_mm", "land, mm", "land mm", kMillimetre, false,
      [](const Place& p) { return onOuterCircle(p, p.tooth().land); }, notAsked},
-    {"spiral_deg", "spiral angle, deg", "spiral deg", kDegree, false, [](const Place& p) { return p.tooth().spiral; },
-     [](const Place& p) { return Value(p.cutter().spiral_angle); }},
+    askedFigure<ToolFigure::kSpiral>("spiral_deg", "spiral angle, deg", "spiral deg"),
     {"area_removed_mm2", "area removed, mm^2", "area mm^2", kMillimetre* kMillimetre, true,
-     [](const Place& p) { return Value(p.section.area_removed); }, notAsked},
+     [](const Place& p) { return Value(p.area_removed); }, notAsked},
 };
 
 template <typename Get>
@@ -91,24 +90,16 @@ Value ofRelief(const Place& p, const Get& get) {
 
 /// Of a job with a relief.
 constexpr Figure kReliefFigures[]{
-    {"clearance_deg", "clearance, deg", "clear. deg", kDegree, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.clearance; }); },
-     [](const Place& p) { return Value(p.job->cutter.clearance); }},
+    askedFigure<ToolFigure::kClearance>("clearance_deg", "clearance, deg", "clear. deg"),
     {"land_end_clearance_deg", "at the land's end", "end deg", kDegree, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land_end_clearance; }); }, notAsked},
-    {"primary_mm", "primary relief, mm", "primary mm", kMillimetre, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land; }); }, notAsked},
-    {"second_clearance_deg", "second clearance, deg", "second deg", kDegree, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.second_clearance; }); },
-     [](const Place& p) {
-       const CutterGeometry& c = p.job->cutter;
-       return c.second_clearance > 0 ? Value(c.second_clearance) : Value();
-     }},
+    askedFigure<ToolFigure::kPrimaryRelief>("primary_mm", "primary relief, mm", "primary mm"),
+    askedFigure<ToolFigure::kSecondClearance>("second_clearance_deg", "second clearance, deg", "second deg"),
     {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.heel; }); }, notAsked},
     {"radius_mm", "edge's radius, mm", "edge mm", kMillimetre, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return Value(r.edge_radius); }); },
-     [](const Place& p) { return Value(p.section.ground.radius); }},
+     [](const Place& p) { return Value(p.section.radius); }},
 };
 
 std::vector<Figure> figuresOf(const ValidJob& job) {
@@ -173,7 +164,7 @@ struct Extremes {
       if (asks) widen(asked, *asks);
       if (!value) return;
       if (asks) widen(difference, *value - *asks);
-      const At at{*value, p.section.ground.x / kMillimetre, p.number + 1};
+      const At at{*value, p.section.x / kMillimetre, p.number + 1};
       if (!min || *value < min->value) min = at;
       if (!max || *value > max->value) max = at;
     });
@@ -419,7 +410,7 @@ GroundToolCsv::GroundToolCsv(const std::string& path, const ValidJob& job) : Csv
 void GroundToolCsv::write(const GroundTool& tool) {
   const auto field = [&](Value value) { value ? print(",%.17g", *value) : print(","); };
   forEachTooth(tool, [&](const Place& place) {
-    print("%.17g,%zu", place.section.ground.x / kMillimetre, place.number);
+    print("%.17g,%zu", place.section.x / kMillimetre, place.number);
     for (const Figure& figure : figuresOf(tool.job)) {
       field(shown(figure, figure.value(place)));
       if (isAsked(figure)) field(shown(figure, figure.asked(place)));

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/valid_job.h"
 
@@ -13,12 +14,10 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSections = 8;             ///< of the flute's length, between those that are measured
-constexpr int kRingsToSpoil = 6;         ///< of a section, at which a stroke may spoil it
-constexpr double kMostUndercut = 3e-6;   ///< of an edge's radius by a relief [m]
-constexpr double kLandPart = 0.05;       ///< of a land, by which its width may be off
-constexpr double kLeastLandOff = 20e-6;  ///< that it may be off in any case [m]
-constexpr double kSameWear = 20e-6;      ///< whose change of the wheel's curvature a check does not see [m]
+constexpr int kSections = 8;            ///< of the flute's length, between those that are measured
+constexpr int kRingsToSpoil = 6;        ///< of a section, at which a stroke may spoil it
+constexpr double kMostUndercut = 3e-6;  ///< of an edge's radius by a relief [m]
+constexpr double kSameWear = 20e-6;     ///< whose change of the wheel's curvature a check does not see [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
@@ -112,10 +111,9 @@ class Checker {
       if (tooth.flute && !tooth.land) {
         add(ReasonKind::kLand, section.x, number, Unit::kRadian, pitch(i) - tooth.least_land, pitch(i));
       }
-      if (tooth.complete) checkRake(section.x, number, tooth);
-    }
-    for (std::size_t i = 0; i < section.teeth.size(); ++i) {
-      if (section.teeth[i].complete) checkSpiral(section.x, i, section.teeth[i].spiral);
+      if (!tooth.complete) continue;
+      for (const ToolFigure figure : {ToolFigure::kRake, ToolFigure::kChordalRake}) checkFigure(figure, section, i);
+      if (tooth.spiral) checkFigure(ToolFigure::kSpiral, section, i);
     }
     const auto complete = [](const ToothSection& tooth) { return tooth.complete; };
     checkCore(section, std::all_of(section.teeth.begin(), section.teeth.end(), complete));
@@ -123,14 +121,11 @@ class Checker {
 
   /// A primary relief may end on the land where a secondary one follows, behind where that begins.
   void checkRelief(const GroundSection& section, std::size_t i) {
-    const CutterGeometry& c = job_->cutter;
     const int number = static_cast<int>(i);
     const ReliefSection relief = section.teeth[i].relief.value_or(ReliefSection{});
-    const double clearance = relief.clearance.value_or(CutterFigures::kNone);
-    if (!(std::abs(clearance - c.clearance) <= c.clearance_tolerance)) {
-      add(ReasonKind::kClearance, section.x, number, Unit::kRadian, clearance, c.clearance, c.clearance_tolerance);
+    for (const ToolFigure figure : {ToolFigure::kClearance, ToolFigure::kSecondClearance, ToolFigure::kPrimaryRelief}) {
+      checkFigure(figure, section, i);
     }
-    if (job_->operation > 1) checkSecondary(section, number, relief);
     const double taken = section.radius - relief.edge_radius;
     if (!(taken <= kMostUndercut)) {
       add(ReasonKind::kUndercut, section.x, number, Unit::kDeviationMetre, taken, kMostUndercut);
@@ -139,23 +134,10 @@ class Checker {
       add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
     }
     const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
-    const bool is_wide = last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, c.land).radius > 0;
+    const bool is_wide =
+        last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, job_->cutter.land).radius > 0;
     if (!is_wide || (job_->operation > 1 && !relief.land)) {
       add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
-    }
-  }
-
-  void checkSecondary(const GroundSection& section, int tooth, const ReliefSection& relief) {
-    const CutterGeometry& c = job_->cutter;
-    const double clearance = relief.second_clearance.value_or(CutterFigures::kNone);
-    if (!(std::abs(clearance - c.second_clearance) <= c.clearance_tolerance)) {
-      add(ReasonKind::kSecondClearance, section.x, tooth, Unit::kRadian, clearance, c.second_clearance,
-          c.clearance_tolerance);
-    }
-    const double asked = c.land * section.radius / (c.end_diameter / 2);  // it begins at one part of the radius
-    const double off = std::max(kLandPart * asked, kLeastLandOff), land = relief.land.value_or(CutterFigures::kNone);
-    if (!(std::abs(land - asked) <= off)) {
-      add(ReasonKind::kPrimaryLand, section.x, tooth, Unit::kMetre, land, asked, off);
     }
   }
 
@@ -165,7 +147,12 @@ class Checker {
     for (std::size_t i = 0; i < to.teeth.size(); ++i) {
       if (!from.teeth[i].complete || !to.teeth[i].complete) continue;
       const double turn = *to.teeth[i].edge - *from.teeth[i].edge;
-      checkSpiral((from.x + to.x) / 2, i, meanSpiral(ConicalCutter(job_->cutter), from.x, to.x, turn));
+      const double mean = meanSpiral(ConicalCutter(job_->cutter), from.x, to.x, turn);
+      const double tolerance = job_->cutter.spiral_tolerance;
+      const int number = static_cast<int>(i);
+      const double asked = job_.cutterOf(number).spiral_angle;
+      if (std::abs(mean - asked) <= tolerance) continue;
+      add(ReasonKind::kSpiral, (from.x + to.x) / 2, number, Unit::kRadian, mean, asked, tolerance);
     }
   }
 
@@ -200,23 +187,12 @@ class Checker {
   std::vector<Reason> take() { return std::move(reasons_); }
 
  private:
-  void checkRake(double x, int number, const ToothSection& tooth) {
-    const CutterGeometry& c = job_->cutter;
-    if (!(std::abs(*tooth.rake - c.rake_angle) <= c.rake_tolerance)) {
-      add(ReasonKind::kRake, x, number, Unit::kRadian, *tooth.rake, c.rake_angle, c.rake_tolerance);
-    }
-    const double chord = tooth.chordal_rake.value_or(CutterFigures::kNone);
-    if (!(std::abs(chord - c.rake_angle) <= c.chordal_rake_tolerance)) {
-      add(ReasonKind::kChordalRake, x, number, Unit::kRadian, chord, c.rake_angle, c.chordal_rake_tolerance);
-    }
-  }
-
-  void checkSpiral(double x, std::size_t tooth, const std::optional<double>& spiral) {
-    const double tolerance = job_->cutter.spiral_tolerance;
-    const int number = static_cast<int>(tooth);
-    const double asked = job_.cutterOf(number).spiral_angle;
-    if (!spiral || std::abs(*spiral - asked) <= tolerance) return;
-    add(ReasonKind::kSpiral, x, number, Unit::kRadian, *spiral, asked, tolerance);
+  void checkFigure(ToolFigure figure, const GroundSection& section, std::size_t tooth) {
+    const FigurePlace place{job_, section, tooth};
+    if (isAsAsked(figure, place)) return;
+    const ToolFigureRow& row = rowOf(figure);
+    add(row.reason, section.x, static_cast<int>(tooth), row.unit, row.measured(place).value_or(CutterFigures::kNone),
+        *row.asked(place), row.tolerance(place));
   }
 
   /// Where a flute is not complete, the core may be too thick only.

@@ -34,11 +34,12 @@ QString line(const QString& text, bool good) {
 QString rakeLine(const CutterSection& section) {
   std::vector<double> rakes, chords;
   bool good = true, chords_good = true, complete = true;
-  for (const ToothSection& tooth : section.ground.teeth) {
+  for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
+    const ToothSection& tooth = section.ground.teeth[i];
     if (tooth.rake) rakes.push_back(*tooth.rake / kDegree);
     if (tooth.chordal_rake) chords.push_back(*tooth.chordal_rake / kDegree);
-    chords_good = chords_good && section.chordIsWithin(tooth);
-    good = good && tooth.rake && section.rakeIsWithin(tooth);
+    chords_good = chords_good && section.isWithin(ToolFigure::kChordalRake, i);
+    good = good && tooth.rake && section.isWithin(ToolFigure::kRake, i);
     complete = complete && tooth.complete;
   }
   const CutterGeometry& c = section.job->cutter;
@@ -56,7 +57,7 @@ QString rakeLine(const CutterSection& section) {
 QString coreLine(const CutterSection& section) {
   const auto shown = [](double diameter) { return QString::number(diameter / kMillimetre, 'f', 3); };
   return line(section.outline.empty() ? "Core cut through" : "Core " + shown(2 * section.ground.core_radius) + " mm",
-              section.coreIsWithin()) +
+              section.isWithin(ToolFigure::kCore)) +
          QString(", asked %1 within %2 mm")
              .arg(shown(2 * section.asked_core))
              .arg(section.job->cutter.core_tolerance / kMillimetre);
@@ -66,7 +67,7 @@ QString spiralLine(const CutterSection& section) {
   std::vector<double> spirals, asked;
   bool good = true;
   for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
-    good = good && section.spiralIsWithin(i);
+    good = good && section.isWithin(ToolFigure::kSpiral, i);
     asked.push_back(section.job.cutterOf(static_cast<int>(i)).spiral_angle / kDegree);
     if (section.ground.teeth[i].spiral) spirals.push_back(*section.ground.teeth[i].spiral / kDegree);
   }
@@ -77,24 +78,32 @@ QString spiralLine(const CutterSection& section) {
 }
 
 QString reliefLine(const CutterSection& section) {
-  std::vector<double> clearances, widths, heels;
-  bool good = true;
-  for (const ToothSection& tooth : section.ground.teeth) {
-    good = good && section.clearanceIsWithin(tooth);
-    const ReliefSection relief = tooth.relief.value_or(ReliefSection{});
+  std::vector<double> clearances, seconds, widths, heels;
+  bool good = true, second_good = true, width_good = true;
+  for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
+    good = good && section.isWithin(ToolFigure::kClearance, i);
+    second_good = second_good && section.isWithin(ToolFigure::kSecondClearance, i);
+    width_good = width_good && section.isWithin(ToolFigure::kPrimaryRelief, i);
+    const ReliefSection relief = section.ground.teeth[i].relief.value_or(ReliefSection{});
     if (relief.clearance) clearances.push_back(*relief.clearance / kDegree);
+    if (relief.second_clearance) seconds.push_back(*relief.second_clearance / kDegree);
     if (relief.land) widths.push_back(*relief.land / kMillimetre);
     if (relief.heel) heels.push_back(*relief.heel / kMillimetre);
   }
   const CutterGeometry& c = section.job->cutter;
-  const auto clearance = rangeText(clearances), width = rangeText(widths), heel = rangeText(heels);
+  const auto clearance = rangeText(clearances), second = rangeText(seconds);
+  const auto width = rangeText(widths), heel = rangeText(heels);
   if (!clearance) return line("No relief is ground here", false);
   return line(QString("Clearance %1, asked %2 to %3 deg")
                   .arg(*clearance)
                   .arg((c.clearance - c.clearance_tolerance) / kDegree, 0, 'f', 2)
                   .arg((c.clearance + c.clearance_tolerance) / kDegree, 0, 'f', 2),
               good) +
-         (width ? "<br>Primary relief " + *width + " mm" : "") + (width && heel ? ", heel at " + *heel + " mm" : "");
+         (second ? line(QString("<br>Second clearance %1, asked %2 deg").arg(*second).arg(c.second_clearance / kDegree),
+                        second_good)
+                 : "") +
+         (width ? line("<br>Primary relief " + *width + " mm", width_good) : "") +
+         (width && heel ? ", heel at " + *heel + " mm" : "");
 }
 
 QString landLine(const CutterSection& section) {
@@ -113,30 +122,10 @@ QString landLine(const CutterSection& section) {
 
 }  // namespace
 
-bool CutterSection::coreIsWithin() const {
-  const double off = 2 * std::abs(ground.core_radius - asked_core);
-  return !outline.empty() && off <= job->cutter.core_tolerance;
-}
-
-bool CutterSection::spiralIsWithin(std::size_t tooth) const {
-  const ToothSection& measured = ground.teeth[tooth];
-  if (!measured.complete || !measured.spiral) return true;
-  return std::abs(*measured.spiral - job.cutterOf(static_cast<int>(tooth)).spiral_angle) <=
-         job->cutter.spiral_tolerance;
-}
-
-bool CutterSection::rakeIsWithin(const ToothSection& tooth) const {
-  return !tooth.rake || std::abs(*tooth.rake - job->cutter.rake_angle) <= job->cutter.rake_tolerance;
-}
-
-bool CutterSection::chordIsWithin(const ToothSection& tooth) const {
-  if (!tooth.complete || !tooth.chordal_rake) return true;
-  return std::abs(*tooth.chordal_rake - job->cutter.rake_angle) <= job->cutter.chordal_rake_tolerance;
-}
-
-bool CutterSection::clearanceIsWithin(const ToothSection& tooth) const {
-  return tooth.relief && tooth.relief->clearance &&
-         std::abs(*tooth.relief->clearance - job->cutter.clearance) <= job->cutter.clearance_tolerance;
+bool CutterSection::isWithin(ToolFigure figure, std::size_t tooth) const {
+  if (figure == ToolFigure::kCore && outline.empty()) return false;
+  const FigurePlace place{job, ground, tooth};
+  return isAsAsked(figure, place) || (figure < ToolFigure::kClearance && !rowOf(figure).measured(place));
 }
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }

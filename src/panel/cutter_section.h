@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/geometry/section_outline.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/job/valid_job.h"
 
 #include <QString>
@@ -16,12 +17,9 @@ struct CutterSection {
   double asked_core = 0;              ///< radius [m]
   std::vector<PolarPoint> outline{};  ///< at A = 0; empty if the core is cut through
 
-  bool coreIsWithin() const;
-  bool rakeIsWithin(const ToothSection& tooth) const;  ///< or the tooth has no edge here
-  bool chordIsWithin(const ToothSection& tooth) const;
-  bool spiralIsWithin(std::size_t tooth) const;             ///< or the tooth's flute is not complete here
-  bool clearanceIsWithin(const ToothSection& tooth) const;  ///< of a relief
-  bool hasLand(const ToothSection& tooth) const;            ///< or nothing is ground here
+  /// Whether a figure is as asked, or the tooth's flute is not complete here. A core that is cut through is not.
+  bool isWithin(ToolFigure figure, std::size_t tooth = 0) const;
+  bool hasLand(const ToothSection& tooth) const;  ///< or nothing is ground here
 };
 
 /// Takes milliseconds for each tooth with a flute of its own.

@@ -53,7 +53,7 @@ class Painting {
     const ToothSection& first = section_.ground.teeth.front();
     if (first.rake) rake(first);
     if (isRelief(section_.job->process.kind)) {
-      if (first.relief && first.relief->clearance) relief(first, *first.relief);
+      if (first.relief && first.relief->clearance) relief(*first.relief);
     } else if (first.land) {
       land(*first.land);
     } else if (first.flute)
@@ -85,7 +85,7 @@ class Painting {
     circle(section_.ground.radius, QPen(kThin, 1));
     circle(section_.asked_core, dashed(kThin));
     circle(ground, QPen(kMeasured, 1));
-    label(1, 1, {"core", mm(2 * ground) + " mm"}, section_.coreIsWithin(), at(ground, -kPi / 4));
+    label(1, 1, {"core", mm(2 * ground) + " mm"}, section_.isWithin(ToolFigure::kCore), at(ground, -kPi / 4));
     label(-1, 1, {"cutter", mm(2 * section_.ground.radius) + " mm"}, true, at(section_.ground.radius, -3 * kPi / 4));
   }
 
@@ -97,24 +97,24 @@ class Painting {
     painter_.drawLine(edge, edge + 0.95 * radius_ * inward(section_.job->cutter.rake_angle));
     painter_.setPen(QPen(kThin, 1));
     painter_.drawLine(edge - kDimension * inward(0), centre_);
-    const QColor colour = section_.rakeIsWithin(tooth) ? kMeasured : QColor(kWrong);
+    const QColor colour = section_.isWithin(ToolFigure::kRake) ? kMeasured : QColor(kWrong);
     painter_.setPen(QPen(colour, 1.5));
     painter_.drawLine(edge - kDimension * inward(*tooth.rake), edge + 0.95 * radius_ * inward(*tooth.rake));
     const double r = 0.8 * radius_;
     arc(edge, r, -kTop, -side_ * *tooth.rake);
     label(side_, -1, {deg(*tooth.rake) + " deg", "asked " + deg(section_.job->cutter.rake_angle)},
-          section_.rakeIsWithin(tooth), edge + r * inward(*tooth.rake / 2));
+          section_.isWithin(ToolFigure::kRake), edge + r * inward(*tooth.rake / 2));
   }
 
   /// Between the circle's tangent and the primary relief's, at the edge; and how wide that is.
-  void relief(const ToothSection& tooth, const ReliefSection& relief) {
+  void relief(const ReliefSection& relief) {
     const QPointF edge = at(section_.ground.radius, kTop);
     const auto behind = [&](double angle) { return QPointF(-side_ * std::cos(angle), std::sin(angle)); };
     painter_.setPen(QPen(kThin, 1));
     painter_.drawLine(edge, edge + 0.95 * radius_ * behind(0));
     painter_.setPen(dashed(kThin));
     painter_.drawLine(edge, edge + 0.95 * radius_ * behind(section_.job->cutter.clearance));
-    const bool good = section_.clearanceIsWithin(tooth);
+    const bool good = section_.isWithin(ToolFigure::kClearance);
     painter_.setPen(QPen(good ? kMeasured : QColor(kWrong), 1.5));
     painter_.drawLine(edge, edge + 0.95 * radius_ * behind(*relief.clearance));
     const double r = 0.75 * radius_;

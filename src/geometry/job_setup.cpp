@@ -11,6 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace grinder {
 
@@ -290,6 +291,18 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
   return setupWith(std::get<SolvedSetup>(result), job, keep);
 }
 
+/// The set-up found for a job whose numbers were rounded, in the job itself: with what is written into its file.
+JobSetup inJob(GrindJob job, JobSetup setup) {
+  visitJobFields([&](const JobField& field, auto of) {
+    const std::string key = keyIn(job, fieldName(field.path));
+    const auto is_own = [&](const JobEdit& edit) { return edit.key == key; };
+    if (std::any_of(setup.edits.begin(), setup.edits.end(), is_own)) of(job) = of(setup.job);
+  });
+  intoList(job);
+  setup.job = std::move(job);
+  return setup;
+}
+
 }  // namespace
 
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
@@ -304,8 +317,9 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const R
                                                   std::optional<SetupFigure> keep) {
   const GrindJob job = roundedOff(asked);
   try {
-    if (isRelief(job.process.kind)) return solveReliefSetup(job, swivel, keep);
-    return solveFluteSetup(job, swivel, keep);
+    auto found = isRelief(job.process.kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
+    if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup));
+    return found;
   } catch (const InvalidJob& error) {
     return "the set-up does not suit the job: " + text(error.reasons());
   } catch (const std::invalid_argument& error) {

@@ -26,8 +26,8 @@ SEED = 20
 
 # Takes longer to plan than any test waits: with a depth that changes along the flute, no pass is like another.
 ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
-# Takes a second or more.
-LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM)
+# Takes some seconds.
+LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.05 * MM, depth_end=1.59 * MM)
 # Time enough to do something in a stroke.
 SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.

@@ -39,7 +39,7 @@ struct SetupRequest {
   bool incomplete_ok = false;                               ///< the flute may end before its ends
   double min_swivel = 0, max_swivel = 0;                    ///< that the machine allows [rad]
   /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then
-  /// passes the axis at the height R sin r.
+  /// passes the axis at the height R sin r, or at the nearest one that is accepted if that is not.
   std::optional<SetupFigure> keep;
   WheelSetup kept;  ///< the swivel or height that is kept
   /// The published one takes the set-up with the minimum of the maximum error of the rake over the flute. For a law

@@ -21,6 +21,7 @@ constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth tog
 constexpr double kMinGouge = 1e-6;            ///< below that it is the averaging of positions [m]
 constexpr double kBadGouge = 10e-6;           ///< above that it is not the following error alone [m]
 
+/// A tooth in a section, with what is measured for a report alone.
 struct Place : FigurePlace {
   Place(const ValidJob& job, const MeasuredSection& section, std::size_t tooth)
       : FigurePlace{job, section.ground, tooth}, area_removed(section.area_removed) {}

@@ -1,6 +1,7 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/format.h"
 
@@ -146,24 +147,28 @@ std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigu
   const CutterGeometry& c = job.cutter;
   std::vector<AskedAndGround> all;
   if (!std::isnan(ground.rake.from)) {
-    all.push_back({"rake", angleText(ground.rake, {c.rake_angle, c.rake_angle}, c.rake_tolerance)});
+    all.push_back(
+        {toString(ToolFigure::kRake), angleText(ground.rake, {c.rake_angle, c.rake_angle}, c.rake_tolerance)});
   }
   if (!std::isnan(ground.chordal_rake.from)) {
     const Range asked{c.rake_angle, c.rake_angle};
-    all.push_back({"chordal rake", angleText(ground.chordal_rake, asked, c.chordal_rake_tolerance)});
+    all.push_back(
+        {toString(ToolFigure::kChordalRake), angleText(ground.chordal_rake, asked, c.chordal_rake_tolerance)});
   }
   if (!std::isnan(ground.spiral.from)) {
-    all.push_back({"spiral angle", angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});
+    all.push_back({toString(ToolFigure::kSpiral), angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});
   }
   if (!std::isnan(ground.edge)) all.push_back({"edge", format("within %.3f deg of the asked helix", deg(ground.edge))});
-  if (!std::isnan(ground.core_diameter[0])) all.push_back({"core", coreText(ground.core_diameter, c)});
+  if (!std::isnan(ground.core_diameter[0]))
+    all.push_back({toString(ToolFigure::kCore), coreText(ground.core_diameter, c)});
   if (!std::isnan(ground.clearance.from)) {
-    all.push_back({"clearance", angleText(ground.clearance, {c.clearance, c.clearance}, c.clearance_tolerance)});
+    all.push_back({toString(ToolFigure::kClearance),
+                   angleText(ground.clearance, {c.clearance, c.clearance}, c.clearance_tolerance)});
   }
   if (!std::isnan(ground.relief.from)) {
     const std::string asked = c.land > 0 ? format("; asked %g mm at X = 0", mm(c.land)) : "";
-    all.push_back(
-        {"primary relief", format("%.3f to %.3f mm wide", mm(ground.relief.from), mm(ground.relief.to)) + asked});
+    all.push_back({toString(ToolFigure::kPrimaryRelief),
+                   format("%.3f to %.3f mm wide", mm(ground.relief.from), mm(ground.relief.to)) + asked});
   }
   return all;
 }

@@ -354,14 +354,16 @@ Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywh
   Search search(trial, request);
   const bool asks_edge = request.asks_spiral || request.core_diameter_end;
   const bool is_alone = !trial.isCylinder() && asks_edge;
-  std::vector<SetupPoint> starts =
-      startsOf(trial, request, is_alone ? kFirstSwivels : kSwivelsOfCylinder, kStartHeights);
+  const std::vector<double>& first = is_alone ? kFirstSwivels : kSwivelsOfCylinder;
+  if (search.findFromEnds(startsBesideFree(trial, request)) ||
+      search.findFromEnds(startsOf(trial, request, first, kStartHeights)) || !everywhere) {
+    return std::move(search).result();
+  }
   const std::vector<SetupPoint> others = startsOf(trial, request, kOtherSwivels, kStartHeights);
-  const bool found = search.findFromEnds(startsBesideFree(trial, request)) || search.findFromEnds(starts) ||
-                     !everywhere || search.findFromEnds(others);
-  starts = startsOf(trial, request, kFirstSwivels, kMoreHeights);
+  if (search.findFromEnds(others)) return std::move(search).result();
+  std::vector<SetupPoint> starts = startsOf(trial, request, kFirstSwivels, kMoreHeights);
   starts.insert(starts.end(), others.begin(), others.end());
-  if (found || search.findFrom(starts)) return std::move(search).result();
+  if (search.findFrom(starts)) return std::move(search).result();
   if (auto other = fittedAtOtherHeights(trial, request)) return std::move(*other);
   if (auto other = fittedForCorrection(trial, request, starts)) return std::move(*other);
   return std::move(search).result();

@@ -34,7 +34,7 @@ double rakeTolerance(const FigurePlace& p) { return cutterOf(p).rake_tolerance; 
 FigureValue chordalRake(const FigurePlace& p) { return ifComplete(p, p.tooth().chordal_rake); }
 double chordalRakeTolerance(const FigurePlace& p) { return cutterOf(p).chordal_rake_tolerance; }
 
-FigureValue spiral(const FigurePlace& p) { return ifComplete(p, p.tooth().spiral); }
+FigureValue spiral(const FigurePlace& p) { return p.tooth().spiral; }
 FigureValue askedSpiral(const FigurePlace& p) { return p.job.cutterOf(static_cast<int>(p.number)).spiral_angle; }
 double spiralTolerance(const FigurePlace& p) { return cutterOf(p).spiral_tolerance; }
 

@@ -125,7 +125,8 @@ QString landLine(const CutterSection& section) {
 bool CutterSection::isWithin(ToolFigure figure, std::size_t tooth) const {
   if (figure == ToolFigure::kCore && outline.empty()) return false;
   const FigurePlace place{job, ground, tooth};
-  return isAsAsked(figure, place) || (figure < ToolFigure::kClearance && !rowOf(figure).measured(place));
+  if (isAsAsked(figure, place)) return true;
+  return figure < ToolFigure::kCore && (!place.tooth().complete || !rowOf(figure).measured(place));
 }
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }

@@ -38,24 +38,33 @@ enum class ToolFigure : std::uint8_t {
 struct ToolFigureRow : EnumRow<ToolFigure> {
   Unit unit = Unit::kNone;
   ReasonKind reason = ReasonKind::kOther;  ///< why a plan is refused for it
-  /// Nothing where there is none: of a flute, where that is not complete, whose figures are not yet those of the tool.
+  /// Nothing where there is none. The rake face of a flute that is not complete is not the one that a longer stroke
+  /// would leave: it has no rake.
   FigureValue (*measured)(const FigurePlace&) = nullptr;
   FigureValue (*asked)(const FigurePlace&) = nullptr;  ///< nothing if the job does not ask for it
   double (*tolerance)(const FigurePlace&) = nullptr;   ///< either way
 };
 
+/// The functions of the table.
 namespace tool_figures {
-FigureValue rake(const FigurePlace&p), askedRake(const FigurePlace&p);
-double rakeTolerance(const FigurePlace&p), chordalRakeTolerance(const FigurePlace&p);
+FigureValue rake(const FigurePlace& p);
+FigureValue askedRake(const FigurePlace& p);
+double rakeTolerance(const FigurePlace& p);
 FigureValue chordalRake(const FigurePlace& p);
-FigureValue spiral(const FigurePlace&p), askedSpiral(const FigurePlace&p);
+double chordalRakeTolerance(const FigurePlace& p);
+FigureValue spiral(const FigurePlace& p);
+FigureValue askedSpiral(const FigurePlace& p);
 double spiralTolerance(const FigurePlace& p);
-FigureValue core(const FigurePlace&p), askedCore(const FigurePlace&p);
+FigureValue core(const FigurePlace& p);
+FigureValue askedCore(const FigurePlace& p);
 double coreTolerance(const FigurePlace& p);
-FigureValue clearance(const FigurePlace&p), askedClearance(const FigurePlace&p);
+FigureValue clearance(const FigurePlace& p);
+FigureValue askedClearance(const FigurePlace& p);
 double clearanceTolerance(const FigurePlace& p);
-FigureValue secondClearance(const FigurePlace&p), askedSecondClearance(const FigurePlace&p);
-FigureValue primaryRelief(const FigurePlace&p), askedLand(const FigurePlace&p);
+FigureValue secondClearance(const FigurePlace& p);
+FigureValue askedSecondClearance(const FigurePlace& p);
+FigureValue primaryRelief(const FigurePlace& p);
+FigureValue askedLand(const FigurePlace& p);
 double landTolerance(const FigurePlace& p);
 }  // namespace tool_figures
 

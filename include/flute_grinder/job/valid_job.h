@@ -44,7 +44,9 @@ struct StrokeLaw {
 /// The helix through the ends of a tooth's edge, as its flute leaves it.
 struct EdgeHelix {
   double spiral_angle = 0;  ///< [rad]
-  double ahead = 0;  ///< the edge's angle amid where it departs from the helix through the tooth's own angle [rad]
+  /// By which the edge is ahead of the helix that begins at the tooth's angle: the middle of its extremes along the
+  /// flute [rad].
+  double ahead = 0;
 };
 
 /// A pass of a job.

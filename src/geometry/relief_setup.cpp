@@ -30,11 +30,12 @@ constexpr double kNextEdgeMargin = 1 * kDegree;  ///< likewise, of the wheel fro
 /// Part of the margin that is left in any case, above what a file rounds, and parts that are tried where there is no
 /// room for all of it.
 constexpr double kLeastMargin = 0.02, kLessMargins[] = {0.1, 0.25, 0.5};
-constexpr double kHopeless = -5;                   ///< slack from which on nothing else is measured
-constexpr int kCornerHalvings = 5;                 ///< of a corner, whose part may grind the land's end
-constexpr double kLeastClearance = 0.5 * kDegree;  ///< at the land's end
-constexpr double kAlongStep = 0.025;               ///< of the end diameter, along the rim, to the land's end
-constexpr double kWidest = 5;                      ///< of the end diameter, of a rim
+constexpr double kHopeless = -5;    ///< slack from which on nothing else is measured
+constexpr int kCornerHalvings = 5;  ///< of a corner, whose part may grind the land's end
+/// At the land's end: what is wanted, and what is taken if no set-up leaves that.
+constexpr double kWantedClearance = 0.5 * kDegree, kLeastClearance = 0;
+constexpr double kAlongStep = 0.025;  ///< of the end diameter, along the rim, to the land's end
+constexpr double kWidest = 5;         ///< of the end diameter, of a rim
 constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
 constexpr int kPlacesOfWall = 12;     ///< between which a flute's wall is straight enough
@@ -97,14 +98,15 @@ std::vector<Land> landsOf(const GroundCutter& cutter) {
   return lands;
 }
 
-/// How far along the rim the surface goes until `is_over`. @return nothing if the clearance is lost before.
+/// How far along the rim the surface goes until `is_over`. @return nothing if less than `clearance` is left before.
 template <typename Over>
-std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, const Over& is_over) {
+std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, double clearance,
+                              const Over& is_over) {
   const double step = kAlongStep * diameter;
   for (double along = step; along < kWidest * diameter; along += step) {
     const ReliefPath::Place at = path.surface(x, along);
     if (!is_over(at)) {
-      if (!(at.clearance >= kLeastClearance)) return std::nullopt;
+      if (!(at.clearance >= clearance)) return std::nullopt;
       continue;
     }
     double low = along - step, high = along;
@@ -112,7 +114,7 @@ std::optional<double> reachTo(const ReliefPath& path, double x, double diameter,
       const double middle = (low + high) / 2;
       (is_over(path.surface(x, middle)) ? high : low) = middle;
     }
-    return path.surface(x, high).clearance >= kLeastClearance ? std::optional(high) : std::nullopt;
+    return path.surface(x, high).clearance >= clearance ? std::optional(high) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -128,8 +130,13 @@ struct Tried {
 /// Tries set-ups of a relief out.
 class Trials {
  public:
-  Trials(const GrindJob& job, const ValidJob& flutes)
-      : job_(job), flutes_(flutes), edges_(edgesOf(flutes)), lands_(landsOf(groundCutterOf(flutes))) {
+  /// @param clearance at least, at the land's end [rad].
+  Trials(const GrindJob& job, const ValidJob& flutes, double clearance)
+      : job_(job),
+        flutes_(flutes),
+        clearance_(clearance),
+        edges_(edgesOf(flutes)),
+        lands_(landsOf(groundCutterOf(flutes))) {
     const bool goes_on = static_cast<std::size_t>(job.operation) + 1 < job.operations.size();
     land_ = goes_on ? job.cutter.land : 0;
     for (const Land& land : lands_) {
@@ -196,7 +203,8 @@ class Trials {
         return std::hypot(at.radius * std::cos(turn) - from.radius, at.radius * std::sin(turn)) >= width;
       };
       const auto is_at_heel = [&](const ReliefPath::Place& at) { return at.behind >= land.heelWall(at.radius); };
-      const auto reach = land_ > 0 ? reachTo(path, x, diameter, is_wide) : reachTo(path, x, diameter, is_at_heel);
+      const auto reach = land_ > 0 ? reachTo(path, x, diameter, clearance_, is_wide)
+                                   : reachTo(path, x, diameter, clearance_, is_at_heel);
       if (!reach) throw std::invalid_argument("the clearance is lost before the land's end");
       needs.reach.push_back(*reach);
       const double clearance = path.surface(x, *reach).clearance;
@@ -312,6 +320,7 @@ class Trials {
 
   const GrindJob& job_;
   const ValidJob& flutes_;
+  const double clearance_;
   const std::vector<EdgeHelix> edges_;
   const std::vector<Land> lands_;
   double land_;                       ///< width at the small end, where another relief follows; 0: to the heel [m]
@@ -335,18 +344,9 @@ Tried refined(const Trials& trials, double from, double to, Tried best) {
   return best;
 }
 
-}  // namespace
-
-ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
-                            std::optional<double> asked) {
-  const Trials trials(job, flutes);
-  if (asked) {
-    Tried tried = trials.best(*asked);
-    trials.isConfirmed(tried);
-    return tried.setup;
-  }
-  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
-  std::vector<double> swivels{near, job.process.setup_swivel};
+/// The best set-up of those tried; the one nearest to the swivel `near` if all are refused.
+ReliefSetup find(const Trials& trials, const Range& swivel, double near, double also) {
+  std::vector<double> swivels{near, also};
   for (double aside = kSwivelStep; aside <= swivel.to - swivel.from; aside += kSwivelStep) {
     swivels.push_back(near + aside);
     swivels.push_back(near - aside);
@@ -378,6 +378,22 @@ ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const R
     if (trials.isConfirmed(best)) return best.setup;
   }
   return nearest.setup;
+}
+
+}  // namespace
+
+ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
+                            std::optional<double> asked) {
+  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
+  const auto findWith = [&](double clearance) {
+    const Trials trials(job, flutes, clearance);
+    if (!asked) return find(trials, swivel, near, job.process.setup_swivel);
+    Tried tried = trials.best(*asked);
+    trials.isConfirmed(tried);
+    return tried.setup;
+  };
+  ReliefSetup found = findWith(kWantedClearance);
+  return found.refused.empty() ? found : findWith(kLeastClearance);
 }
 
 }  // namespace grinder

@@ -44,8 +44,8 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   for (const char* key : {"lead_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"}) json.erase(key);
   json["rim_mm"] = setup.relief->rim / kMillimetre;
   json["next_edge_deg"] = setup.relief->next_edge / kDegree;
-  json["land_end_clearance_deg"] = {setup.relief->land_end_clearance.from / kDegree,
-                                    setup.relief->land_end_clearance.to / kDegree};
+  const auto& end = setup.relief->land_end_clearance;
+  json["land_end_clearance_deg"] = end ? Json{end->from / kDegree, end->to / kDegree} : Json(nullptr);
   return json;
 }
 

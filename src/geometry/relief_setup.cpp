@@ -30,12 +30,11 @@ constexpr double kNextEdgeMargin = 1 * kDegree;  ///< likewise, of the wheel fro
 /// Part of the margin that is left in any case, above what a file rounds, and parts that are tried where there is no
 /// room for all of it.
 constexpr double kLeastMargin = 0.02, kLessMargins[] = {0.1, 0.25, 0.5};
-constexpr double kHopeless = -5;    ///< slack from which on nothing else is measured
-constexpr int kCornerHalvings = 5;  ///< of a corner, whose part may grind the land's end
-/// At the land's end: what is wanted, and what is taken if no set-up leaves that.
-constexpr double kWantedClearance = 0.5 * kDegree, kLeastClearance = 0;
-constexpr double kAlongStep = 0.025;  ///< of the end diameter, along the rim, to the land's end
-constexpr double kWidest = 5;         ///< of the end diameter, of a rim
+constexpr double kHopeless = -5;                   ///< slack from which on nothing else is measured
+constexpr int kCornerHalvings = 5;                 ///< of a corner, whose part may grind the land's end
+constexpr double kLeastClearance = 0.5 * kDegree;  ///< at the land's end
+constexpr double kAlongStep = 0.025;               ///< of the end diameter, along the rim, to the land's end
+constexpr double kWidest = 5;                      ///< of the end diameter, of a rim
 constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
 constexpr int kPlacesOfWall = 12;     ///< between which a flute's wall is straight enough
@@ -43,6 +42,7 @@ constexpr std::size_t kAtOnce = 8;    ///< of the swivels, tried
 constexpr std::size_t kRefined = 3;   ///< of the swivels that come nearest
 constexpr int kRefinements = 7;       ///< steps between them and the ones beside
 constexpr double kGolden = 0.618034;  ///< of what is left in each
+constexpr int kPlacesOfRim = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string figure(double si, Unit unit) { return text(Quantity{si, unit}); }
@@ -98,15 +98,14 @@ std::vector<Land> landsOf(const GroundCutter& cutter) {
   return lands;
 }
 
-/// How far along the rim the surface goes until `is_over`. @return nothing if less than `clearance` is left before.
+/// How far along the rim the surface goes until `is_over`. @return nothing if the clearance is lost before.
 template <typename Over>
-std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, double clearance,
-                              const Over& is_over) {
+std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, const Over& is_over) {
   const double step = kAlongStep * diameter;
   for (double along = step; along < kWidest * diameter; along += step) {
     const ReliefPath::Place at = path.surface(x, along);
     if (!is_over(at)) {
-      if (!(at.clearance >= clearance)) return std::nullopt;
+      if (!(at.clearance >= kLeastClearance)) return std::nullopt;
       continue;
     }
     double low = along - step, high = along;
@@ -114,7 +113,7 @@ std::optional<double> reachTo(const ReliefPath& path, double x, double diameter,
       const double middle = (low + high) / 2;
       (is_over(path.surface(x, middle)) ? high : low) = middle;
     }
-    return path.surface(x, high).clearance >= clearance ? std::optional(high) : std::nullopt;
+    return path.surface(x, high).clearance >= kLeastClearance ? std::optional(high) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -130,13 +129,8 @@ struct Tried {
 /// Tries set-ups of a relief out.
 class Trials {
  public:
-  /// @param clearance at least, at the land's end [rad].
-  Trials(const GrindJob& job, const ValidJob& flutes, double clearance)
-      : job_(job),
-        flutes_(flutes),
-        clearance_(clearance),
-        edges_(edgesOf(flutes)),
-        lands_(landsOf(groundCutterOf(flutes))) {
+  Trials(const GrindJob& job, const ValidJob& flutes)
+      : job_(job), flutes_(flutes), edges_(edgesOf(flutes)), lands_(landsOf(groundCutterOf(flutes))) {
     const bool goes_on = static_cast<std::size_t>(job.operation) + 1 < job.operations.size();
     land_ = goes_on ? job.cutter.land : 0;
     for (const Land& land : lands_) {
@@ -165,6 +159,27 @@ class Trials {
       for (const double part : kLessMargins) take(at(swivel, needs, least + part * whole, whole));
     } catch (const std::invalid_argument& error) {
       if (best.setup.refused.empty()) best.setup.refused = error.what();
+    }
+    return best;
+  }
+
+  /// The best with a swivel, of set-ups with the relief's start all over the rim: what is measured counts, not how wide
+  /// the rim is. The wheel's faces may grind what the rim does not.
+  Tried anywhere(double swivel) const {
+    Tried best;
+    for (int i = 1; i < kPlacesOfRim; ++i) {
+      Tried tried;
+      tried.setup.swivel = swivel;
+      ReliefWheel wheel = wheelAt(swivel);
+      const double along = wheel.width * (static_cast<double>(i) / kPlacesOfRim - 0.5);
+      try {
+        wheel.height = tried.setup.height = ReliefPath::heightFor(teeth_[0], starts_[0], wheel, along);
+        tried.setup.width = ReliefPath(teeth_[0], starts_[0], wheel).reach();
+        measure(tried, 1, true);
+      } catch (const std::invalid_argument&) {
+        continue;  // an edge is not on the rim
+      }
+      if (tried.slack > best.slack) best = std::move(tried);
     }
     return best;
   }
@@ -203,8 +218,7 @@ class Trials {
         return std::hypot(at.radius * std::cos(turn) - from.radius, at.radius * std::sin(turn)) >= width;
       };
       const auto is_at_heel = [&](const ReliefPath::Place& at) { return at.behind >= land.heelWall(at.radius); };
-      const auto reach = land_ > 0 ? reachTo(path, x, diameter, clearance_, is_wide)
-                                   : reachTo(path, x, diameter, clearance_, is_at_heel);
+      const auto reach = land_ > 0 ? reachTo(path, x, diameter, is_wide) : reachTo(path, x, diameter, is_at_heel);
       if (!reach) throw std::invalid_argument("the clearance is lost before the land's end");
       needs.reach.push_back(*reach);
       const double clearance = path.surface(x, *reach).clearance;
@@ -276,8 +290,9 @@ class Trials {
     return tried;
   }
 
-  /// @param margin of the rim, by what is enough.
-  void measure(Tried& tried, double margin) const {
+  /// @param margin of the rim, by what is enough. @param good_only whether nothing else is measured of what is
+  /// refused; else, of what is hopeless.
+  void measure(Tried& tried, double margin, bool good_only = false) const {
     const GroundCutter cutter = groundCutterOf(jobWith(tried.setup));
     const CutterGeometry& c = job_.cutter;
     tried.has_heel = true;
@@ -287,7 +302,7 @@ class Trials {
       const ReliefSection relief = measureRelief(cutter, land.section, land.tooth, cutter.reliefs(land.tooth));
       tried.has_heel = tried.has_heel && (land_ > 0 || relief.heel);
       tried.next_edge_slack = std::min(tried.next_edge_slack, relief.next_edge / kNextEdgeMargin);
-      if (tried.next_edge_slack < kHopeless) break;
+      if (tried.next_edge_slack < (good_only ? 0 : kHopeless) || (good_only && !tried.has_heel)) break;
       const double core = 2 * relief.core_radius, least = askedCore(c, land.section.x) - c.core_tolerance;
       const double slack = (core - least) / c.core_tolerance;
       if (core >= std::min(least, 2 * land.section.core_radius) || slack >= core_slack) continue;
@@ -320,7 +335,6 @@ class Trials {
 
   const GrindJob& job_;
   const ValidJob& flutes_;
-  const double clearance_;
   const std::vector<EdgeHelix> edges_;
   const std::vector<Land> lands_;
   double land_;                       ///< width at the small end, where another relief follows; 0: to the heel [m]
@@ -344,9 +358,19 @@ Tried refined(const Trials& trials, double from, double to, Tried best) {
   return best;
 }
 
-/// The best set-up of those tried; the one nearest to the swivel `near` if all are refused.
-ReliefSetup find(const Trials& trials, const Range& swivel, double near, double also) {
-  std::vector<double> swivels{near, also};
+}  // namespace
+
+ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
+                            std::optional<double> asked) {
+  const Trials trials(job, flutes);
+  if (asked) {
+    Tried tried = trials.best(*asked);
+    if (trials.isConfirmed(tried)) return tried.setup;
+    Tried other = trials.anywhere(*asked);
+    return trials.isConfirmed(other) ? other.setup : tried.setup;
+  }
+  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
+  std::vector<double> swivels{near, job.process.setup_swivel};
   for (double aside = kSwivelStep; aside <= swivel.to - swivel.from; aside += kSwivelStep) {
     swivels.push_back(near + aside);
     swivels.push_back(near - aside);
@@ -377,23 +401,13 @@ ReliefSetup find(const Trials& trials, const Range& swivel, double near, double 
   for (Tried& best : all) {
     if (trials.isConfirmed(best)) return best.setup;
   }
+  all.resize(swivels.size());
+  onAllCores(all.size(), [&](std::size_t i) { all[i] = trials.anywhere(swivels[i]); });
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  for (Tried& best : all) {
+    if (trials.isConfirmed(best)) return best.setup;
+  }
   return nearest.setup;
-}
-
-}  // namespace
-
-ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
-                            std::optional<double> asked) {
-  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
-  const auto findWith = [&](double clearance) {
-    const Trials trials(job, flutes, clearance);
-    if (!asked) return find(trials, swivel, near, job.process.setup_swivel);
-    Tried tried = trials.best(*asked);
-    trials.isConfirmed(tried);
-    return tried.setup;
-  };
-  ReliefSetup found = findWith(kWantedClearance);
-  return found.refused.empty() ? found : findWith(kLeastClearance);
 }
 
 }  // namespace grinder

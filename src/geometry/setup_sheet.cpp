@@ -119,8 +119,10 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
     return line("next tooth", format("the wheel stays %.3f deg or more from its edge", deg(r.next_edge))) +
            line("rim", format("%.3f of %.3f mm of its width are behind the relief's start", mm(r.rim),
                               mm(setup.job.process.wheel_width))) +
-           line("land's end", format("clearance %.3f to %.3f deg there", deg(r.land_end_clearance.from),
-                                     deg(r.land_end_clearance.to)));
+           (r.land_end_clearance
+                ? line("land's end", format("clearance %.3f to %.3f deg there", deg(r.land_end_clearance->from),
+                                            deg(r.land_end_clearance->to)))
+                : std::string());
   }
   const double percent = 100 * setup.margin;
   switch (setup.limit) {

@@ -335,7 +335,7 @@ TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
     EXPECT_NEAR(setup.job.process.setup_height, job.process.setup_height, 1e-6);
     ASSERT_TRUE(setup.relief);
     EXPECT_GT(setup.relief->next_edge, 1 * kDegree);
-    EXPECT_GT(setup.relief->land_end_clearance.from, 0);
+    EXPECT_GT(setup.relief->land_end_clearance.value().from, 0);
     ASSERT_EQ(setup.edits.size(), 2u);
     EXPECT_EQ(setup.edits[0].key, "operations[" + std::to_string(job.operation) + "].setup.swivel_deg");
   }
@@ -346,10 +346,11 @@ TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
   const GrindProcess with_kept = solved(kept, SetupFigure::kSwivel).job.process;
   EXPECT_EQ(with_kept.setup_swivel, kept.process.setup_swivel);
   EXPECT_NE(with_kept.setup_height, solved(job).job.process.setup_height);
-  // A wheel too narrow for the land of the last relief.
+  // A wheel too narrow for the land of the last relief, and too small for its face to take the rest.
   GrindJob narrow = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary");
-  for (GrindProcess* p : {&narrow.process, &narrow.operations[2].process}) p->wheel_width = 1e-3;
-  expectContains(refused(narrow), "wide, that of this wheel is 1 mm");
+  for (GrindProcess* p : {&narrow.process, &narrow.operations[2].process})
+    p->wheel_width = 0.3e-3, p->wheel_diameter = 20e-3;
+  expectContains(refused(narrow), "wide, that of this wheel is 0.3 mm");
 }
 
 }  // namespace test_job_setup

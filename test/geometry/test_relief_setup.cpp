@@ -17,6 +17,7 @@ using units::kDegree;
 using units::kMillimetre;
 
 constexpr Range kSwivel{-60 * kDegree, 60 * kDegree};
+constexpr double kNarrow = 2;  ///< rim that reaches no heel: the wheel's face takes the rest [mm]
 
 /// The flutes of a job with a primary relief, and with a secondary one if a land is given.
 struct Tool {
@@ -56,11 +57,13 @@ struct Tool {
 TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
   for (const auto& [file, clearance, width] :
        {std::tuple{"jobs/roughing_d10_t4.yaml", 10.0, 6.0}, std::tuple{"jobs/left_hand_d8_t3.yaml", 10.0, 6.0},
-        std::tuple{"jobs/taper_d6_t6.yaml", 10.0, 3.0}, std::tuple{"jobs/finishing_d20_t8.yaml", 10.0, 3.0}}) {
+        std::tuple{"jobs/taper_d6_t6.yaml", 10.0, 3.0}, std::tuple{"jobs/finishing_d20_t8.yaml", 10.0, 3.0},
+        std::tuple{"jobs/finishing_d20_t8.yaml", 8.0, kNarrow}}) {
     SCOPED_TRACE(file);
     Tool tool(file, clearance, width);
     const ReliefSetup setup = tool.find();
     ASSERT_EQ(setup.refused, "");
+    EXPECT_EQ(setup.land_end_clearance.has_value(), width > kNarrow);
     tool.take(setup);
     const GroundCutter relieved = tool.relieved();
     for (int i = 0; i <= 10; ++i) {
@@ -98,7 +101,7 @@ TEST(ReliefSetup, SaysWhatIsInTheWay) {
 
 // A steep relief on the way to the heel. What it takes of the core depends on the swivel.
 TEST(ReliefSetup, KeepsTheCore) {
-  Tool tool("jobs/roughing_d10_t4.yaml", 28, 8);
+  Tool tool("jobs/roughing_d10_t4.yaml", 34, 8);
   const double least = tool.job.cutter.core_diameter - tool.job.cutter.core_tolerance;
   const ReliefSetup setup = tool.find();
   ASSERT_EQ(setup.refused, "");
@@ -108,9 +111,9 @@ TEST(ReliefSetup, KeepsTheCore) {
   for (int i = 0; i <= 10; ++i) {
     EXPECT_GT(2 * relieved.section(tool.job.cutter.flute_length * i / 10).core_radius, least);
   }
-  const ReliefSetup nearest = tool.find(tool.flutes()->process.setup_swivel);
-  EXPECT_NE(nearest.refused.find("the wheel leaves a core of 6."), std::string::npos) << nearest.refused;
-  EXPECT_NE(nearest.refused.find("allowed: from 6.79 mm"), std::string::npos) << nearest.refused;
+  const ReliefSetup other = tool.find(tool.flutes()->process.setup_swivel - 4 * kDegree);
+  EXPECT_NE(other.refused.find("the wheel leaves a core of 4."), std::string::npos) << other.refused;
+  EXPECT_NE(other.refused.find("allowed: from 6.79 mm"), std::string::npos) << other.refused;
 }
 
 // A second relief goes on where the first is as wide as asked.

@@ -27,8 +27,9 @@ struct JobSetup {
   /// Of a relief, in place of overtravel, limit and margin.
   struct Relief {
     double rim = 0;  ///< width of the wheel behind the relief's start, of which the land needs all but a margin [m]
-    double next_edge = 0;        ///< how near the wheel comes to the next tooth's edge [rad]
-    Range land_end_clearance{};  ///< minimum and maximum over the flute [rad]
+    double next_edge = 0;  ///< how near the wheel comes to the next tooth's edge [rad]
+    /// Minimum and maximum over the flute [rad]; nothing if the wheel's faces grind a part of the land.
+    std::optional<Range> land_end_clearance;
   };
   std::optional<Relief> relief;
 };

@@ -280,7 +280,7 @@ class Bench {
     if (!result || result->error_code != flute_grinder::GrindResult::CANCELED) {
       throw std::runtime_error("a goal was not canceled: " + (result ? result->error_string : "no result"));
     }
-    statistics_ = result->statistics;
+    statistics_ = result->plan.statistics;
     return times;
   }
 

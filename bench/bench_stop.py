@@ -2,8 +2,8 @@
 """From the moment in which a client sends a stop to the first setpoint that is slower for it, by the loop's own times,
 alone and under load; beside it, how late this computer wakes a thread that sleeps.
 
-The load is all of it at once: a disk whose fsync takes 5 s, a pipe for the log that nobody reads, a planner that is never
-idle, 1000 goals and calls a second that are refused, a client that takes every marker and one that is stopped, and a
+The load is all of it at once: a disk whose fsync takes 5 s, a pipe for the log that nobody reads, 1000 goals and
+calls a second that are refused, a client that takes every marker and one that is stopped, and a
 process that computes. `scripts/bench_stop` runs it."""
 
 import contextlib
@@ -23,7 +23,6 @@ from actionlib_msgs.msg import GoalID
 sys.path.insert(0, rospkg.RosPack().get_path('flute_grinder') + '/test/node')
 import grinder_client as gc  # noqa: E402
 from flute_grinder.msg import GrindActionGoal, GrinderState, Stop  # noqa: E402
-from flute_grinder.srv import Plan  # noqa: E402
 from grinder_client import MM, MM_MIN, STROKE, X  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 
@@ -53,14 +52,6 @@ def call_services():
         rate.sleep()
 
 
-def plan():
-    rospy.init_node('plans')
-    call = rospy.ServiceProxy('/%s/plan' % NODE, Plan)
-    goal = gc.goal_of(gc.paper(feed=10 * MM_MIN))
-    while True:
-        call(goal)
-
-
 def compute():
     while True:
         pass
@@ -71,7 +62,7 @@ def load(disk):
     disk.stop(seconds=5)
     stopped = subprocess.Popen(['rostopic', 'echo', '/%s/setpoints' % NODE], stdout=subprocess.DEVNULL)
     markers = subprocess.Popen(['rostopic', 'echo', '/%s/tool_path' % NODE], stdout=subprocess.DEVNULL)
-    tasks = [send_goals, call_services, compute, plan]
+    tasks = [send_goals, call_services, compute]
     workers = [multiprocessing.get_context('spawn').Process(target=task) for task in tasks]
     for worker in workers:
         worker.start()

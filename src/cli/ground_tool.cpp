@@ -48,16 +48,16 @@ struct Figure {
 
 Value notAsked(const Place&) { return std::nullopt; }
 
-/// A figure that a job asks for.
+/// One of the table of figures, which a job asks for.
 template <ToolFigure figure>
 constexpr Figure askedFigure(const char* key, const char* title, const char* head) {
   return {key,
           title,
           head,
           rowOf(figure).unit == Unit::kRadian ? kDegree : kMillimetre,
-          figure == ToolFigure::kCore,
-          [](const Place& p) { return rowOf(figure).measured(p); },
-          [](const Place& p) { return rowOf(figure).asked(p); }};
+          figure == ToolFigure::kCoreDiameter,
+          [](const Place& p) { return measured(figure, p); },
+          [](const Place& p) { return asked(figure, p); }};
 }
 
 constexpr Figure kFigures[]{
@@ -67,9 +67,9 @@ constexpr Figure kFigures[]{
     {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
      [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); },
      [](const Place& p) {
-       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(*tool_figures::askedSpiral(p))));
+       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(*asked(ToolFigure::kSpiral, p))));
      }},
-    askedFigure<ToolFigure::kCore>("core_diameter_mm", "core diameter, mm", "core mm"),
+    askedFigure<ToolFigure::kCoreDiameter>("core_diameter_mm", "core diameter, mm", "core mm"),
     {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, false,
      [](const Place& p) { return Value(p.tooth().depth); },
      [](const Place& p) { return Value(askedDepth(*p.job, p.section.x)); }},
@@ -94,13 +94,11 @@ constexpr Figure kReliefFigures[]{
     askedFigure<ToolFigure::kClearance>("clearance_deg", "clearance, deg", "clear. deg"),
     {"land_end_clearance_deg", "at the land's end", "end deg", kDegree, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land_end_clearance; }); }, notAsked},
-    askedFigure<ToolFigure::kPrimaryRelief>("primary_mm", "primary relief, mm", "primary mm"),
+    askedFigure<ToolFigure::kPrimary>("primary_mm", "primary relief, mm", "primary mm"),
     askedFigure<ToolFigure::kSecondClearance>("second_clearance_deg", "second clearance, deg", "second deg"),
     {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre, false,
      [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.heel; }); }, notAsked},
-    {"radius_mm", "edge's radius, mm", "edge mm", kMillimetre, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return Value(r.edge_radius); }); },
-     [](const Place& p) { return Value(p.section.radius); }},
+    askedFigure<ToolFigure::kEdgeDiameter>("edge_diameter_mm", "edge diameter, mm", "edge mm"),
 };
 
 std::vector<Figure> figuresOf(const ValidJob& job) {

@@ -59,26 +59,21 @@ Json toJson(const ClosestPlace& place) {
 
 }  // namespace
 
-Json toJson(const GrindJob& job, const CutterFigures& ground) {
-  const CutterGeometry& c = job.cutter;
-  return {{"rake_min_deg", ground.rake.from / kDegree},
-          {"rake_max_deg", ground.rake.to / kDegree},
-          {"asked_rake_deg", c.rake_angle / kDegree},
-          {"chordal_rake_min_deg", ground.chordal_rake.from / kDegree},
-          {"chordal_rake_max_deg", ground.chordal_rake.to / kDegree},
-          {"chordal_rake_tolerance_deg", c.chordal_rake_tolerance / kDegree},
-          {"rake_tolerance_deg", c.rake_tolerance / kDegree},
-          {"spiral_min_deg", ground.spiral.from / kDegree},
-          {"spiral_max_deg", ground.spiral.to / kDegree},
-          {"asked_spiral_min_deg", askedSpiral(job).from / kDegree},
-          {"asked_spiral_max_deg", askedSpiral(job).to / kDegree},
-          {"spiral_tolerance_deg", c.spiral_tolerance / kDegree},
-          {"edge_off_deg", ground.edge / kDegree},
-          {"core_diameter_mm", ground.core_diameter[0] / kMillimetre},
-          {"core_diameter_end_mm", ground.core_diameter[1] / kMillimetre},
-          {"asked_core_diameter_mm", c.core_diameter / kMillimetre},
-          {"asked_core_diameter_end_mm", c.core_diameter_end / kMillimetre},
-          {"core_tolerance_mm", c.core_tolerance / kMillimetre}};
+Json toJson(const CutterFigures& figures) {
+  Json all = Json::object();
+  for (const GroundFigure& figure : figures) {
+    const ToolFigureRow& row = rowOf(figure.figure);
+    const double scale = shopScale(row.unit);
+    const std::string unit = row.unit == Unit::kRadian ? "_deg" : "_mm";
+    Json& json = all[row.name];
+    json = {{"ground" + unit, {figure.least.value / scale, figure.largest.value / scale}},
+            {"x_mm", {figure.least.x / kMillimetre, figure.largest.x / kMillimetre}},
+            {"tooth", {figure.least.tooth, figure.largest.tooth}}};
+    if (!figure.asked) continue;
+    json["asked" + unit] = {figure.asked->from / scale, figure.asked->to / scale};
+    json["tolerance" + unit] = figure.tolerance / scale;
+  }
+  return all;
 }
 
 Json toJson(const PlannedJob& plan) {
@@ -89,6 +84,7 @@ Json toJson(const PlannedJob& plan) {
           {"reasons", reasons},
           {"complete_from_mm", plan.complete ? Json(plan.complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", plan.complete ? Json(plan.complete->to / kMillimetre) : Json(nullptr)},
+          {"figures", toJson(plan.figures)},
           {"closest", plan.closest ? toJson(*plan.closest) : Json(nullptr)},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},

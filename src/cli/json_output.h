@@ -8,7 +8,7 @@
 namespace grinder {
 
 /// What a tool gets, and what its job asks for; null where there is none, or nothing is asked.
-Json toJson(const GrindJob& job, const CutterFigures& ground);
+Json toJson(const CutterFigures& figures);
 
 /// For `grind plan`: whether the job can be ground, why not, and its statistics.
 Json toJson(const PlannedJob& plan);

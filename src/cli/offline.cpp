@@ -5,9 +5,10 @@
 #include "cli/machine_file.h"
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/plan_result.h"
 
 #include <cstdio>
 
@@ -92,9 +93,8 @@ void printStatistics(const PathStatistics& s) {
   } else {
     std::printf("feed constancy       never reached\n");
   }
-  for (const FeedLimit& limit : s.feed_limits) {
-    std::printf("feed limited by      %s, X %.3f to %.3f mm\n", limit.cause.c_str(), limit.from_x / kMillimetre,
-                limit.to_x / kMillimetre);
+  for (const flute_grinder::FeedLimit& limit : toMessage(s).feed_limits) {
+    std::printf("feed limited by      %s\n", text(limit).c_str());
   }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
@@ -106,23 +106,22 @@ void printStatistics(const PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
-                 const std::optional<ClosestPlace>& closest) {
-  for (const AskedAndGround& figure : askedAndGround(job, ground)) {
-    std::printf("%-20s %s\n", figure.name, figure.text.c_str());
+void printPlan(const flute_grinder::PlanReport& plan) {
+  if (plan.statistics.setpoints == 0) return;
+  printStatistics(fromMessage(plan.statistics));
+  for (const flute_grinder::ToolFigure& figure : plan.figures) {
+    const GroundFigure ground = fromMessage(figure);
+    std::printf("%-20s %s\n", rowOf(ground.figure).words, text(ground).c_str());
   }
-  if (complete) {
-    std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", complete->from / kMillimetre,
-                complete->to / kMillimetre);
+  if (plan.complete[0] <= plan.complete[1]) {
+    std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", plan.complete[0] / kMillimetre,
+                plan.complete[1] / kMillimetre);
   }
-  if (closest) {
-    std::printf("%-20s %s and %s, %.3f mm at X %.3f mm\n", "closest", escaped(closest->first).c_str(),
-                escaped(closest->second).c_str(), closest->distance / kMillimetre, closest->axes[kX] / kMillimetre);
-  }
-  const double cut = shankCut(job.cutter);
-  if (cut > 0) {
-    std::printf("%-20s %.3f mm more than the infeed, by the first pass from X %.3f mm on\n", "cut out of the shank",
-                cut / kMillimetre, job.cutter.flute_length / kMillimetre);
+  const std::string closest = closestText(plan);
+  if (!closest.empty()) std::printf("%-20s %s\n", "closest", escaped(closest).c_str());
+  if (plan.shank_cut > 0) {
+    std::printf("%-20s %.3f mm more than the infeed, by the first pass beyond the flute's end\n",
+                "cut out of the shank", plan.shank_cut / kMillimetre);
   }
 }
 
@@ -140,12 +139,10 @@ int runPlan(const PlanOptions& options) {
   if (csv) csv->close();
   if (options.json) {
     Json json = toJson(plan);
-    json.update(toJson(*job, plan.figures));
     json["shank_cut_mm"] = shankCut(job->cutter) / kMillimetre;
     print(json);
-  } else if (plan.statistics.setpoints > 0) {
-    printStatistics(plan.statistics);
-    printChecks(*job, plan.figures, plan.complete, plan.closest);
+  } else {
+    printPlan(resultOf(plan).plan);
   }
   for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason).c_str());

@@ -1,14 +1,12 @@
 #pragma once
 
+#include "flute_grinder/PlanReport.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/plan/planned_job.h"
 
 #include <optional>
 #include <string>
 
 namespace grinder {
-
-struct GrindJob;
 
 /// Arguments of `grind table`.
 struct TableOptions {
@@ -35,13 +33,9 @@ int runTable(const TableOptions& options);
 /// Plans and checks a whole job without a machine, from the park position. @return the exit status.
 int runPlan(const PlanOptions& options);
 
-/// Prints a job's statistics in the operator's units.
-void printStatistics(const PathStatistics& statistics);
-
-/// Prints what the tool gets beside what is asked, where along X the flutes are complete, which two bodies come closest
-/// to each other, and what the first pass of a flute cuts out of the shank, in the operator's units; what is not known,
-/// or nothing, is left out.
-void printChecks(const GrindJob& job, const CutterFigures& ground, const std::optional<Range>& complete,
-                 const std::optional<ClosestPlace>& closest);
+/// Prints a job's statistics, what the tool gets beside what is asked, where along X the flutes are complete, which two
+/// bodies come closest to each other, and what the first pass of a flute cuts out of the shank, in the operator's
+/// units; what is not known, or nothing, is left out.
+void printPlan(const flute_grinder::PlanReport& plan);
 
 }  // namespace grinder

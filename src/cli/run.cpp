@@ -1,4 +1,3 @@
-#include "cli/call.h"
 #include "cli/history.h"
 #include "cli/interrupt.h"
 #include "cli/offline.h"
@@ -8,7 +7,6 @@
 #include "cli/stop_keys.h"
 #include "cli/stream_watch.h"
 #include "flute_grinder/GrindAction.h"
-#include "flute_grinder/Plan.h"
 #include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
@@ -136,44 +134,17 @@ void printStream(const StreamWatch& stream, std::uint64_t written) {
 /// Prints the outcome of a goal. @param connected whether the connection lasted to its end. @return the exit status.
 int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& stream) {
   const flute_grinder::GrindResultConstPtr result = goal.result();
-  if (result && result->statistics.setpoints > 0) printStatistics(fromMessage(result->statistics));
   if (result) {
-    for (const std::string& warning : result->warnings) std::fprintf(stderr, "warning: %s\n", escaped(warning).c_str());
+    printPlan(result->plan);
+    for (const std::string& warning : result->plan.warnings) {
+      std::fprintf(stderr, "warning: %s\n", escaped(warning).c_str());
+    }
   }
   printStream(stream, result ? result->setpoints_written : 0);
   if (!connected) return fail(kLinkLost);
   if (!result) return fail("the grinder no longer knows the job: it has been restarted");
   if (goal.succeeded() && result->error_code == 0) return 0;
   return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
-}
-
-/// Prints what the grinder has found in a dry run beside the path; it has kept the plan.
-/// @return the exit status.
-int printDryChecks(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, const GrindJob& job) {
-  flute_grinder::Plan::Request request;
-  request.goal = goal;
-  const auto plan = ask<flute_grinder::Plan>(nh, "plan", request);
-  if (!plan) return 1;
-  for (const std::string& reason : plan->reasons) fail(reason);
-  if (!plan->valid) return 1;
-  std::optional<ClosestPlace> closest;
-  if (plan->closest_bodies.size() == 2) {
-    closest.emplace();
-    closest->first = plan->closest_bodies[0];
-    closest->second = plan->closest_bodies[1];
-    closest->distance = plan->closest_distance;
-    closest->axes[kX] = plan->closest_x;
-  }
-  const bool somewhere = plan->complete_from <= plan->complete_to;  // not so for NaN
-  const auto range = [](const auto& ends) { return Range{ends[0], ends[1]}; };
-  const CutterFigures ground{range(plan->rake),
-                             range(plan->chordal_rake),
-                             range(plan->spiral_angle),
-                             plan->edge,
-                             {plan->core_diameter[0], plan->core_diameter[1]}};
-  printChecks(job, ground, somewhere ? std::optional<Range>({plan->complete_from, plan->complete_to}) : std::nullopt,
-              closest);
-  return 0;
 }
 
 /// Closes the CSV file, after everything about the job has been printed. @param status so far. @return the exit status.
@@ -236,9 +207,7 @@ int runJob(const std::string& node, const RunOptions& options) {
   keys.start([&] { running.cancel(); });
   const bool connected = showProgress(watched, watch, bar);
   bar.end();
-  int status = printOutcome(watched, connected, stream);
-  if (status == 0 && options.dry_run) status = printDryChecks(nh, goal, *job);
-  return closeStream(stream, options.csv, status);
+  return closeStream(stream, options.csv, printOutcome(watched, connected, stream));
 }
 
 }  // namespace grinder

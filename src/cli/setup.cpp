@@ -34,12 +34,11 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
             {"touch_y_at_z_mm", touch.z_for_y / kMillimetre},
             {"touch_z_mm", touch.z / kMillimetre},
             {"wheel_above_swivel_mm", above_swivel ? Json(*above_swivel / kMillimetre) : Json(nullptr)},
-            {"land_mm", setup.check.figures.land / kMillimetre},
+            {"figures", grinder::toJson(setup.check.figures)},
             {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
             {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
             {"limit", toString(setup.limit)},
             {"margin", setup.margin}};
-  json.update(grinder::toJson(setup.job, setup.check.figures));
   if (!setup.relief) return json;
   for (const char* key : {"lead_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"}) json.erase(key);
   json["rim_mm"] = setup.relief->rim / kMillimetre;

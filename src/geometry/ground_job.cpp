@@ -2,22 +2,22 @@
 
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/valid_job.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace grinder {
 
 namespace {
 
-constexpr int kSections = 8;            ///< of the flute's length, between those that are measured
-constexpr int kRingsToSpoil = 6;        ///< of a section, at which a stroke may spoil it
-constexpr double kMostUndercut = 3e-6;  ///< of an edge's radius by a relief [m]
-constexpr double kSameWear = 20e-6;     ///< whose change of the wheel's curvature a check does not see [m]
+constexpr int kSections = 8;      ///< of the flute's length, between those that are measured
+constexpr int kRingsToSpoil = 6;  ///< of a section, at which a stroke may spoil it
+constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
@@ -46,34 +46,6 @@ std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, doubl
   return first;
 }
 
-void widen(Range& range, double value) { range = {std::fmin(range.from, value), std::fmax(range.to, value)}; }
-
-/// @param section one of several, from X = 0 on.
-void add(CutterFigures& figures, const GroundSection& section) {
-  figures.core_diameter[section.x == 0 ? 0 : 1] = 2 * section.core_radius;
-  for (const ToothSection& tooth : section.teeth) {
-    figures.land = std::fmin(figures.land, tooth.land.value_or(0) * section.radius);
-    if (!tooth.complete) continue;
-    widen(figures.rake, *tooth.rake);
-    if (tooth.chordal_rake) widen(figures.chordal_rake, *tooth.chordal_rake);
-    if (tooth.spiral) widen(figures.spiral, *tooth.spiral);
-    if (!tooth.relief) continue;
-    if (tooth.relief->clearance) widen(figures.clearance, *tooth.relief->clearance);
-    if (tooth.relief->land) widen(figures.relief, *tooth.relief->land);
-  }
-}
-
-/// As CutterFigures::edge, of one tooth.
-double edgeOff(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
-  const LogCurve asked(ConicalCutter(job.cutterOf(static_cast<int>(tooth))));
-  Range off{CutterFigures::kNone, CutterFigures::kNone};
-  for (const GroundSection& section : sections) {
-    const ToothSection& measured = section.teeth[tooth];
-    if (measured.complete) widen(off, *measured.edge - asked.a(section.x));
-  }
-  return (off.to - off.from) / 2;
-}
-
 /// The edge of a tooth, in the sections that have one.
 GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
   const StrokeLaw& law = job.strokeLaw(static_cast<int>(tooth));
@@ -82,14 +54,10 @@ GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<Grou
   for (const GroundSection& section : sections) {
     const ToothSection& at = section.teeth[tooth];
     if (!at.edge) continue;
-    if (job.relief(0) != nullptr) {
-      const double wheel_x = section.x + law.lead;
-      places.push_back({section.x, wheel_x, *at.edge - law.a - curve.a(wheel_x)});
-      continue;
-    }
+    double wheel_x = job.relief(0) != nullptr ? section.x + law.lead : at.edge_wheel_x;
     // Where the stroke's end forms several sections, their extrema are no more exact than that.
-    const double wheel_x = places.empty() ? at.edge_wheel_x : std::max(at.edge_wheel_x, places.back().wheel_x);
-    places.push_back({section.x, wheel_x, *at.edge - job->tooth_angles[tooth] - curve.a(wheel_x)});
+    if (!places.empty()) wheel_x = std::max(wheel_x, places.back().wheel_x);
+    places.push_back({section.x, wheel_x, *at.edge - law.a - curve.a(wheel_x)});
   }
   return GroundEdge(std::move(places));
 }
@@ -105,40 +73,9 @@ class Checker {
       return checkReliefCore(section);
     }
     if (!(section.core_radius > kMinCore)) add(ReasonKind::kCore, section.x, 0, Unit::kMetre, section.core_radius, 0);
-    for (std::size_t i = 0; i < section.teeth.size(); ++i) {
-      const ToothSection& tooth = section.teeth[i];
-      const int number = static_cast<int>(i);
-      if (tooth.flute && !tooth.land) {
-        add(ReasonKind::kLand, section.x, number, Unit::kRadian, pitch(i) - tooth.least_land, pitch(i));
-      }
-      if (!tooth.complete) continue;
-      for (const ToolFigure figure : {ToolFigure::kRake, ToolFigure::kChordalRake}) checkFigure(figure, section, i);
-      if (tooth.spiral) checkFigure(ToolFigure::kSpiral, section, i);
-    }
+    for (std::size_t i = 0; i < section.teeth.size(); ++i) checkFlute(section, i);
     const auto complete = [](const ToothSection& tooth) { return tooth.complete; };
     checkCore(section, std::all_of(section.teeth.begin(), section.teeth.end(), complete));
-  }
-
-  /// A primary relief may end on the land where a secondary one follows, behind where that begins.
-  void checkRelief(const GroundSection& section, std::size_t i) {
-    const int number = static_cast<int>(i);
-    const ReliefSection relief = section.teeth[i].relief.value_or(ReliefSection{});
-    for (const ToolFigure figure : {ToolFigure::kClearance, ToolFigure::kSecondClearance, ToolFigure::kPrimaryRelief}) {
-      checkFigure(figure, section, i);
-    }
-    const double taken = section.radius - relief.edge_radius;
-    if (!(taken <= kMostUndercut)) {
-      add(ReasonKind::kUndercut, section.x, number, Unit::kDeviationMetre, taken, kMostUndercut);
-    }
-    if (!(relief.next_edge > 0)) {
-      add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
-    }
-    const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
-    const bool is_wide =
-        last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, job_->cutter.land).radius > 0;
-    if (!is_wide || (job_->operation > 1 && !relief.land)) {
-      add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
-    }
   }
 
   /// How far the edges turn between two sections. Where each is within the tolerance everywhere, so is this.
@@ -187,12 +124,40 @@ class Checker {
   std::vector<Reason> take() { return std::move(reasons_); }
 
  private:
-  void checkFigure(ToolFigure figure, const GroundSection& section, std::size_t tooth) {
-    const FigurePlace place{job_, section, tooth};
-    if (isAsAsked(figure, place)) return;
-    const ToolFigureRow& row = rowOf(figure);
-    add(row.reason, section.x, static_cast<int>(tooth), row.unit, row.measured(place).value_or(CutterFigures::kNone),
-        *row.asked(place), row.tolerance(place));
+  /// Those of the operation that is planned. An edge has no spiral angle at the cone's apex.
+  void checkFigures(const FigurePlace& place) {
+    for (const ToolFigureRow& row : kToolFigures) {
+      const ToolFigure figure = row.value;
+      if (row.reason == ReasonKind::kNone || row.of_relief != (job_.relief(0) != nullptr)) continue;
+      if (row.of_complete && !place.tooth().complete) continue;
+      if (isAsAsked(figure, place) || (figure == ToolFigure::kSpiral && !place.tooth().spiral)) continue;
+      add(row.reason, place.section.x, static_cast<int>(place.number), row.unit,
+          measured(figure, place).value_or(kNoFigure), *asked(figure, place), tolerance(figure, place));
+    }
+  }
+
+  void checkFlute(const GroundSection& section, std::size_t i) {
+    const ToothSection& tooth = section.teeth[i];
+    if (tooth.flute && !tooth.land) {
+      add(ReasonKind::kLand, section.x, static_cast<int>(i), Unit::kRadian, pitch(i) - tooth.least_land, pitch(i));
+    }
+    checkFigures({job_, section, i});
+  }
+
+  /// A primary relief may end on the land where a secondary one follows, behind where that begins.
+  void checkRelief(const GroundSection& section, std::size_t i) {
+    const int number = static_cast<int>(i);
+    const ReliefSection relief = section.teeth[i].relief.value_or(ReliefSection{});
+    checkFigures({job_, section, i});
+    if (!(relief.next_edge > 0)) {
+      add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
+    }
+    const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
+    const bool is_wide =
+        last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, job_->cutter.land).radius > 0;
+    if (!is_wide || (job_->operation > 1 && !relief.land)) {
+      add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
+    }
   }
 
   /// Where a flute is not complete, the core may be too thick only.
@@ -316,25 +281,22 @@ GroundCutter groundBefore(const ValidJob& job) {
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
   const double length = job->cutter.flute_length;
   Checker checker(job);
-  CutterFigures figures;
   std::vector<GroundSection> sections;
   bool complete = true;
   for (int i = 0; i <= kSections; ++i) {
     const GroundSection& section = sections.emplace_back(cutter.section(length * i / kSections));
     checker.check(section);
     if (i > 0) checker.checkTurn(sections[sections.size() - 2], section);
-    add(figures, section);
     for (const ToothSection& tooth : section.teeth) complete = complete && tooth.complete;
   }
   std::vector<GroundEdge> edges;
   for (std::size_t i = 0; i < cutter.teeth().size(); ++i) {
-    figures.edge = std::fmax(figures.edge, edgeOff(job, i, sections));
     edges.push_back(edgeOf(job, i, sections));
   }
   const std::optional<Range> range = complete ? Range{0, length} : cutter.completeRange(0, length);
   checker.checkOvertravel(cutter);
   checker.checkRange(range);
-  return {range, checker.take(), figures, std::move(edges)};
+  return {range, checker.take(), figuresOf(job, sections), std::move(edges)};
 }
 
 CutterCheck checkGroundCutter(const ValidJob& job) {

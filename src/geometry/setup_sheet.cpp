@@ -1,7 +1,6 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/job/format.h"
 
@@ -19,7 +18,7 @@ double deg(double radians) { return radians / kDegree; }
 /// "+ 1.200 mm", or "- 1.200 mm"
 std::string added(double metres) { return format("%c %.3f mm", metres < 0 ? '-' : '+', std::abs(mm(metres))); }
 
-std::string line(const char* name, const std::string& text) { return format("  %-16s", name) + text + "\n"; }
+std::string line(const char* name, const std::string& text) { return format("  %-17s", name) + text + "\n"; }
 
 std::string wheelText(const GrindProcess& p) {
   std::string text =
@@ -85,32 +84,14 @@ std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_
          reads(format("(D - %g)/2 ", mm(end)) + (touch.y == 0 ? "mm" : added(touch.y)), touch.y);
 }
 
-/// "; asked 6.8 mm and 12 mm within 0.02 mm"
-std::string askedText(double asked, const char* between, double other, double tolerance, const char* unit) {
-  std::string text = format("; asked %g %s", asked, unit);
-  if (other != asked) text += format(" %s %g %s", between, other, unit);
-  return text + format(" within %g %s", tolerance, unit);
-}
-
-std::string angleText(const Range& ground, const Range& asked, double tolerance) {
-  return format("%.3f to %.3f deg", deg(ground.from), deg(ground.to)) +
-         askedText(deg(asked.from), "to", deg(asked.to), deg(tolerance), "deg");
-}
-
-std::string coreText(const std::array<double, 2>& ground, const CutterGeometry& c) {
-  return format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(ground[0]), mm(ground[1])) +
-         askedText(mm(c.core_diameter), "and", mm(c.core_diameter_end), mm(c.core_tolerance), "mm");
-}
-
 std::string whatComesOut(const JobSetup& setup) {
   const auto& complete = setup.check.complete;
   std::string text = "comes out\n";
-  for (const AskedAndGround& figure : askedAndGround(setup.job, setup.check.figures)) {
-    text += line(figure.name, figure.text);
+  for (const GroundFigure& figure : setup.check.figures) {
+    text += line(rowOf(figure.figure).words, grinder::text(figure));
   }
-  return text + line("land", format("%.3f mm or more", mm(setup.check.figures.land))) +
-         line("flutes complete",
-              complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to)) : std::string("nowhere"));
+  return text + line("flutes complete", complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to))
+                                                 : std::string("nowhere"));
 }
 
 std::string whatLimits(const JobSetup& setup, const Range& swivel) {
@@ -143,36 +124,6 @@ double upperFaceHeight(const GrindJob& job) {
 
 double lowerFaceHeight(const GrindJob& job) {
   return job.process.setup_height + wheelOf(job).lowerFace() / std::cos(job.process.setup_swivel);
-}
-
-std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigures& ground) {
-  const CutterGeometry& c = job.cutter;
-  std::vector<AskedAndGround> all;
-  if (!std::isnan(ground.rake.from)) {
-    all.push_back(
-        {toString(ToolFigure::kRake), angleText(ground.rake, {c.rake_angle, c.rake_angle}, c.rake_tolerance)});
-  }
-  if (!std::isnan(ground.chordal_rake.from)) {
-    const Range asked{c.rake_angle, c.rake_angle};
-    all.push_back(
-        {toString(ToolFigure::kChordalRake), angleText(ground.chordal_rake, asked, c.chordal_rake_tolerance)});
-  }
-  if (!std::isnan(ground.spiral.from)) {
-    all.push_back({toString(ToolFigure::kSpiral), angleText(ground.spiral, askedSpiral(job), c.spiral_tolerance)});
-  }
-  if (!std::isnan(ground.edge)) all.push_back({"edge", format("within %.3f deg of the asked helix", deg(ground.edge))});
-  if (!std::isnan(ground.core_diameter[0]))
-    all.push_back({toString(ToolFigure::kCore), coreText(ground.core_diameter, c)});
-  if (!std::isnan(ground.clearance.from)) {
-    all.push_back({toString(ToolFigure::kClearance),
-                   angleText(ground.clearance, {c.clearance, c.clearance}, c.clearance_tolerance)});
-  }
-  if (!std::isnan(ground.relief.from)) {
-    const std::string asked = c.land > 0 ? format("; asked %g mm at X = 0", mm(c.land)) : "";
-    all.push_back({toString(ToolFigure::kPrimaryRelief),
-                   format("%.3f to %.3f mm wide", mm(ground.relief.from), mm(ground.relief.to)) + asked});
-  }
-  return all;
 }
 
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel) {

@@ -34,26 +34,10 @@ class Writer {
         return name("interpolation.tolerance") + " = " + limit() + ": the path deviates by " + value() +
                " at the maximum feed override" + place() + "; lower " + name("process.feed") +
                ", or set interpolation.even_step to exact";
-      case ReasonKind::kRake:
-        return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " is ground with " + value() +
-               " at X = " + x() + "; allowed: within " + low() + " of it; change " + name("process.setup_swivel") +
-               " or " + name("process.setup_height");
-      case ReasonKind::kChordalRake:
-        return name("cutter.rake_angle") + " = " + limit() + ": tooth " + tooth() + " has a chordal rake of " +
-               value() + " at X = " + x() + "; allowed: within " + low() + " of it; change " +
-               name("process.wheel_diameter") + " or " + name("process.wheel_width");
-      case ReasonKind::kSpiral:
-        return name("cutter.spiral_angle") + " = " + limit() + ": the edge of tooth " + tooth() + " is ground with " +
-               value() + " at X = " + x() + "; allowed: within " + low() + " of it; change " +
-               name("process.setup_lead");
       case ReasonKind::kCoreSize:
         return name("cutter.core_diameter") + ", " + name("cutter.core_diameter_end") + ": the core is " + value() +
                " at X = " + x() + "; allowed: within " + low() + " of " + limit() + "; change " +
                (r_.detail.empty() ? name("process.depth") + " or " + name("process.depth_end") : r_.detail);
-      case ReasonKind::kLand:
-        return "no land is left on tooth " + tooth() + " at X = " + x() + ": its flute takes " + value() +
-               ", its pitch is " + limit() + "; lower " + name("process.wheel_width") + " or " + name("process.depth");
-      case ReasonKind::kCore: return name("process.depth") + ": the core is cut through at X = " + x() + "; lower it";
       case ReasonKind::kIncomplete:
         return name("process.overtravel_end") + ", " + name("process.overtravel_shank") + ": the flutes are complete " +
                (r_.value > r_.low ? "from X = " + low() + " to " + value() : std::string("nowhere")) +
@@ -71,7 +55,6 @@ class Writer {
         return "max_job_duration = " + limit() + ": the job takes " + (r_.value > 0 ? value() + " or more" : "longer") +
                " for " + std::to_string(r_.count) + (r_.count == 1 ? " pass" : " passes") + " of its teeth; raise " +
                name("process.feed") + " or " + name("process.infeed") + ", or the parameter";
-      case ReasonKind::kGivenUp: return r_.detail.empty() ? "given up while it was planned" : "given up: " + r_.detail;
       default: return filled(rowOf(r_.kind).text);
     }
   }
@@ -115,6 +98,7 @@ class Writer {
     if (name == "cycle") return std::to_string(r_.cycle);
     if (name == "number") return number();
     if (name == "excess") return excess();
+    if (name.find('.') != std::string::npos) return fieldName(name);
     throw std::logic_error("kReasonKinds: no text for {" + name + "}");
   }
 

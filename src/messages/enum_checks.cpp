@@ -3,6 +3,7 @@
 
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/machine/machine_state.h"
@@ -78,6 +79,7 @@ static_assert(has<OperationKind, GrindOrder, StrokeDirection, ZLaw, WheelShape, 
 static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<TeethUnknown>(message_text::kClampedTool));
 static_assert(has<ProbingCycle>(message_text::kProbe));
+static_assert(has<ToolFigure>(message_text::kToolFigure));
 // Its other constants are axes and units, which reasons.cpp compares.
 static_assert(hasAllOf<ReasonKind>(message_text::kReason) &&
               countConstants(message_text::kReason) == kReasonKindCount + kAxisCount + kUnitCount);

@@ -29,6 +29,7 @@ static_assert(+flute_grinder::Reason::X == kX && +flute_grinder::Reason::Y == kY
 
 flute_grinder::Reason toMessage(const Reason& reason) {
   flute_grinder::Reason m;
+  m.text = text(reason);
   m.kind = static_cast<std::uint8_t>(reason.kind);
   m.axis = static_cast<std::uint8_t>(reason.axis);
   m.field = reason.field;

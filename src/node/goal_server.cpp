@@ -3,6 +3,7 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
@@ -23,16 +24,15 @@ const ros::WallDuration kLoopTimeout(1);          ///< after which the control l
 /// How long the result waits for the last setpoints to be published and the journal to be written.
 const ros::WallDuration kEndTimeout(0.5);
 
-flute_grinder::GrindResult result(int code, const std::string& text, const PathStatistics& statistics = {}) {
+flute_grinder::GrindResult result(int code, const std::string& text) {
   flute_grinder::GrindResult r;
   r.error_code = code;
   r.error_string = text;
-  r.statistics = toMessage(statistics);
   return r;
 }
 
-flute_grinder::GrindResult result(int code, const std::vector<Reason>& reasons, const PathStatistics& statistics = {}) {
-  flute_grinder::GrindResult r = result(code, text(reasons), statistics);
+flute_grinder::GrindResult result(int code, const std::vector<Reason>& reasons) {
+  flute_grinder::GrindResult r = result(code, text(reasons));
   r.reasons = toMessage(reasons);
   return r;
 }
@@ -127,8 +127,9 @@ void GoalServer::reject(GoalHandle& handle, const flute_grinder::GrindResult& re
 
 void GoalServer::onGoal(GoalHandle handle) {
   if (goal_) {
+    const char* beside = handle.getGoal()->dry_run ? "; 'grind plan' plans without the grinder" : "";
     return reject(handle, flute_grinder::GrindResult::BUSY,
-                  "a goal is running; allowed: wait for its end, or cancel it");
+                  std::string("a goal is running; allowed: wait for its end, or cancel it") + beside);
   }
   const auto goal = handle.getGoal();
   for (const auto& [key, name] : {std::pair("job_name", &goal->job_name), std::pair("wheel_name", &goal->wheel_name),
@@ -203,15 +204,13 @@ void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, co
   request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
                  {handle.getGoal()->first_tooth, handle.getGoal()->first_pass},
                  offsets.values()};
-  request.for_goal = true;
   request.control = control;
   request.done = [this](std::shared_ptr<const PlannedJob> planned) {
     thread_.post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
   if (!planner_.submit(std::move(request))) {
     gate_.close();
-    return reject(goal, flute_grinder::GrindResult::BUSY,
-                  "another job is being planned; allowed: wait for the end of that");
+    return reject(goal, flute_grinder::GrindResult::NOT_READY, "the grinder is being shut down");
   }
   goal_ = Goal{handle, offsets, control};
   busy_ = true;
@@ -226,21 +225,16 @@ void GoalServer::onCancel(const GoalHandle& handle) {
 
 void GoalServer::onPlanned(std::shared_ptr<const PlannedJob> planned) {
   GoalHandle handle = goal_->handle;
-  const PlannedJob& plan = *planned;
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
   if (recalled || gate_.canceled()) return cancelBeforeStart();
-  if (!plan.good()) {
+  if (handle.getGoal()->dry_run || !planned->good()) {
+    flute_grinder::GrindResult checked = resultOf(*planned);
+    checked.plan.warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
     release();
-    return reject(handle, result(errorCode(plan.fault), plan.reasons));
-  }
-  if (handle.getGoal()->dry_run) {
-    const std::vector<std::string> warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
+    if (!planned->good()) return reject(handle, checked);
+    checked.error_string = "planned and checked; nothing moved";
     handle.setAccepted();
-    release();
     telemetry_.show(planned);
-    flute_grinder::GrindResult checked =
-        result(flute_grinder::GrindResult::SUCCESSFUL, "planned and checked; nothing moved", plan.statistics);
-    checked.warnings = warnings;
     return handle.setSucceeded(checked);
   }
   goal_->plan = std::move(planned);
@@ -403,14 +397,15 @@ flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) con
     at.pass = static_cast<std::uint16_t>(plan.program->run().first.pass);
     at.x = plan.program->start()[kX];
   }
-  flute_grinder::GrindResult r = result(flute_grinder::GrindResult::SUCCESSFUL, "", plan.statistics);
+  flute_grinder::GrindResult r = result(flute_grinder::GrindResult::SUCCESSFUL, "");
   if (!goal_->journal_error.empty()) {
-    r = result(flute_grinder::GrindResult::NOT_READY, goal_->journal_error, plan.statistics);
+    r = result(flute_grinder::GrindResult::NOT_READY, goal_->journal_error);
   } else if (status.end == JobEnd::kFault) {
-    r = result(errorCode(status.fault.kind), {endReason(status, at, *plan.program)}, plan.statistics);
+    r = result(errorCode(status.fault.kind), {endReason(status, at, *plan.program)});
   } else if (status.end == JobEnd::kCanceled) {
-    r = result(flute_grinder::GrindResult::CANCELED, {endReason(status, at, *plan.program)}, plan.statistics);
+    r = result(flute_grinder::GrindResult::CANCELED, {endReason(status, at, *plan.program)});
   }
+  r.plan = resultOf(plan).plan;
   r.setpoints_written = status.setpoints_written;
   return r;
 }

@@ -123,7 +123,6 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
                                                   offsetLimits(config.machine.limits, own.offset_change_limit));
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_, *offset_server_);
   probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_server_);
-  plans_ = std::make_unique<PlanServer>(private_nh_, *loop_, *planner_, *telemetry_, *offsets_);
   goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *stops_, *planner_, *telemetry_, *journal_,
                                         *offset_server_);
 }

@@ -10,7 +10,6 @@
 #include "node/journal_writer.h"
 #include "node/offset_server.h"
 #include "node/offset_store.h"
-#include "node/plan_server.h"
 #include "node/planner.h"
 #include "node/probe_server.h"
 #include "node/request_server.h"
@@ -60,7 +59,6 @@ class GrinderNode {
   std::unique_ptr<OffsetServer> offset_server_;
   std::unique_ptr<RequestServer> requests_;
   std::unique_ptr<ProbeServer> probes_;
-  std::unique_ptr<PlanServer> plans_;
   std::unique_ptr<GoalServer> goals_;
 };
 

@@ -14,9 +14,7 @@ void Planner::end() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ended_ = true;
-    for (const auto* request : {&request_, &goal_}) {
-      if (*request) (*request)->control->give_up = true;
-    }
+    if (request_) request_->control->give_up = true;
   }
   changed_.notify_one();
   thread_.join();
@@ -25,9 +23,8 @@ void Planner::end() {
 bool Planner::submit(Request request) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (ended_ || goal_ || (request_ && (request_->for_goal || !request.for_goal))) return false;
-    goal_waits_ = request_.has_value();
-    (goal_waits_ ? goal_ : request_) = std::move(request);
+    if (ended_ || request_) return false;
+    request_ = std::move(request);
   }
   changed_.notify_one();
   return true;
@@ -39,8 +36,7 @@ void Planner::run() {
     {
       // Before `done`: it may submit the next job.
       const std::lock_guard<std::mutex> lock(mutex_);
-      request_ = std::exchange(goal_, std::nullopt);
-      goal_waits_ = false;
+      request_.reset();
     }
     request->done(std::move(plan));
   }
@@ -68,12 +64,9 @@ bool Planner::isKept(const Request& request) const {
 PlannedJob Planner::makePlan(const Request& request) const {
   const auto watch = [&](double done) {
     request.control->done = done;
-    return !request.control->give_up && !goal_waits_;
+    return !request.control->give_up;
   };
-  PlannedJob plan = planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
-  if (plan.fault == PlanFault::kGivenUp && goal_waits_)
-    plan.reasons.back().detail = "a goal came first; plan again after it";
-  return plan;
+  return planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
 }
 
 }  // namespace grinder

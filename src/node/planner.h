@@ -18,15 +18,13 @@ struct PlanControl {
   std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
 };
 
-/// Plans one job at a time in its own thread. A goal goes first: what is being planned without one is given up for it.
-/// The last good plan is kept: the same job from the same place needs no
+/// Plans one job at a time in its own thread. The last good plan is kept: the same job from the same place needs no
 /// other, as after a dry run, and for one tool after the other.
 class Planner {
  public:
   struct Request {
     ValidJob job;
     RunStart run{};
-    bool for_goal = false;
     std::shared_ptr<PlanControl> control{};
     /// Called once, in the planner's thread; must not block.
     std::function<void(std::shared_ptr<const PlannedJob>)> done{};
@@ -40,7 +38,7 @@ class Planner {
   /// Abandons the current plan; its `done` is called. Later requests are refused.
   void end();
 
-  /// @return false, and does nothing, while another job is being planned; for a goal, only while another goal is.
+  /// @return false, and does nothing, while another job is being planned.
   bool submit(Request request);
 
  private:
@@ -52,12 +50,10 @@ class Planner {
 
   const Machine machine_;
   const MachineShapes shapes_;
-  std::mutex mutex_;  ///< guards the next four
+  std::mutex mutex_;  ///< guards the next three
   std::condition_variable changed_;
   std::optional<Request> request_;  ///< until it is done
-  std::optional<Request> goal_;     ///< waits for the end of a request without a goal
   bool ended_ = false;
-  std::atomic<bool> goal_waits_{false};
 
   std::shared_ptr<const PlannedJob> kept_;  ///< the last good plan; used by the thread only
   std::thread thread_;

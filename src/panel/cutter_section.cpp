@@ -57,7 +57,7 @@ QString rakeLine(const CutterSection& section) {
 QString coreLine(const CutterSection& section) {
   const auto shown = [](double diameter) { return QString::number(diameter / kMillimetre, 'f', 3); };
   return line(section.outline.empty() ? "Core cut through" : "Core " + shown(2 * section.ground.core_radius) + " mm",
-              section.isWithin(ToolFigure::kCore)) +
+              section.isWithin(ToolFigure::kCoreDiameter)) +
          QString(", asked %1 within %2 mm")
              .arg(shown(2 * section.asked_core))
              .arg(section.job->cutter.core_tolerance / kMillimetre);
@@ -83,7 +83,7 @@ QString reliefLine(const CutterSection& section) {
   for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
     good = good && section.isWithin(ToolFigure::kClearance, i);
     second_good = second_good && section.isWithin(ToolFigure::kSecondClearance, i);
-    width_good = width_good && section.isWithin(ToolFigure::kPrimaryRelief, i);
+    width_good = width_good && section.isWithin(ToolFigure::kPrimary, i);
     const ReliefSection relief = section.ground.teeth[i].relief.value_or(ReliefSection{});
     if (relief.clearance) clearances.push_back(*relief.clearance / kDegree);
     if (relief.second_clearance) seconds.push_back(*relief.second_clearance / kDegree);
@@ -123,10 +123,10 @@ QString landLine(const CutterSection& section) {
 }  // namespace
 
 bool CutterSection::isWithin(ToolFigure figure, std::size_t tooth) const {
-  if (figure == ToolFigure::kCore && outline.empty()) return false;
+  if (figure == ToolFigure::kCoreDiameter && outline.empty()) return false;
   const FigurePlace place{job, ground, tooth};
   if (isAsAsked(figure, place)) return true;
-  return figure < ToolFigure::kCore && (!place.tooth().complete || !rowOf(figure).measured(place));
+  return rowOf(figure).of_complete && (!place.tooth().complete || !measured(figure, place));
 }
 
 bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flute || tooth.land; }

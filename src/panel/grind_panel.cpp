@@ -134,7 +134,6 @@ GrindPanel::GrindPanel(QWidget* parent)
   guardFromDoubleClicks(*this, stops);
   hold_key_->add(*buttons_.at(MachineEvent::kHold));
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
-  connect(job_, &JobBox::dryRunWanted, this, &GrindPanel::dryRun);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
   connect(job_, &JobBox::swivelConfirmed, this, &GrindPanel::confirmSwivel);
   connect(job_, &JobBox::offsetFitWanted, this, &GrindPanel::fitOffsets);
@@ -286,7 +285,6 @@ void GrindPanel::save(rviz::Config config) const {
 void GrindPanel::setNode(const QString& node) {
   node_ = node;
   moves_.clear();
-  planning_ = false;
   sent_.reset();
   job_->discardPlan();  // it is for another machine
   offerBack(std::nullopt);
@@ -330,7 +328,7 @@ void GrindPanel::refresh() {
   nameWindows();
   state_->show(view, name_.empty() ? node_ : QString::fromStdString(name_), master);
   const bool job_runs = state && isInJob(*state);
-  const bool idle = state && !job_runs && !planning_ && !sent_ && !view.planned;
+  const bool idle = state && !job_runs && !sent_ && !view.planned;
   showOtherJob(view, job_runs);
   const bool begun = job_runs || (state && sent_ && !sent_->goal.dry_run);
   if (begun && !begun_ && view.state->override != 1) {
@@ -448,14 +446,6 @@ void GrindPanel::dropPassedReply(std::optional<MachineState> state) {
 }
 
 void GrindPanel::plan(const flute_grinder::GrindGoal& goal) {
-  planning_ = true;
-  link_->plan(goal, [this, goal](const flute_grinder::Plan::Response& plan) {
-    planning_ = false;
-    job_->setPlan(goal, plan);
-  });
-}
-
-void GrindPanel::dryRun(const flute_grinder::GrindGoal& goal) {
   flute_grinder::GrindGoal dry = goal;
   dry.dry_run = true;
   send(dry);
@@ -468,6 +458,7 @@ void GrindPanel::send(const flute_grinder::GrindGoal& goal) {
     sent_ = Sent{*id, goal};
     last_sent_ = *id;
   }
+  if (id && goal.dry_run) return;
   showMessage(id ? "the job was sent" : "the job was not sent: no answer from the grinder " + name_);
 }
 
@@ -486,14 +477,7 @@ void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResul
     sent_.reset();
     if (goal.dry_run) {
       goal.dry_run = false;
-      if (good) {
-        showMessage(result.error_string);
-        return plan(goal);  // which the grinder has kept, and which knows more
-      }
-      flute_grinder::Plan::Response refused;
-      refused.reasons = {result.error_string};
-      job_->setPlan(goal, refused);
-      return;
+      return job_->setPlan(goal, result);
     }
   }
   if (!good) return showMessage("the job has ended: " + result.error_string);

@@ -82,7 +82,6 @@ class GrindPanel : public rviz::Panel {
   void request(MachineEvent event);
   void dropPassedReply(std::optional<MachineState> state);
   void plan(const flute_grinder::GrindGoal& goal);
-  void dryRun(const flute_grinder::GrindGoal& goal);
   void send(const flute_grinder::GrindGoal& goal);
   void confirmSwivel(double angle);
   void onResult(const std::string& id, const flute_grinder::GrindResult& result);
@@ -110,7 +109,6 @@ class GrindPanel : public rviz::Panel {
   std::string name_;                   ///< resolved; empty if invalid
   QString titled_;                     ///< the name that the window's title has from here
   std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
-  bool planning_ = false;
   std::optional<Sent> sent_;
   std::optional<Passing> passing_;  ///< of the last request
   std::optional<Touched> touched_;  ///< that can be taken back

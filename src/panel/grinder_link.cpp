@@ -25,9 +25,7 @@ const ros::WallDuration kStale(1);  ///< state and positions arrive at 10 Hz or 
 
 constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
 
-// Timeouts for answers [s].
-constexpr double kRequestTimeout = 10;
-constexpr double kPlanTimeout = 60;
+constexpr double kRequestTimeout = 10;  ///< for an answer [s]
 
 /// How long a stop waits for a connection: longer than reconnecting takes once grinder or master are back.
 const ros::WallDuration kStopTimeout(2);
@@ -259,18 +257,6 @@ void GrinderLink::jog(int axis, double velocity) {
   message.axis = static_cast<std::uint8_t>(axis);
   message.velocity = velocity;
   jogs_.publish(message);
-}
-
-void GrinderLink::plan(const flute_grinder::GrindGoal& goal, const OnPlan& on_plan) {
-  flute_grinder::Plan::Request request;
-  request.goal = goal;
-  call<flute_grinder::Plan>("plan", request, kPlanTimeout, [on_plan, silence = noAnswer()](const auto& response) {
-    if (response) return on_plan(*response);
-    flute_grinder::Plan::Response unknown;
-    unknown.valid = 0;
-    unknown.reasons.push_back(silence);
-    on_plan(unknown);
-  });
 }
 
 std::optional<std::string> GrinderLink::send(const flute_grinder::GrindGoal& goal) {

@@ -6,7 +6,6 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/MachineInfo.h"
-#include "flute_grinder/Plan.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/job/axes.h"
 #include "flute_grinder/machine/machine_state.h"
@@ -51,7 +50,6 @@ class GrinderLink {
  public:
   /// @param refusal why not; empty if it was done.
   using OnAnswer = std::function<void(const std::string& refusal)>;
-  using OnPlan = std::function<void(const flute_grinder::Plan::Response& plan)>;
   /// @param id of the goal, as returned by send().
   using OnResult = std::function<void(const std::string& id, const flute_grinder::GrindResult& result)>;
 
@@ -94,8 +92,6 @@ class GrinderLink {
   /// Moves an axis for as long as this is called again and again, by a connection that survives the ROS master.
   /// @param velocity signed [m/s], A [rad/s]; 0 stops.
   void jog(int axis, double velocity);
-  /// Generates and checks every setpoint. If the grinder does not answer, that is the plan's reason.
-  void plan(const flute_grinder::GrindGoal& goal, const OnPlan& on_plan);
 
   /// Sends a job. @return the goal's id; nothing if no grinder is connected.
   std::optional<std::string> send(const flute_grinder::GrindGoal& goal);

@@ -82,9 +82,9 @@ JobBox::JobBox(QWidget* parent)
       setup_(new PanelButton("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
       continue_(new QCheckBox(kContinue)),
       zeros_(new QLabel),
-      plan_(new PanelButton("plan", "Plan", "Generate and check every setpoint; nothing moves")),
-      dry_run_(new PanelButton("dry_run", "Dry run",
-                               "Send the job as it would be ground; the grinder checks it, nothing moves")),
+      plan_(new PanelButton("plan", "Plan",
+                            "The grinder plans and checks the job as it would be ground; nothing moves. While a job "
+                            "runs, 'grind plan' does so without the grinder")),
       verdict_(textView("verdict", kAnswerLines)),
       other_job_(textView("other_job", kAnswerLines)),
       answer_(new QStackedWidget),
@@ -100,12 +100,7 @@ JobBox::JobBox(QWidget* parent)
   connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
   connect(operation_, &OperationChoice::changed, this, &JobBox::readAnew);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::clickContinue);
-  connect(plan_, &QPushButton::clicked, this, [this] {
-    if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
-  });
-  connect(dry_run_, &QPushButton::clicked, this, [this] {
-    if (const auto goal = beginPlan()) Q_EMIT dryRunWanted(*goal);
-  });
+  connect(plan_, &QPushButton::clicked, this, &JobBox::planAnew);
   setFile("");
 }
 
@@ -121,15 +116,12 @@ void JobBox::layOut() {
   file->addWidget(name_, 1);
   file->addWidget(choose_);
   file->addWidget(setup_);
-  auto* plan = new QHBoxLayout;
-  plan->addWidget(plan_, 1);
-  plan->addWidget(dry_run_, 1);
   auto* layout = new QVBoxLayout(form_);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addLayout(file);
   layout->addWidget(operation_);
   layout->addWidget(continue_);
-  layout->addLayout(plan);
+  layout->addWidget(plan_);
   layout->addWidget(zeros_);
   answer_->addWidget(verdict_);
   answer_->addWidget(other_job_);
@@ -289,16 +281,11 @@ std::optional<flute_grinder::GrindGoal> JobBox::beginPlan() {
   return goal;
 }
 
-void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::Plan::Response& plan) {
+void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::GrindResult& result) {
   if (goalNow() != goal) return;
   planned_.reset();
-  if (plan.valid) planned_ = goal;
-  std::string text = describe(plan);
-  const double cut = shankCut(job_->cutter);
-  if (plan.valid && cut > 0) {
-    text += format("\nThe first pass cuts %.3f mm more than its infeed out of the shank.", cut / units::kMillimetre);
-  }
-  showVerdict(QString::fromStdString(text), plan.valid != 0);
+  if (result.plan.valid) planned_ = goal;
+  showVerdict(QString::fromStdString(describe(result)), result.plan.valid != 0);
 }
 
 void JobBox::start() {
@@ -417,7 +404,6 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
   setup_->setEnabled(chosen);
   continue_->setEnabled(idle && (where_left_ || !unfinished_file_.isEmpty()));
   plan_->setEnabled(idle && chosen);
-  dry_run_->setEnabled(idle && chosen);
 }
 
 /// Whether the question shown, if there is one, still has to be answered.

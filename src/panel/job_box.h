@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/GrindResult.h"
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/Plan.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/machine/swivel.h"
 #include "flute_grinder/motion/work_offsets.h"
@@ -53,7 +53,7 @@ class JobBox : public QWidget {
   void setGrinder(const std::string& name) { grinder_ = name; }
 
   /// Shows the result of a plan, if it is for the goal that would be started now.
-  void setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::Plan::Response& plan);
+  void setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::GrindResult& result);
 
   /// Plans the job once more, as it would be started now.
   void planAnew();
@@ -81,7 +81,6 @@ class JobBox : public QWidget {
   /// start() has a question, or does not start the job: the text says what or why.
   void startDelayed();
   void planWanted(const flute_grinder::GrindGoal& goal);
-  void dryRunWanted(const flute_grinder::GrindGoal& goal);
   void startWanted(const flute_grinder::GrindGoal& goal);
   /// The operator has set the swivel for the job to be started. @param angle [rad].
   void swivelConfirmed(double angle);
@@ -143,7 +142,6 @@ class JobBox : public QWidget {
   QCheckBox* continue_;
   QLabel* zeros_;  ///< whether the zero points are the job's
   QPushButton* plan_;
-  QPushButton* dry_run_;
   QPlainTextEdit* verdict_;
   QPlainTextEdit* other_job_;
   QStackedWidget* answer_;  ///< verdict, or the job of somebody else

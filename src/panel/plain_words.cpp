@@ -4,6 +4,7 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/wheel_known.h"
 
 #include <cmath>
@@ -111,22 +112,23 @@ std::string describe(const flute_grinder::JobProgress& progress) {
          format(", at tooth %d, pass %d", progress.tooth + 1, progress.pass + 1);
 }
 
-std::string describe(const flute_grinder::Plan::Response& plan) {
-  std::string text;
+std::string describe(const flute_grinder::GrindResult& planned) {
+  const flute_grinder::PlanReport& plan = planned.plan;
   if (!plan.valid) {
-    text = "Cannot be ground:";
-    for (const std::string& reason : plan.reasons) text += "\n" + reason;
+    std::string text = "Cannot be ground:";
+    if (planned.reasons.empty()) text += "\n" + planned.error_string;
+    for (const flute_grinder::Reason& reason : planned.reasons) text += "\n" + reason.text;
     return text;
   }
-  text = "Takes " + duration(plan.duration) + ".\n";
-  if (plan.closest_bodies.size() == 2) {
-    text += "Closest: " + plan.closest_bodies[0] + " and " + plan.closest_bodies[1] +
-            format(", %.3f mm at X %.3f mm.\n", plan.closest_distance / kMillimetre, plan.closest_x / kMillimetre);
-  }
+  std::string text = "Takes " + duration(plan.statistics.duration) + ".\n";
+  const std::string closest = closestText(plan);
+  if (!closest.empty()) text += "Closest: " + closest + ".\n";
   for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
   text += feedText(plan.statistics);
-  for (const flute_grinder::FeedLimit& limit : plan.statistics.feed_limits) {
-    text += "\n" + limit.cause + format(", X %.3f to %.3f mm", limit.from_x / kMillimetre, limit.to_x / kMillimetre);
+  for (const flute_grinder::FeedLimit& limit : plan.statistics.feed_limits) text += "\n" + grinder::text(limit);
+  if (plan.shank_cut > 0) {
+    text +=
+        format("\nThe first pass cuts %.3f mm more than its infeed out of the shank.", plan.shank_cut / kMillimetre);
   }
   return text;
 }

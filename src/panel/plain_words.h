@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/GrindGoal.h"
+#include "flute_grinder/GrindResult.h"
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/Plan.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/machine/machine_state.h"
 
@@ -37,6 +37,6 @@ std::string describe(const flute_grinder::JobProgress& progress);
 
 /// What came of a plan: how long the job takes, what comes closest, why zero points do not fit, what cuts its feed; or
 /// its violations. A line for each.
-std::string describe(const flute_grinder::Plan::Response& plan);
+std::string describe(const flute_grinder::GrindResult& planned);
 
 }  // namespace grinder

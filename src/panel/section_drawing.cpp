@@ -85,7 +85,7 @@ class Painting {
     circle(section_.ground.radius, QPen(kThin, 1));
     circle(section_.asked_core, dashed(kThin));
     circle(ground, QPen(kMeasured, 1));
-    label(1, 1, {"core", mm(2 * ground) + " mm"}, section_.isWithin(ToolFigure::kCore), at(ground, -kPi / 4));
+    label(1, 1, {"core", mm(2 * ground) + " mm"}, section_.isWithin(ToolFigure::kCoreDiameter), at(ground, -kPi / 4));
     label(-1, 1, {"cutter", mm(2 * section_.ground.radius) + " mm"}, true, at(section_.ground.radius, -3 * kPi / 4));
   }
 

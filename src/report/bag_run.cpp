@@ -187,7 +187,7 @@ void BagRun::takeHead(const rosbag::MessageInstance& message) {
     Json& head = heads_[result->status.goal_id.id];
     head["outcome"] = outcomeOf(result->status.status);
     head["reason"] = result->result.error_string;
-    head["planned"] = plannedJson(grinder::fromMessage(result->result.statistics));
+    head["planned"] = plannedJson(grinder::fromMessage(result->result.plan.statistics));
   } else if (const auto machine = message.instantiate<flute_grinder::MachineInfo>()) {
     head_["machine"] = toJson(fromMessage(*machine));
   } else if (const auto offsets = message.instantiate<flute_grinder::WorkOffsets>()) {

@@ -68,7 +68,8 @@ ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& e
                       static_cast<std::size_t>(std::ceil(program.job()->cutter.flute_length / pathStep(program))))),
       measured_(steps_ + 1, -1) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
-    flutes_.push_back({program.job()->tooth_angles[i], program.helix(static_cast<int>(i)).curve, edges[i], {}});
+    const int tooth = static_cast<int>(i);
+    flutes_.push_back({program.job().strokeLaw(tooth).a, program.helix(tooth).curve, edges[i], {}});
   }
 }
 

@@ -93,8 +93,8 @@ class TestPlan(CommandLine):
         self.assertEqual('%.3f' % reported['closest']['distance_mm'], distance)
         # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
         self.assertAlmostEqual(reported['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
-        self.assertRegex(printed, r'cut out of the shank 0\.375 mm more than the infeed, .* X 30\.000 mm')
-        self.assertEqual(len(reported), 37)
+        self.assertRegex(printed, r"cut out of the shank 0\.375 mm more than the infeed, by the first pass beyond the flute's end")
+        self.assertEqual(len(reported), 20)
 
     def test_what_is_asked_stands_beside_what_is_ground(self):
         with open(PAPER_JOB) as file:
@@ -105,19 +105,21 @@ class TestPlan(CommandLine):
         job = self.write('core.yaml', text)
         reported, printed = self.json(0, 'plan', job)[0], self.grind(0, 'plan', job).stdout
         sections = self.json(0, 'simulate', job, '--sections', '9')[0]['sections']
+        figures = reported['figures']
         for name, asked, tolerance in (('rake', 8, 0.5), ('chordal_rake', 8, 5), ('spiral', 30, 4)):
             ground = [tooth[name + '_deg'] for section in sections for tooth in section['teeth']]
-            self.assertEqual([reported[name + end] for end in ('_min_deg', '_max_deg')], [min(ground), max(ground)])
-            self.assertEqual(reported[name + '_tolerance_deg'], tolerance)
+            self.assertEqual(figures[name]['ground_deg'], [min(ground), max(ground)])
+            for asks in figures[name]['asked_deg']:
+                self.assertAlmostEqual(asks, asked, delta=1e-9)
+            self.assertAlmostEqual(figures[name]['tolerance_deg'], tolerance, delta=1e-9)
             self.assertRegex(printed, r'(?m)^%s.* %.3f to %.3f deg; asked %g deg within %g deg$' % (
                 name.replace('_', ' '), min(ground), max(ground), asked, tolerance))
         ends = [sections[i]['core_diameter_mm'] for i in (0, -1)]
-        self.assertEqual([reported['core_diameter_mm'], reported['core_diameter_end_mm']], ends)
-        self.assertRegex(printed, r"(?m)^core  .* %.3f mm at X = 0, %.3f mm at the flute's end; "
-                                  r'asked 7 mm and 12\.3 mm within 0\.1 mm$' % tuple(ends))
-        for key, asked in (('asked_rake_deg', 8), ('asked_spiral_min_deg', 30), ('asked_spiral_max_deg', 30),
-                           ('asked_core_diameter_mm', 7), ('asked_core_diameter_end_mm', 12.3), ('core_tolerance_mm', 0.1)):
-            self.assertAlmostEqual(reported[key], asked, delta=1e-9)
+        core = figures['core_diameter']
+        self.assertEqual((core['ground_mm'], core['x_mm']), (ends, [0, sections[-1]['x_mm']]))
+        self.assertRegex(printed, r'(?m)^core diameter  .* %.3f to %.3f mm; asked 7 to 12\.3 mm within 0\.1 mm$' % tuple(ends))
+        for found, asked in zip((*core['asked_mm'], core['tolerance_mm']), (7, 12.3, 0.1)):
+            self.assertAlmostEqual(found, asked, delta=1e-9)
 
     def test_json_of_a_job_that_is_cut_and_one_that_is_refused(self):
         job = gc.job_file(self.path('fast.yaml'), feed_mm_min=10000)

@@ -58,11 +58,11 @@ class TestFigures(TestSetup):
                  'lead +%.3f mm' % found['lead_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
                  r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
                  r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),
-                 r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete X 0\.000 to 30\.000 mm',
-                 r"core +6\.800 mm at X = 0, 12\.050 mm at the flute's end; asked 6\.8 mm and 12\.05 mm within 0\.02 mm"]
+                 r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete +X 0\.000 to 30\.000 mm',
+                 r'core diameter +6\.800 to 12\.050 mm; asked 6\.8 to 12\.05 mm within 0\.02 mm']
         for name, key, asked in (('rake', 'rake', '8 deg within 0.5'), ('chordal rake', 'chordal_rake', '8 deg within 7'),
                                  ('spiral angle', 'spiral', '30 deg within 0.3')):
-            ends = found[key + '_min_deg'], found[key + '_max_deg']
+            ends = found['figures'][key]['ground_deg']
             lines.append(r'(?m)^  %s +%.3f to %.3f deg; asked %s deg$' % (name, *ends, asked))
         for line in lines:
             self.assertRegex(sheet, line)

@@ -119,7 +119,7 @@ class TestToolOfBag(unittest.TestCase):
     def radius_taken(self, tool):
         """Of the edges, in the middle of the flute [mm]."""
         section = tool['sections'][len(tool['sections']) // 2]
-        return [tooth['asked_radius_mm'] - tooth['radius_mm'] for tooth in section['teeth']]
+        return [(tooth['asked_edge_diameter_mm'] - tooth['edge_diameter_mm']) / 2 for tooth in section['teeth']]
 
     def test_whole_tool_passes(self):
         page = os.path.join(self.folder, 'tool.html')

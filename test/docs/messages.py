@@ -59,7 +59,7 @@ MESSAGES = {
     'src/node/atomic_file.cpp': (),
     'src/node/offset_server.cpp': ('wheel on the spindle:', 'a tool was clamped, by'),
     'src/node/offset_store.cpp': ("The grinder's work offsets: machine position - work position; .nan is unknown.",),
-    'src/node/plan_server.cpp': (),
+    'src/messages/plan_result.cpp': ('mm at X',),
     'src/node/probe_server.cpp': (),
     'src/node/prober.cpp': (),
     'src/node/probing_cycles.cpp': (),
@@ -78,6 +78,7 @@ MESSAGES = {
                                   "Turn rviz's view back to the tool; it does so by itself when another tool is shown"),
     'src/panel/grinder_link.cpp': (),
     'src/panel/plain_words.cpp': ('Zero points:', 'Swivel set to', 'Swivel at', 'The feed is never reached.', '; no axis limits it.', ', limited by',
+                                  r'\nThe first pass cuts', 'mm more than its infeed out of the shank.',
                                   ', at tooth', 'enable: the power is on', 'home: the drive is homing the axes',
                                   'reset: the fault is cleared; the power is commanded off', ': the wheel is being lifted',
                                   'resume: the job continues', 'the spindle is on; keep clear of the wheel',
@@ -93,7 +94,7 @@ MESSAGES = {
 
 # A comment, a character, a raw string, or a string, which alone has a group.
 TOKEN = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"\(.*?\)"|"((?:\\.|[^"\\])*)\"""", re.S)
-FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d|\{\w+\}')  # what printf, QString or the text of a reason fill in
+FORMAT = re.compile(r'%%|%-?[\d.]*l*[a-z]|%\d|\{[\w.]+\}')  # what printf, QString or the text of a reason fill in
 
 
 def read(path):

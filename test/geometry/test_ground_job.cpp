@@ -73,10 +73,12 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
         max_spiral = std::max(max_spiral, tooth.spiral.value());
       }
     }
-    EXPECT_NEAR(check.figures.rake.from, min_rake, 1e-4);  // with other wear
-    EXPECT_NEAR(check.figures.spiral.to, max_spiral, 1e-4);
-    EXPECT_NEAR(check.figures.core_diameter[0], 2 * cutter.section(0).core_radius, 1e-8);
-    EXPECT_NEAR(check.figures.core_diameter[1], 2 * cutter.section(job.cutter.flute_length).core_radius, 1e-8);
+    const auto figure = [&](ToolFigure which) { return *find(check.figures, which); };
+    EXPECT_NEAR(figure(ToolFigure::kRake).least.value, min_rake, 1e-4);  // with other wear
+    EXPECT_NEAR(figure(ToolFigure::kSpiral).largest.value, max_spiral, 1e-4);
+    for (const auto& at : {figure(ToolFigure::kCoreDiameter).least, figure(ToolFigure::kCoreDiameter).largest}) {
+      EXPECT_NEAR(at.value, 2 * cutter.section(at.x).core_radius, 1e-8);
+    }
     // Between the checked sections too.
     for (int i = 0; i <= 20; ++i) {
       for (const ToothSection& tooth : cutter.section(i / 20.0 * job.cutter.flute_length).teeth) {
@@ -317,7 +319,10 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
     const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
     min = std::min(min, off), max = std::max(max, off);
   }
-  EXPECT_NEAR(checkGroundCutter(ValidJob(job)).figures.edge, (max - min) / 2, 1e-4);
+  const CutterCheck check = checkGroundCutter(ValidJob(job));
+  const GroundFigure off = *find(check.figures, ToolFigure::kOffHelix);
+  EXPECT_NEAR(off.largest.value, (max - min) / 2, 1e-4);
+  EXPECT_NEAR(off.least.value, -off.largest.value, 1e-12);
 }
 
 // Straight flutes on a cylinder: the lower face passes 2.5 mm above the axis, so that the core is a hyperbola.

@@ -68,17 +68,19 @@ TEST(JobSetup, EveryShippedJobIsSolvedForItsWholeFlute) {
     const JobSetup setup = solved(job);
     const double asked = job.cutter.rake_angle / kDegree, length = job.cutter.flute_length;
     const double at_ends = rakeAt(setup.job, 0) - asked;
-    const auto& cores = setup.check.figures.core_diameter;
     EXPECT_NEAR(rakeAt(setup.job, length) - asked, at_ends, 0.005) << entry;
     EXPECT_LT(std::abs(at_ends) * kDegree, job.cutter.rake_tolerance) << entry;
-    EXPECT_NEAR((setup.check.figures.rake.from + setup.check.figures.rake.to) / 2 / kDegree, asked, 0.003) << entry;
+    const GroundFigure rake = *find(setup.check.figures, ToolFigure::kRake);
+    EXPECT_NEAR((rake.least.value + rake.largest.value) / 2 / kDegree, asked, 0.003) << entry;
     for (const double part : {0.1, 0.4, 0.55, 0.9}) {
       EXPECT_LE(std::abs(rakeAt(setup.job, part * length) - asked), std::abs(at_ends) + 0.005) << entry;
     }
     EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
     if (job.cutter.core_tolerance > 0) {
-      EXPECT_NEAR(cores[0], job.cutter.core_diameter, job.cutter.core_tolerance) << entry;
-      EXPECT_NEAR(cores[1], job.cutter.core_diameter_end, job.cutter.core_tolerance) << entry;
+      const GroundCutter cutter = groundCutterOf(ValidJob(setup.job));
+      const double tolerance = job.cutter.core_tolerance;
+      EXPECT_NEAR(2 * cutter.section(0).core_radius, job.cutter.core_diameter, tolerance) << entry;
+      EXPECT_NEAR(2 * cutter.section(length).core_radius, job.cutter.core_diameter_end, tolerance) << entry;
     }
     EXPECT_NEAR(setup.job.process.depth, job.process.depth, 2 * job.cutter.core_tolerance) << entry;
     EXPECT_GE(setup.job.process.overtravel_end, setup.overtravel[0]) << entry;
@@ -174,8 +176,9 @@ TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
   EXPECT_NEAR(setup.job.process.setup_swivel, equal.job.process.setup_swivel, 1e-4 * kDegree);
   const double low = rakeAt(setup.job, 0.011, 0), high = rakeAt(setup.job, 0.011, 1);
   EXPECT_NEAR((low + high) / 2, 8, 0.02);
-  EXPECT_NEAR(setup.check.figures.rake.from / kDegree, std::min(low, high), 0.01);
-  EXPECT_NEAR(setup.check.figures.rake.to / kDegree, std::max(low, high), 0.01);
+  const GroundFigure rake = *find(setup.check.figures, ToolFigure::kRake);
+  EXPECT_NEAR(rake.least.value / kDegree, std::min(low, high), 0.01);
+  EXPECT_NEAR(rake.largest.value / kDegree, std::max(low, high), 0.01);
 }
 
 TEST(JobSetup, WhatIsKeptIsNotWritten) {
@@ -310,11 +313,13 @@ TEST(JobSetup, TheLastBitOfANumberChoosesNoOtherSetup) {
       for (std::size_t k = 0; k < setup.edits.size(); ++k) {
         EXPECT_EQ(shaken.edits[k].value, setup.edits[k].value) << setup.edits[k].key << ", " << i;
       }
-      const CutterFigures &now = shaken.check.figures, &was = setup.check.figures;
-      EXPECT_NEAR(now.rake.from, was.rake.from, 1e-3 * job.cutter.rake_tolerance) << i;
-      EXPECT_NEAR(now.rake.to, was.rake.to, 1e-3 * job.cutter.rake_tolerance) << i;
-      EXPECT_NEAR(now.core_diameter[0], was.core_diameter[0], 1e-3 * job.cutter.core_tolerance) << i;
-      EXPECT_NEAR(now.core_diameter[1], was.core_diameter[1], 1e-3 * job.cutter.core_tolerance) << i;
+      ASSERT_EQ(shaken.check.figures.size(), setup.check.figures.size());
+      for (std::size_t k = 0; k < setup.check.figures.size(); ++k) {
+        const GroundFigure &now = shaken.check.figures[k], &was = setup.check.figures[k];
+        if (!was.asked) continue;
+        EXPECT_NEAR(now.least.value, was.least.value, 1e-3 * was.tolerance) << toString(was.figure) << i;
+        EXPECT_NEAR(now.largest.value, was.largest.value, 1e-3 * was.tolerance) << toString(was.figure) << i;
+      }
     }
   }
 }

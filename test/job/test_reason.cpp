@@ -95,8 +95,6 @@ const Row kRows[]{
      "max_job_duration = 3600 s: the job takes longer for 1 pass of its teeth; raise process.feed_mm_min or "
      "process.infeed_mm, or the parameter"},
     {Kind::kGivenUp, Unit::kNone, 0, 0, nothing, "given up while it was planned"},
-    {Kind::kGivenUp, Unit::kNone, 0, 0, [](Reason& r) { r.detail = "a goal came first"; },
-     "given up: a goal came first"},
     {Kind::kCollision, Unit::kMetre, 0, 0.001, [](Reason& r) { atStroke(r), r.detail = "wheel and collet"; },
      "collision_clearance = 1 mm: wheel and collet hit each other" + kPlace +
          "; stick the blank out further, and set the zero of X anew"},
@@ -175,9 +173,9 @@ const Row kRows[]{
     {Kind::kClearance, Unit::kRadian, kPi / 20, kPi / 18, ofThirdTooth(kPi / 360),
      "cutter.clearance_deg = 10 deg: tooth 3 is ground with 9 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
      "change the height or the swivel of the relief's set-up"},
-    {Kind::kUndercut, Unit::kDeviationMetre, 5e-6, 3e-6, ofThirdTooth(),
-     "the relief takes 5 um of the edge of tooth 3 at X = 12.3 mm; allowed: up to 3 um; grind the flutes with an edge "
-     "nearer to the asked helix"},
+    {Kind::kUndercut, Unit::kMetre, 9.98e-3, 10e-3, ofThirdTooth(6e-6),
+     "the relief leaves tooth 3 an edge diameter of 9.98 mm at X = 12.3 mm; allowed: within 0.006 mm of 10 mm; grind "
+     "the flutes with an edge nearer to the asked helix"},
     {Kind::kNextEdge, Unit::kRadian, kPi / 60, 0, ofThirdTooth(),
      "the relief's wheel reaches 3 deg into the tooth behind tooth 3 at X = 12.3 mm; change the height of the relief's "
      "set-up, or take a narrower wheel"},

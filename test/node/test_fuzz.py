@@ -160,7 +160,7 @@ class TestFuzz(unittest.TestCase):
         topics = [target for target in targets if isinstance(target, Topic)]
         names = {target.name for target in targets}
         self.assertLessEqual({'/clock', '/fuzzed/jog', '/fuzzed/grind/goal', '/fuzzed/grind/cancel', '/fuzzed/stop',
-                              '/fuzzed/plan', '/fuzzed/set_offset'}, names)
+                              '/fuzzed/jog_step', '/fuzzed/set_offset'}, names)
         gc.poll(lambda: all(topic.connected() for topic in topics), 'connections of the topics')
         for i in range(MESSAGES):
             target = fuzzer.chance.choice(targets)

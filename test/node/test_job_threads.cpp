@@ -66,7 +66,6 @@ class JobThreads : public ::testing::Test {
     auto answer = promise.get_future();
     Planner::Request request{job_};
     request.run.at = Eigen::Map<const Axes>(before.command.data());
-    request.for_goal = true;
     request.control = control;
     request.done = [&](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
     ASSERT_TRUE(planner_.submit(std::move(request)));
@@ -141,16 +140,6 @@ TEST_F(JobThreads, NoStopMissesItsJob) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 100000));
     if (random() % 3 == 0) return cancel();
     if (!gate_.hold()) loop_->postStop(E::kHold);
-  });
-  spawn(5, [this](std::mt19937& random) {
-    // As the plan service does; a goal goes first.
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
-    std::promise<void> done;
-    Planner::Request request{job_};
-    request.run.at = machineConfig().machine.park;
-    request.control = std::make_shared<PlanControl>();
-    request.done = [&](const std::shared_ptr<const PlannedJob>&) { done.set_value(); };
-    if (planner_.submit(std::move(request))) done.get_future().wait();
   });
   spawn(4, [this](std::mt19937& random) {
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 4000));

@@ -180,7 +180,7 @@ class TestKills(JournalTest):
         while kills < KILLS or begin > 0:
             tooth, pass_ = PASSES[begin]
             if planned is None:
-                planned = self.client.plan(gc.goal_of(self.job)).duration
+                planned = self.client.plan(gc.goal_of(self.job)).plan.statistics.duration
                 self.assertGreater(planned, 0)
             run = self.client.send(self.job, first_tooth=tooth, first_pass=pass_)
             self.client.wait_for(lambda: run.done or run.setpoints, 'the first setpoints')

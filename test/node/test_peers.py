@@ -16,7 +16,7 @@ import rosgraph
 import roslib.message
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult
-from flute_grinder.srv import Plan, PlanRequest
+from flute_grinder.srv import SetOffset, SetOffsetRequest
 
 import grinder_client as gc
 from grinder_client import MM, MM_MIN, X
@@ -79,24 +79,23 @@ class Attacked(unittest.TestCase):
         self.addCleanup(connection.close)
         return connection
 
-    def connect_to_plan(self):
-        connection = gc.connect_to_service('/attacked/plan', Plan, CALLER)
+    def connect_to_service(self):
+        connection = gc.connect_to_service('/attacked/set_offset', SetOffset, CALLER)
         self.addCleanup(connection.close)
         return connection
 
-    def plan(self):
-        """Calls ~plan over a connection of its own."""
-        request = PlanRequest(gc.goal_of(gc.paper()))
+    def is_answered(self):
+        """Calls a service over a connection of its own; during a job it refuses."""
         text = io.BytesIO()
-        request.serialize(text)
-        connection = self.connect_to_plan()
+        SetOffsetRequest().serialize(text)
+        connection = self.connect_to_service()
         connection.sendall(struct.pack('<I', text.tell()) + text.getvalue())
         return gc.receive(connection, 1) == b'\x01'
 
     def check(self):
         """The stroke goes on, whoever asks anew is answered, and memory is about as before."""
         self.assertEqual(self.proxy().getPid(CALLER)[2], self.node.process.pid)
-        self.assertTrue(self.plan())
+        self.assertTrue(self.is_answered())
         self.assertEqual(self.grinder.fresh_state().state, GrinderState.RUNNING)
         x = self.run_.last.position[X]
         self.run_.wait_past(lambda s: s.position[X] > x, 'the stroke to go on')
@@ -128,23 +127,10 @@ class TestPeers(Attacked):
         return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
 
     def test_header_and_request_that_claim_much(self):
-        for connect in (lambda: self.connect(self.tcpros_port), self.connect_to_plan):
+        for connect in (lambda: self.connect(self.tcpros_port), self.connect_to_service):
             for size in (300000000, 1000000000, 0xffffffff):
                 connect().sendall(struct.pack('<I', size))
             self.check()
-
-    def test_request_whose_counts_are_forged(self):
-        """roscpp makes room for what a count announces before it looks whether it is there."""
-        request = PlanRequest(gc.goal_of(gc.paper(tooth_angles=[0.125] * 4)))
-        text = io.BytesIO()
-        request.serialize(text)
-        angles = struct.pack('<I4d', 4, *request.goal.cutter.tooth_angles)
-        self.assertEqual(text.getvalue().count(angles), 1)
-        forged = text.getvalue().replace(angles, struct.pack('<I', 0x7fffffff) + angles[4:])
-        connection = self.connect_to_plan()
-        connection.sendall(struct.pack('<I', len(forged)) + forged)
-        self.assertEqual(gc.receive(connection, 1), b'\x00')
-        self.check()
 
     def test_what_follows_a_message_that_is_too_long_arrives(self):
         cancels = gc.publisher(self.addCleanup, '/attacked/grind/cancel', GoalID)

@@ -137,34 +137,12 @@ TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
   EXPECT_FALSE(second.isDone());
 }
 
-TEST(Planner, AGoalGoesFirst) {
+TEST(Planner, ItsEndGivesUpAndAnswers) {
   Planner planner(machine(), kShapes);
-  Asked plan(endless()), goal(endless()), other_goal(paper()), late(paper()), next(paper());
-  for (Asked* asked : {&goal, &other_goal}) asked->request.for_goal = true;
+  Asked plan(endless()), late(paper());
   ASSERT_TRUE(planner.submit(plan.request));
-  ASSERT_TRUE(planner.submit(goal.request));
-  EXPECT_FALSE(planner.submit(other_goal.request));
-  EXPECT_FALSE(planner.submit(late.request));
-  const auto given_up = plan.wait();
-  ASSERT_EQ(given_up->fault, PlanFault::kGivenUp);
-  EXPECT_EQ(text(given_up->reasons), "given up: a goal came first; plan again after it");
-  goal.waitForProgress();
-  EXPECT_FALSE(planner.submit(other_goal.request)) << "a goal gives way to none";
-  EXPECT_FALSE(planner.submit(late.request));
-  goal.request.control->give_up = true;
-  EXPECT_EQ(text(goal.wait()->reasons).find("a goal came first"), std::string::npos);
-  ASSERT_TRUE(planner.submit(next.request));
-  EXPECT_TRUE(next.wait()->good());
-}
-
-TEST(Planner, ItsEndGivesUpAndAnswersTheGoalThatWaitsToo) {
-  Planner planner(machine(), kShapes);
-  Asked plan(endless()), goal(endless()), late(paper());
-  goal.request.for_goal = true;
-  ASSERT_TRUE(planner.submit(plan.request));
-  ASSERT_TRUE(planner.submit(goal.request));
   planner.end();
-  ASSERT_TRUE(plan.isDone() && goal.isDone());
+  ASSERT_TRUE(plan.isDone());
   EXPECT_FALSE(plan.wait()->good());
   EXPECT_FALSE(planner.submit(late.request));
 }

@@ -41,10 +41,11 @@ class TestBadGoals(unittest.TestCase):
                 run = gc.Run(g, goal).wait()
                 self.assertEqual((run.status, run.code), ('REJECTED', getattr(GrindResult, code)), run.text)
                 plan = g.plan(goal)
-                self.assertFalse(plan.valid)
+                self.assertFalse(plan.plan.valid)
+                self.assertEqual(plan.error_string, run.text)
+                self.assertEqual('; '.join(reason.text for reason in plan.reasons), run.text)
                 for pattern in patterns:
                     self.assertRegex(run.text, pattern)
-                    self.assertRegex('; '.join(plan.reasons), pattern)
         self.assertEqual(g.fresh_state().state, GrinderState.READY)
         self.assertEqual(len(g.batches), batches)
         self.assertEqual({gc.axes_of(joint) for joint in g.joints[joints:]}, {tuple(rest)})
@@ -56,7 +57,7 @@ class TestBadGoals(unittest.TestCase):
             wrong = {float: 1e6, int: 200}.get(type(value))
             if wrong is not None:
                 plan = grinder().plan(gc.goal_of(dict(gc.MOTION, **{field: wrong})))
-                self.assertIn((field, wrong), [(reason.field, reason.value) for reason in plan.violations])
+                self.assertIn((field, wrong), [(reason.field, reason.value) for reason in plan.reasons])
 
 
 class TestInjection(unittest.TestCase):

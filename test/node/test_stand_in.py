@@ -3,7 +3,6 @@ long to plan, setpoints that were lost, those of others' jobs amid one's own, a 
 
 import copy
 import json
-import math
 import signal
 import socketserver
 import struct
@@ -14,13 +13,11 @@ import rosgraph
 import rospy
 from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
                                WorkOffsets, WrittenSetpoint)
-from flute_grinder.srv import Plan, PlanResponse, SetFeedOverride
+from flute_grinder.srv import SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
 
 import grinder_client as gc
 from grind_command import PAPER_JOB, RunTest
-
-NONE = [math.nan] * 2
 
 
 class StandIn:
@@ -36,8 +33,6 @@ class StandIn:
         self.setpoints = rospy.Publisher('grinder/setpoints', SetpointBatch, queue_size=1000)
         rospy.Subscriber('grinder/stop', Stop, lambda stop: self.stops.append(stop.request))
         rospy.Service('grinder/lift', Trigger, self.on_lift)
-        rospy.Service('grinder/plan', Plan, lambda _: PlanResponse(
-            valid=True, complete_from=0, complete_to=0.03, rake=NONE, chordal_rake=NONE, spiral_angle=NONE, edge=math.nan, core_diameter=NONE))
         self.server = actionlib.ActionServer('grinder/grind', GrindAction, self.on_goal, self.canceled.append, False)
         self.server.start()
         threading.Thread(target=self.publish, daemon=True).start()

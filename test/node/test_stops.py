@@ -14,7 +14,6 @@ import unittest
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
-from flute_grinder.srv import Plan
 from rosgraph_msgs.msg import Clock
 
 import grinder_client as gc
@@ -103,39 +102,22 @@ class TestPlanning(NodeTest):
         self.assertEqual(run.feedback[0].state, 'planning')
         return run
 
-    def test_goal_and_plan_beside_it_are_busy(self):
+    def test_goal_and_dry_run_beside_it_are_busy(self):
         batches = len(self.client.batches)
         first = self.send_planning()
         second = self.client.send(gc.SHORT).wait()
         self.assertEqual((second.status, second.code), ('REJECTED', GrindResult.BUSY))
-        answer = self.client.plan(gc.goal_of(gc.SHORT))
-        self.assertFalse(answer.valid)
-        self.assertRegex(answer.reasons[0], '^busy: ')
+        dry = self.client.send(gc.SHORT, dry_run=True).wait()
+        self.assertEqual((dry.status, dry.code), ('REJECTED', GrindResult.BUSY))
+        self.assertIn("'grind plan' plans without the grinder", dry.text)
         self.assertFalse(first.done)
         self.client.wait_for(lambda: any(0 < f.planned < 1 for f in first.feedback), 'how far it is')
         first.cancel()
         self.assertIn(first.wait().status, ENDED_BY_CANCEL)
         self.assert_rests()
         self.assertEqual(len(self.client.batches), batches)
-        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).valid)
+        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).plan.valid)
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
-
-    def test_job_can_be_stopped_while_others_plan(self):
-        """With many who ask for plans at once, of whom one is served."""
-        run = self.send_into_stroke()
-        plan = rospy.ServiceProxy('/%s/plan' % self.node.name, Plan)
-        goal = gc.goal_of(gc.paper(feed=2 * MM_MIN))
-        with contextlib.ExitStack() as stack:
-            for _ in range(4):
-                stack.enter_context(self.in_background(lambda: plan(goal)))
-            self.assertTrue(self.client.hold().success)
-            self.client.wait_state(GrinderState.HELD)
-            self.assertTrue(self.client.resume().success)
-            self.client.wait_state(GrinderState.RUNNING)
-            run.cancel()
-            run.wait_complete()
-        self.assertEqual(run.status, 'PREEMPTED')
-        self.check_stopped_and_lifted(run)
 
     def test_hold_of_a_job_that_is_planned_latches(self):
         run = self.send_planning(LONG_TO_PLAN)
@@ -154,27 +136,19 @@ class TestPlanning(NodeTest):
         self.assertIn(run.status, ENDED_BY_CANCEL)
 
     def test_no_cancel_is_lost(self):
-        """Goals that are canceled at any moment, while another client plans."""
+        """Goals that are canceled at any moment."""
         chance = random.Random(SEED)
         print('cancels with seed %d' % SEED)
         # By the topic: actionlib's client waits for ever for the result of a goal that ended as it was canceled.
         results = gc.received(self.addCleanup, '/%s/grind/result' % self.node.name, GrindActionResult)
-        plan = rospy.ServiceProxy('/%s/plan' % self.node.name, Plan)
-        goal = gc.goal_of(gc.SHORT)
-        canceled = 0
-        with self.in_background(lambda: plan(goal)):
-            while canceled < 80:
-                run = self.client.send(SLOW)
-                # No wait for anything: it is canceled at a moment that nothing decides.
-                time.sleep(chance.uniform(0, 0.01))
-                run.cancel()
-                end, = gc.poll(lambda: [r for r in results if r.status.goal_id.id == run.id], 'the end of the goal')
-                if end.status.status == GoalStatus.REJECTED:
-                    self.assertEqual(end.result.error_code, GrindResult.BUSY)
-                    continue
-                self.assertIn(end.status.status, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
-                canceled += 1
-                gc.poll(lambda: self.client.fresh_state().state == GrinderState.READY, 'the stop')
+        for _ in range(80):
+            run = self.client.send(SLOW)
+            # No wait for anything: it is canceled at a moment that nothing decides.
+            time.sleep(chance.uniform(0, 0.01))
+            run.cancel()
+            end, = gc.poll(lambda: [r for r in results if r.status.goal_id.id == run.id], 'the end of the goal')
+            self.assertIn(end.status.status, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
+            gc.poll(lambda: self.client.fresh_state().state == GrinderState.READY, 'the stop')
 
 
 class TestTheWayDown(NodeTest):

@@ -55,7 +55,7 @@ class TestPaperJob(unittest.TestCase):
         # The very last may be overtaken by the result, and is then not handed on.
         self.assertGreater(feedback[-1].job_fraction, 0.9)
         for f in feedback:
-            left = (1 - f.job_fraction) * self.job_run.result.statistics.duration
+            left = (1 - f.job_fraction) * self.job_run.result.plan.statistics.duration
             self.assertAlmostEqual(f.remaining_time, left, delta=1e-9)
         for name, sign in (('job_fraction', 1), ('stroke_fraction', 1), ('remaining_time', -1)):
             values = [getattr(f, name) * sign for f in feedback]
@@ -72,12 +72,14 @@ class TestPaperJob(unittest.TestCase):
 
 class TestDryRun(unittest.TestCase):
     def test_nothing_moves_and_the_statistics_are_those_of_the_run(self):
-        planned = stream().result.statistics
+        planned = stream().result.plan.statistics
         positions = grinder().make_ready_at_park()
         batches, joints = len(grinder().batches), len(grinder().joints)
         run = grinder().send(gc.MOTION, dry_run=True).wait()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
-        self.assertEqual(run.result.statistics, planned)
+        self.assertEqual(run.result.plan.statistics, planned)
+        self.assertTrue(run.result.plan.valid)
+        self.assertEqual(run.result.reasons, [])
         self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertEqual(len(grinder().batches), batches)
         self.assertEqual({gc.axes_of(joint) for joint in grinder().joints[joints:]}, {tuple(positions)})
@@ -88,15 +90,6 @@ class TestDryRun(unittest.TestCase):
         run = grinder().send(gc.MOTION, dry_run=True).wait()
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
-
-    def test_plan_service_reports_the_same(self):
-        planned = stream().result.statistics
-        grinder().make_ready_at_park()
-        plan = grinder().plan(gc.goal_of(gc.MOTION))
-        self.assertTrue(plan.valid)
-        self.assertEqual(plan.reasons, [])
-        self.assertEqual(plan.statistics, planned)
-        self.assertEqual(plan.duration, planned.duration)
 
 
 class TestMarkers(unittest.TestCase):

@@ -220,7 +220,7 @@ class TestMasterWatch(unittest.TestCase):
         self.api = self.master.api
         self.node = self.start(gc.program('grinder'), '__name:=' + NODE[1:])
         # The action's goals are what it registers last.
-        wait_for(lambda: NODE + '/grind/goal' in self.registered()['subscribers'] and self.api.lookupService(NODE + '/plan'),
+        wait_for(lambda: NODE + '/grind/goal' in self.registered()['subscribers'] and self.api.lookupService(NODE + '/set_offset'),
                  'node as it is once it has started')
         self.node_api = xmlrpc.client.ServerProxy(self.api.lookupNode(NODE))
 
@@ -283,7 +283,7 @@ class TestMasterWatch(unittest.TestCase):
             own.unregisterPublisher(topic, uri)
         for topic in before['subscribers']:
             own.unregisterSubscriber(topic, uri)
-        service_uri = self.api.lookupService(NODE + '/plan')
+        service_uri = self.api.lookupService(NODE + '/set_offset')
         for service in before['services']:
             own.unregisterService(service, service_uri)
         wait_for(lambda: self.registered() == before, 'node as it was')

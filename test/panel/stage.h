@@ -10,7 +10,6 @@
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/MachineInfo.h"
-#include "flute_grinder/Plan.h"
 #include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/SetOffset.h"
@@ -52,13 +51,6 @@ class Stage {
     job_ = nh_.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
     jog_refusals_ = nh_.advertise<std_msgs::String>("jog_refusal", 10);
     joint_states_ = ros::NodeHandle("cell").advertise<sensor_msgs::JointState>("joint_states", 10);
-    serve<flute_grinder::Plan>(
-        "plan",
-        [this](const auto& request, auto& response) {
-          plans.push_back(request.goal);
-          response = plan;
-        },
-        &Stage::plan_hangs);
     serve<std_srvs::Trigger>(
         "resume", [this](const auto&, auto&) { ++resumes; }, &Stage::resume_hangs);
     for (const bool on : {true, false}) {
@@ -104,7 +96,7 @@ class Stage {
       answer(response, swivel_refusal);
       if (response.success) state.swivel = request.swivel;
     });
-    goals_ = listen("grind/goal", goals);
+    goals_ = nh_.subscribe<flute_grinder::GrindActionGoal>("grind/goal", 100, &Stage::onGoal, this);
     jogs_ = listen("jog", jogs);
     stops_ = nh_.subscribe<flute_grinder::Stop>("stop", 10, [this](const flute_grinder::Stop::ConstPtr& stop) {
       change([&] { stops.push_back(stop->request); });
@@ -148,7 +140,7 @@ class Stage {
   }
   /// Lets a call that hangs come to its end.
   void release() {
-    change([&] { resume_hangs = plan_hangs = false; });
+    change([&] { resume_hangs = false; });
   }
   void shutResults() { results_.shutdown(); }
   void openResults() { results_ = nh_.advertise<flute_grinder::GrindActionResult>("grind/result", 10); }
@@ -200,15 +192,15 @@ class Stage {
   bool silent = false;
   bool without_feedback = false;
   bool resume_hangs = false;
-  bool plan_hangs = false;
+  bool plan_hangs = false;  ///< whether a dry run has no result
   int resumes = 0;
   Names triggers;               ///< that were asked for
   std::string trigger_refusal;  ///< of what only says so; empty to accept it
   std::string swivel_refusal;   ///< of a confirmation; empty to accept it
   std::vector<double> swivels;
   std::vector<double> overrides;
-  std::vector<flute_grinder::GrindGoal> plans;  ///< that were asked for
-  std::vector<flute_grinder::GrindActionGoal> goals;
+  std::vector<flute_grinder::GrindActionGoal> plans;  ///< dry runs
+  std::vector<flute_grinder::GrindActionGoal> goals;  ///< all others
   std::vector<int> stops;
   std::vector<flute_grinder::JogStep::Request> steps;
   std::string step_refusal;
@@ -219,10 +211,15 @@ class Stage {
   std::vector<flute_grinder::SetOffset::Request> offsets_set;
   std::vector<flute_grinder::ConfirmWheel::Request> wheels;
   int reclamped = 0;
-  std::string goal_id;  ///< of the progress
-  flute_grinder::Plan::Response plan;
+  std::string goal_id;                 ///< of the progress
+  flute_grinder::GrindResult planned;  ///< of a dry run
 
  private:
+  void onGoal(const flute_grinder::GrindActionGoal::ConstPtr& goal) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    (goal->goal.dry_run ? plans : goals).push_back(*goal);
+    if (goal->goal.dry_run && !plan_hangs) end(goal->goal_id.id, planned);
+  }
   void publish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (silent) return;
@@ -280,7 +277,7 @@ class Staged : public ::testing::Test {
 class OnStage : public Staged {
  protected:
   OnStage() {
-    stage.change([&] { stage.plan.valid = 1; });
+    stage.change([&] { stage.planned.plan.valid = 1; });
     stage.be("ready");
   }
   /// Changes the grinder, and waits until the panel knows: what is reported later shows.

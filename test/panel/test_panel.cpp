@@ -58,7 +58,7 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     EXPECT_TRUE(panel.shows("meaning", row.meaning));
     const std::set<std::string> without_a_job{"disabled", "ready", "homing", "fault", "lifting", "jogging"};
     const bool in_job = without_a_job.count(row.name) == 0;
-    for (const char* of_a_new_job : {"choose", "plan", "dry_run"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
+    for (const char* of_a_new_job : {"choose", "plan"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
     EXPECT_EQ(panel.enabled("stroke"), in_job);
     EXPECT_EQ(panel.label("place"), in_job ? "Tooth 4, pass 20" : "No job runs");
     EXPECT_EQ(panel.label("feed"), in_job ? "600 mm/min" : "");
@@ -87,7 +87,7 @@ TEST_F(Staged, SilenceDisablesEveryButtonButTheStopsAndEndsAllProgress) {
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_EQ(panel.enabledRequests(), (Names{"disable", "hold", "cancel"}));
-  for (const char* name : {"choose", "plan", "dry_run", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
+  for (const char* name : {"choose", "plan", "override"}) EXPECT_FALSE(panel.enabled(name)) << name;
   EXPECT_EQ(panel.label("meaning"), "No grinder answers as /cell/stage. Does its node run?");
   for (const char* unknown : {"place", "feed", "override_value"}) EXPECT_EQ(panel.label(unknown), "") << unknown;
   EXPECT_EQ(progress(), "Stroke 0 %, Job 0 %");
@@ -401,22 +401,24 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
   limit.from_x = 0.003;
   limit.to_x = 0.0052;
   stage.change([&] {
-    stage.plan.duration = 725;
-    stage.plan.statistics.min_feed = 0.4 / 60;
-    stage.plan.statistics.max_feed = 0.6 / 60;
-    stage.plan.statistics.feed_limits = {limit};
+    stage.planned.plan.statistics.duration = 725;
+    stage.planned.plan.statistics.min_feed = 0.4 / 60;
+    stage.planned.plan.statistics.max_feed = 0.6 / 60;
+    stage.planned.plan.statistics.feed_limits = {limit};
+    stage.planned.plan.shank_cut = 0.375e-3;
   });
   panel.plan();
   EXPECT_EQ(verdict(),
             "Takes 12:05 min.\nFeed 400.0 to 600.0 mm/min, limited by\naxis A velocity, X 3.000 to 5.200 mm" + shank);
   stage.change([&] {
-    stage.plan = {};
-    stage.plan.valid = 1;
-    stage.plan.duration = 7.03;
-    stage.plan.closest_bodies = {"wheel", "collet"};
-    stage.plan.closest_distance = 1.4214e-3;
-    stage.plan.closest_x = 0.037;
-    stage.plan.warnings = {"X was never set; Y was never set"};
+    stage.planned = {};
+    stage.planned.plan.valid = 1;
+    stage.planned.plan.statistics.duration = 7.03;
+    stage.planned.plan.closest_bodies = {"wheel", "collet"};
+    stage.planned.plan.closest_distance = 1.4214e-3;
+    stage.planned.plan.closest_x = 0.037;
+    stage.planned.plan.warnings = {"X was never set; Y was never set"};
+    stage.planned.plan.shank_cut = 0.375e-3;
   });
   panel.press("plan");
   const std::string good =
@@ -424,33 +426,31 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
       "Zero points: X was never set; Y was never set.\nThe feed is never reached." +
       shank;
   WAIT_FOR(verdict() == good);
-  panel.press("dry_run");
-  WAIT_FOR(verdict() == "Planning ..." && goals().size() == 1);
-  flute_grinder::GrindResult dry;
-  dry.error_string = "planned and checked; nothing moved";
-  stage.end(goals().at(0).goal_id.id, dry);
-  WAIT_FOR(verdict() == good && panel.enabled("start"));
-  EXPECT_EQ(said(panel), "Planned and checked; nothing moved");
-  panel.picture("dry_run");
   const std::vector<std::string> reasons{
       "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
       "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
-  stage.change([&] { stage.plan.valid = 0, stage.plan.reasons = reasons; });
+  stage.change([&] {
+    stage.planned.plan.valid = 0;
+    for (const std::string& reason : reasons) stage.planned.reasons.emplace_back().text = reason;
+  });
   panel.press("plan");
   WAIT_FOR(verdict() == "Cannot be ground:\n" + reasons[0] + '\n' + reasons[1]);
   WAIT_FOR(panel.enabledRequests() == (Names{"disable", "home"}));
   panel.picture("cannot_be_ground");
 }
 
-TEST_F(OnStage, ADryRunCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
-  panel.press("dry_run");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_EQ(goals().at(0).goal.job_name, "paper.yaml");
+TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
+  stage.change([&] { stage.plan_hangs = true; });
+  panel.press("plan");
+  WAIT_FOR(stage.get(&Stage::plans).size() == 1);
+  EXPECT_EQ(panel.text("verdict"), "Planning ...");
+  const flute_grinder::GrindActionGoal goal = stage.get(&Stage::plans).at(0);
+  EXPECT_EQ(goal.goal.job_name, "paper.yaml");
   WAIT_FOR(panel.enabled("cancel"));
   flute_grinder::GrindResult refused;
-  refused.error_code = flute_grinder::GrindResult::LIMIT_VIOLATED;
-  refused.error_string = "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min";
-  stage.end(goals().at(0).goal_id.id, refused);
+  refused.error_code = flute_grinder::GrindResult::BUSY;
+  refused.error_string = "a goal is running";
+  stage.end(goal.goal_id.id, refused);
   WAIT_FOR(panel.text("verdict") == "Cannot be ground:\n" + refused.error_string);
   EXPECT_FALSE(panel.enabled("start"));
   WAIT_FOR(!panel.enabled("cancel"));
@@ -654,7 +654,7 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   const QTemporaryDir folder;
   const QString path = changedJob(kPaper, folder.filePath("job.yaml"), {});
   Panel panel("cell/stage", path);
-  stage.change([&] { stage.plan.valid = 1; });
+  stage.change([&] { stage.planned.plan.valid = 1; });
   stage.be("ready");
   panel.plan();
   changedJob(path, path, {{"depth_mm: 1.6", "depth_mm: 1.5"}});
@@ -662,10 +662,10 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   EXPECT_TRUE(panel.says("verdict", "Plan it again"));
   WAIT_FOR(!panel.enabled("start"));
   // A goal that was sent after all would have come before this.
-  panel.click("dry_run");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goals().at(0).goal.dry_run);
-  EXPECT_DOUBLE_EQ(goals().at(0).goal.process.depth, 1.5e-3);
+  panel.click("plan");
+  WAIT_FOR(stage.get(&Stage::plans).size() == 2);
+  EXPECT_TRUE(goals().empty());
+  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.process.depth, 1.5e-3);
 }
 
 TEST_F(OnStage, ConfigurationIsSavedAndLoaded) {

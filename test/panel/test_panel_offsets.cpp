@@ -12,7 +12,7 @@ namespace grinder::test_panel_offsets {
 class ZeroPoints : public OnStage {
  protected:
   void SetUp() override {
-    stage.change([&] { stage.plan.duration = 12; });
+    stage.change([&] { stage.planned.plan.statistics.duration = 12; });
     panel.plan();
   }
 

@@ -9,7 +9,7 @@ const QString kReamer = kPackage + "/jobs/taper_reamer_d6_t6.yaml";
 class Operation : public Staged {
  protected:
   void SetUp() override {
-    stage.change([&] { stage.plan.valid = 1, stage.state.swivel = 13.104 * M_PI / 180; });
+    stage.change([&] { stage.planned.plan.valid = 1, stage.state.swivel = 13.104 * M_PI / 180; });
     stage.be("ready");
   }
   bool says(const std::string& begin) { return panel.text("verdict").find(begin) == 0; }
@@ -25,7 +25,7 @@ TEST_F(Operation, NoneIsChosenAtFirst) {
   for (int i = 0; i < box.count(); ++i) offered << box.itemText(i);
   EXPECT_EQ(offered, (QStringList{"choose", "1 flute", "2 primary relief", "3 secondary relief"}));
   EXPECT_EQ(box.currentText(), "choose");
-  for (const char* name : {"plan", "dry_run", "setup", "start"}) EXPECT_FALSE(panel.enabled(name)) << name;
+  for (const char* name : {"plan", "setup", "start"}) EXPECT_FALSE(panel.enabled(name)) << name;
   EXPECT_EQ(panel.text("verdict"), "Choose the operation first.");
   EXPECT_EQ(panel.label("zero_points"), "Zero points: not known");
   panel.picture("operation_to_choose");
@@ -42,7 +42,7 @@ TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
   panel.picture("operation_chosen");
   const flute_grinder::GrindGoal primary = goalFromFile(kReamer.toStdString(), "primary");
   ASSERT_EQ(primary.operation, 1);
-  EXPECT_EQ(stage.get(&Stage::plans).back(), primary);
+  EXPECT_EQ(stage.get(&Stage::plans).back().goal, primary);
   panel.chooseOperation("3 secondary relief");
   WAIT_FOR(!panel.enabled("start"));
   EXPECT_TRUE(says("Not planned yet."));
@@ -64,7 +64,7 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   changedJob(kReamer, path, {{"height_mm: -3.864", "height_mm: -3.863"}});
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
-  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).process.setup_height, -3.863e-3);
+  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.process.setup_height, -3.863e-3);
   EXPECT_EQ(box.currentText(), "2 primary relief");
   WAIT_FOR(says("Takes "));
   changedJob(
@@ -96,8 +96,8 @@ TEST_F(Operation, ThatWasLeftIsTakenByAClick) {
   WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
   EXPECT_TRUE(go_on.isChecked());
   panel.plan();
-  EXPECT_EQ(stage.get([&] { return stage.plans.back().operation; }), 1);
-  EXPECT_EQ(stage.get([&] { return stage.plans.back().first_pass; }), 2);
+  EXPECT_EQ(stage.get([&] { return stage.plans.back().goal.operation; }), 1);
+  EXPECT_EQ(stage.get([&] { return stage.plans.back().goal.first_pass; }), 2);
 }
 
 TEST_F(Operation, DecidesForWhichWheelAnAxisIsTouchedOff) {

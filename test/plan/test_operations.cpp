@@ -171,8 +171,8 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_TRUE(checkOf(reamer("primary")).reasons.empty());
   const CutterCheck good = checkOf(reamer("secondary"));
   EXPECT_TRUE(good.reasons.empty()) << text(good.reasons);
-  EXPECT_NEAR(good.figures.clearance.from / kDegree, 10, 0.02);
-  EXPECT_NEAR(good.figures.relief.from / kMillimetre, 0.3, 0.02);
+  EXPECT_NEAR(find(good.figures, ToolFigure::kClearance)->least.value / kDegree, 10, 0.02);
+  EXPECT_NEAR(find(good.figures, ToolFigure::kPrimary)->least.value / kMillimetre, 0.3, 0.02);
   // The edge near the wheel's lower face: so much of the rim is behind it that it reaches the next tooth.
   const GrindJob secondary = reamer("secondary");
   const double per_width = std::cos(secondary.process.setup_swivel);
@@ -208,8 +208,9 @@ TEST(Operations, AReliefFollowsTheEdgeAsItIsGround) {
     job.operations[0].process.setup_lead += 3e-3;
     const CutterCheck check = checkOf(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
-    EXPECT_GT(check.figures.edge, 0.9 * kDegree) << name;
-    EXPECT_NEAR(check.figures.clearance.from, check.figures.clearance.to, 0.02 * kDegree) << name;
+    EXPECT_GT(find(check.figures, ToolFigure::kOffHelix)->largest.value, 0.9 * kDegree) << name;
+    const GroundFigure clearance = *find(check.figures, ToolFigure::kClearance);
+    EXPECT_NEAR(clearance.least.value, clearance.largest.value, 0.02 * kDegree) << name;
   }
 }
 
@@ -255,7 +256,7 @@ TEST(Operations, AReliefThatTakesTheCoreIsRefused) {
   EXPECT_TRUE(with_contact(-1e-3, cutter.core_tolerance).reasons.empty());
   const CutterCheck deep = with_contact(-2e-3, cutter.core_tolerance);
   ASSERT_EQ(kindsOf(deep), std::set<ReasonKind>{ReasonKind::kCoreSize}) << text(deep.reasons);
-  EXPECT_EQ(deep.figures.core_diameter[0], deep.reasons.front().value);
+  EXPECT_LE(find(deep.figures, ToolFigure::kCoreDiameter)->least.value, deep.reasons.front().value);
   EXPECT_LT(deep.reasons.front().value, cutter.core_diameter - 0.5e-3);
   EXPECT_NE(text(deep.reasons).find("change the height or the swivel of the relief's set-up"), std::string::npos);
   EXPECT_TRUE(with_contact(-2e-3, 0.6e-3).reasons.empty());

@@ -46,7 +46,8 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   EXPECT_EQ(whole.program->job().zCorrectionOf(0).coefficients, with_law.zCorrectionOf(0).coefficients);
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
   EXPECT_EQ(whole.complete->to, job.cutter.flute_length);
-  EXPECT_EQ(whole.figures.rake.to, checkGroundCutter(with_law).figures.rake.to);
+  const CutterFigures figures = checkGroundCutter(with_law).figures;
+  EXPECT_EQ(find(whole.figures, ToolFigure::kRake)->largest.value, find(figures, ToolFigure::kRake)->largest.value);
   const auto closest = checkCollision(*whole.program, shippedShapes()).closest;
   EXPECT_EQ(whole.closest->distance, closest->distance);
   EXPECT_EQ(whole.closest->leg, closest->leg);
@@ -70,7 +71,7 @@ TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {
   EXPECT_EQ(whole.program, nullptr);
   ASSERT_EQ(whole.reasons.size(), 1u);
   EXPECT_EQ(whole.reasons[0].kind, ReasonKind::kUnevenRake);
-  EXPECT_TRUE(std::isnan(whole.figures.core_diameter[0]));
+  EXPECT_TRUE(whole.figures.empty());
 }
 
 TEST(PlannedJob, IsGivenUpByItsWatch) {

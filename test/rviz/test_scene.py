@@ -190,9 +190,9 @@ class TestScene(unittest.TestCase):
         gc.poll(lambda: rviz.legends[-1].max_error > 0, 'the legend of what is measured')
         rim = [p for m in rviz.last('scene', 'wheel') for p in m.points]
         self.assertAlmostEqual(max(numpy.hypot(p.y, p.z) for p in rim), 50 * MM - JOB['process.wheel_wear'], delta=1e-9)
-        # The plan of another job does not change what is shown of this one.
+        # A dry run of another job is refused, and does not change what is shown of this one.
         scenes = len(rviz.messages['scene'])
-        self.assertTrue(g.plan(gc.goal_of(gc.PAPER)).valid)
+        self.assertFalse(g.plan(gc.goal_of(gc.PAPER)).plan.valid)
         g.fresh_state()
         self.assertEqual(len(rviz.messages['scene']), scenes)
         # A canceled job keeps what was ground, as long as it is continued.

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"
 
@@ -258,6 +259,24 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
       EXPECT_LT(distance(point(p.x, p.y * to_surface, p.z * to_surface), groundAt(cutter, p.x)), kLinear);
     }
     EXPECT_GT(on_cutter, 100);
+  }
+}
+
+// A relief's stroke turns the edge away from the wheel's lowest point.
+TEST(PathMarkers, OfAReliefAreOnTheEdgeAndMeasureNoErrorOfAPerfectDrive) {
+  for (const char* operation : {"primary", "secondary"}) {
+    SCOPED_TRACE(operation);
+    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation)));
+    const Machine machine = test_support::roomyMachine();
+    const GrindProgram of_job(job, machine, machine.park);
+    const GroundCutter cutter = groundCutterOf(job);
+    ToolPath edges(of_job, edgesOf(of_job));
+    SetpointStream stream(of_job);
+    for (Setpoint p; stream.next(p);) edges.add(p, p.position);
+    EXPECT_GT(edges.maxMeasured(), 0);
+    EXPECT_LT(edges.maxMeasured(), job->interpolation.tolerance);
+    const std::vector<geometry_msgs::Point> edge = edges.markers().markers.at(1).points;
+    for (std::size_t i = 0; i < edge.size(); i += 100) EXPECT_LT(distance(edge[i], groundAt(cutter, edge[i].x)), 5e-6);
   }
 }
 

@@ -2,10 +2,10 @@
 
 #include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/geometry/ground_edge.h"
+#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/job/reason.h"
 
-#include <array>
-#include <limits>
+#include <optional>
 #include <vector>
 
 namespace grinder {
@@ -37,25 +37,11 @@ GroundCutter groundCutterOf(const ValidJob& job);
 /// The cutter that the operations ahead of a relief leave, as planned. @param job of a relief, from withLaws().
 GroundCutter groundBefore(const ValidJob& job);
 
-/// What a ground cutter was measured to be over its flutes, of all teeth; NaN where there was none to measure.
-struct CutterFigures {
-  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  Range rake{kNone, kNone};          ///< minimum and maximum, where the flutes are complete [rad]
-  Range chordal_rake{kNone, kNone};  ///< the same of the chords [rad]
-  Range spiral{kNone, kNone};        ///< the same of the edge [rad]
-  /// How far an edge departs from the asked helix, turned to where it departs the least either way [rad].
-  double edge = kNone;
-  std::array<double, 2> core_diameter{kNone, kNone};  ///< at X = 0 and at the flute's end [m]
-  Range clearance{kNone, kNone};                      ///< at the edges, of a relief [rad]
-  Range relief{kNone, kNone};                         ///< width of the primary relief [m]
-  double land = kNone;                                ///< minimum, along the circle; 0 if a tooth has none [m]
-};
-
 /// What a ground cutter was found to be.
 struct CutterCheck {
   std::optional<Range> complete;  ///< where its flutes are complete; nothing if they are not amid the flute
   std::vector<Reason> reasons;    ///< why it is refused
-  CutterFigures figures;
+  CutterFigures figures;          ///< of its flutes and reliefs
   std::vector<GroundEdge> edges;  ///< of the teeth
 };
 

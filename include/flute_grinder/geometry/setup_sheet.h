@@ -4,22 +4,12 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace grinder {
 
 /// The height of a face of the wheel above the cutter's axis at Z = 0, where it is deepest in the cutter [m].
 double upperFaceHeight(const GrindJob& job);
 double lowerFaceHeight(const GrindJob& job);
-
-/// What a tool gets beside what its job asks for, in mm and deg.
-struct AskedAndGround {
-  const char* name = "";
-  std::string text;
-};
-
-/// Rake, spiral angle, edge and core of a tool. @param ground figures that are NaN are left out.
-std::vector<AskedAndGround> askedAndGround(const GrindJob& job, const CutterFigures& ground);
 
 /// The set-up sheet for the operator, in mm and deg: what to set, what to touch and what the axes then read, what comes
 /// out, and what limits it.

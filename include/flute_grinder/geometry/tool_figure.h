@@ -7,114 +7,102 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 /// @file
-/// The figures of a tool that a job asks for within a tolerance: what each is, asked, and measured of the ground
-/// cutter. Checks and outputs go through this table.
+/// The figures of a tool: what each is, what a job asks for within which tolerance, and what is measured of the ground
+/// cutter. Checks and outputs go through this table. A new figure is a row here and its measurement in the source.
 namespace grinder {
+
+enum class ToolFigure : std::uint8_t {
+  kRake,
+  kChordalRake,
+  kSpiral,
+  kOffHelix,
+  kCoreDiameter,
+  kLand,
+  kClearance,
+  kSecondClearance,
+  kPrimary,
+  kEdgeDiameter,
+};
+
+/// The name is that in files and, in capitals, that of the message's constant.
+struct ToolFigureRow : EnumRow<ToolFigure> {
+  const char* words = "";  ///< in texts
+  Unit unit = Unit::kNone;
+  ReasonKind reason = ReasonKind::kNone;  ///< why a plan is refused for it; none if its check is another one
+  bool of_relief = false;                 ///< judged of a relief, else of flutes
+  bool of_complete = false;               ///< counts where the flute is complete, and nowhere else
+};
+
+inline constexpr ToolFigureRow kToolFigures[]{
+    {{ToolFigure::kRake, "rake"}, "rake", Unit::kRadian, ReasonKind::kRake, false, true},
+    {{ToolFigure::kChordalRake, "chordal_rake"}, "chordal rake", Unit::kRadian, ReasonKind::kChordalRake, false, true},
+    {{ToolFigure::kSpiral, "spiral"}, "spiral angle", Unit::kRadian, ReasonKind::kSpiral, false, true},
+    {{ToolFigure::kOffHelix, "off_helix"}, "off the helix", Unit::kRadian, ReasonKind::kNone, false, true},
+    {{ToolFigure::kCoreDiameter, "core_diameter"}, "core diameter", Unit::kMetre},
+    {{ToolFigure::kLand, "land"}, "land", Unit::kMetre},
+    {{ToolFigure::kClearance, "clearance"}, "clearance", Unit::kRadian, ReasonKind::kClearance, true},
+    {{ToolFigure::kSecondClearance, "second_clearance"},
+     "second clearance",
+     Unit::kRadian,
+     ReasonKind::kSecondClearance,
+     true},
+    {{ToolFigure::kPrimary, "primary"}, "primary relief", Unit::kMetre, ReasonKind::kPrimaryLand, true},
+    {{ToolFigure::kEdgeDiameter, "edge_diameter"}, "edge diameter", Unit::kMetre, ReasonKind::kUndercut, true},
+};
+constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 
 /// A tooth in a section of the cutter that a job grinds.
 struct FigurePlace {
   const ValidJob& job;
   const GroundSection& section;
   std::size_t number;  ///< of the tooth, from 0
+  /// All sections that are measured, for a figure that hangs on them; null if only this one is known.
+  const std::vector<GroundSection>* tool = nullptr;
 
   const ToothSection& tooth() const { return section.teeth[number]; }
 };
 
 using FigureValue = std::optional<double>;
 
-enum class ToolFigure : std::uint8_t {
-  kRake,
-  kChordalRake,
-  kSpiral,
-  kCore,
-  kClearance,
-  kSecondClearance,
-  kPrimaryRelief,
-};
+/// Nothing where there is none. The rake face of a flute that is not complete is not the one that a longer stroke would
+/// leave: it has no rake.
+FigureValue measured(ToolFigure figure, const FigurePlace& place);
 
-/// With the figure's words in texts.
-struct ToolFigureRow : EnumRow<ToolFigure> {
-  Unit unit = Unit::kNone;
-  ReasonKind reason = ReasonKind::kOther;  ///< why a plan is refused for it
-  /// Nothing where there is none. The rake face of a flute that is not complete is not the one that a longer stroke
-  /// would leave: it has no rake.
-  FigureValue (*measured)(const FigurePlace&) = nullptr;
-  FigureValue (*asked)(const FigurePlace&) = nullptr;  ///< nothing if the job does not ask for it
-  double (*tolerance)(const FigurePlace&) = nullptr;   ///< either way
-};
+/// Nothing if the job does not ask for it there.
+FigureValue asked(ToolFigure figure, const FigurePlace& place);
 
-/// The functions of the table.
-namespace tool_figures {
-FigureValue rake(const FigurePlace& p);
-FigureValue askedRake(const FigurePlace& p);
-double rakeTolerance(const FigurePlace& p);
-FigureValue chordalRake(const FigurePlace& p);
-double chordalRakeTolerance(const FigurePlace& p);
-FigureValue spiral(const FigurePlace& p);
-FigureValue askedSpiral(const FigurePlace& p);
-double spiralTolerance(const FigurePlace& p);
-FigureValue core(const FigurePlace& p);
-FigureValue askedCore(const FigurePlace& p);
-double coreTolerance(const FigurePlace& p);
-FigureValue clearance(const FigurePlace& p);
-FigureValue askedClearance(const FigurePlace& p);
-double clearanceTolerance(const FigurePlace& p);
-FigureValue secondClearance(const FigurePlace& p);
-FigureValue askedSecondClearance(const FigurePlace& p);
-FigureValue primaryRelief(const FigurePlace& p);
-FigureValue askedLand(const FigurePlace& p);
-double landTolerance(const FigurePlace& p);
-}  // namespace tool_figures
-
-inline constexpr ToolFigureRow kToolFigures[]{
-    {{ToolFigure::kRake, "rake"},
-     Unit::kRadian,
-     ReasonKind::kRake,
-     tool_figures::rake,
-     tool_figures::askedRake,
-     tool_figures::rakeTolerance},
-    {{ToolFigure::kChordalRake, "chordal rake"},
-     Unit::kRadian,
-     ReasonKind::kChordalRake,
-     tool_figures::chordalRake,
-     tool_figures::askedRake,
-     tool_figures::chordalRakeTolerance},
-    {{ToolFigure::kSpiral, "spiral angle"},
-     Unit::kRadian,
-     ReasonKind::kSpiral,
-     tool_figures::spiral,
-     tool_figures::askedSpiral,
-     tool_figures::spiralTolerance},
-    {{ToolFigure::kCore, "core"},
-     Unit::kMetre,
-     ReasonKind::kCoreSize,
-     tool_figures::core,
-     tool_figures::askedCore,
-     tool_figures::coreTolerance},
-    {{ToolFigure::kClearance, "clearance"},
-     Unit::kRadian,
-     ReasonKind::kClearance,
-     tool_figures::clearance,
-     tool_figures::askedClearance,
-     tool_figures::clearanceTolerance},
-    {{ToolFigure::kSecondClearance, "second clearance"},
-     Unit::kRadian,
-     ReasonKind::kSecondClearance,
-     tool_figures::secondClearance,
-     tool_figures::askedSecondClearance,
-     tool_figures::clearanceTolerance},
-    {{ToolFigure::kPrimaryRelief, "primary relief"},
-     Unit::kMetre,
-     ReasonKind::kPrimaryLand,
-     tool_figures::primaryRelief,
-     tool_figures::askedLand,
-     tool_figures::landTolerance},
-};
-constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
+/// Of what is asked, either way.
+double tolerance(ToolFigure figure, const FigurePlace& place);
 
 /// Whether a figure is measured there, and is as asked within its tolerance, or is not asked.
 bool isAsAsked(ToolFigure figure, const FigurePlace& place);
+
+/// A figure over all teeth and the sections that were measured.
+struct GroundFigure {
+  struct At {
+    double value = 0;
+    double x = 0;   ///< along the cutter's axis [m]
+    int tooth = 0;  ///< from 0
+  };
+
+  ToolFigure figure{};
+  At least, largest;
+  std::optional<Range> asked;  ///< least and largest at these places; nothing if the job does not ask for it
+  double tolerance = 0;        ///< the least at these places
+};
+
+/// The figures of a tool, in the order of the table; those that there are none of are left out.
+using CutterFigures = std::vector<GroundFigure>;
+CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& sections);
+
+/// Null if there is none.
+const GroundFigure* find(const CutterFigures& figures, ToolFigure figure);
+
+/// What is ground beside what is asked, in mm or deg: "7.980 to 8.030 deg; asked 8 deg within 0.5 deg".
+std::string text(const GroundFigure& figure);
 
 }  // namespace grinder

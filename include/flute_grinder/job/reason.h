@@ -58,10 +58,10 @@ enum class ReasonKind : std::uint8_t {
                  ///< one, says what to change of a relief
   kChordalRake,  ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
   kClearance,    ///< the clearance ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
-  kUndercut,     ///< a relief takes `value` of the edge's radius, allowed `limit`; at `x` of `tooth`
-  kNextEdge,     ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
-  kHeel,         ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
-  kSlow,         ///< the control loop's cycles take `value` on average, allowed `limit`
+  kUndercut,  ///< a relief leaves an edge diameter of `value`, the asked one `limit`, within `low`; at `x` of `tooth`
+  kNextEdge,  ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
+  kHeel,      ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
+  kSlow,      ///< the control loop's cycles take `value` on average, allowed `limit`
   kSecondClearance,  ///< as kClearance, of the secondary relief where it begins
   kPrimaryLand,      ///< the primary relief is `value` wide, the asked one `limit`, within `low`; at `x` of `tooth`
 };
@@ -69,8 +69,8 @@ enum class ReasonKind : std::uint8_t {
 /// The name is that of the message's constant, in small letters.
 struct ReasonRow : EnumRow<ReasonKind> {
   /// In words, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}, {low}, {tooth}, {x};
-  /// {excess} is value and limit and what lies between, {number} the value without its unit. Null if text() puts the
-  /// words together.
+  /// {excess} is value and limit and what lies between, {number} the value without its unit; a field's path in braces
+  /// is its name in a file. Null if text() puts the words together.
   const char* text = nullptr;
 };
 
@@ -84,7 +84,7 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kParkInWork, "park_in_work"}},
     {{ReasonKind::kTolerance, "tolerance"}},
     {{ReasonKind::kTooLong, "too_long"}},
-    {{ReasonKind::kGivenUp, "given_up"}},
+    {{ReasonKind::kGivenUp, "given_up"}, "given up while it was planned"},
     {{ReasonKind::kOther, "other"}, "{detail}"},
     {{ReasonKind::kPosition, "position"}, "{axis} position {excess}"},
     {{ReasonKind::kVelocity, "velocity"}, "{axis} velocity {excess}"},
@@ -102,22 +102,30 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kHoming, "homing"}, "the drive has not found its reference after {value}, allowed {limit}"},
     {{ReasonKind::kInterlock, "interlock"}, "{detail} {value} after the job was started, allowed {limit}"},
     {{ReasonKind::kCanceled, "canceled"}, "canceled; stopped on the path"},
-    {{ReasonKind::kRake, "rake"}},
-    {{ReasonKind::kLand, "land"}},
-    {{ReasonKind::kCore, "core"}},
+    {{ReasonKind::kRake, "rake"},
+     "{cutter.rake_angle} = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of it; "
+     "change {process.setup_swivel} or {process.setup_height}"},
+    {{ReasonKind::kLand, "land"},
+     "no land is left on tooth {tooth} at X = {x}: its flute takes {value}, its pitch is {limit}; lower "
+     "{process.wheel_width} or {process.depth}"},
+    {{ReasonKind::kCore, "core"}, "{process.depth}: the core is cut through at X = {x}; lower it"},
     {{ReasonKind::kIncomplete, "incomplete"}},
     {{ReasonKind::kCollision, "collision"}},
     {{ReasonKind::kSwivel, "swivel"}},
     {{ReasonKind::kUnevenRake, "uneven_rake"}},
-    {{ReasonKind::kSpiral, "spiral"}},
+    {{ReasonKind::kSpiral, "spiral"},
+     "{cutter.spiral_angle} = {limit}: the edge of tooth {tooth} is ground with {value} at X = {x}; allowed: within "
+     "{low} of it; change {process.setup_lead}"},
     {{ReasonKind::kCoreSize, "core_size"}},
-    {{ReasonKind::kChordalRake, "chordal_rake"}},
+    {{ReasonKind::kChordalRake, "chordal_rake"},
+     "{cutter.rake_angle} = {limit}: tooth {tooth} has a chordal rake of {value} at X = {x}; allowed: within {low} of "
+     "it; change {process.wheel_diameter} or {process.wheel_width}"},
     {{ReasonKind::kClearance, "clearance"},
-     "cutter.clearance_deg = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of it; "
+     "{cutter.clearance} = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of it; "
      "change the height or the swivel of the relief's set-up"},
     {{ReasonKind::kUndercut, "undercut"},
-     "the relief takes {value} of the edge of tooth {tooth} at X = {x}; allowed: up to {limit}; grind the flutes with "
-     "an edge nearer to the asked helix"},
+     "the relief leaves tooth {tooth} an edge diameter of {value} at X = {x}; allowed: within {low} of {limit}; grind "
+     "the flutes with an edge nearer to the asked helix"},
     {{ReasonKind::kNextEdge, "next_edge"},
      "the relief's wheel reaches {value} into the tooth behind tooth {tooth} at X = {x}; change the height of the "
      "relief's set-up, or take a narrower wheel"},
@@ -126,10 +134,10 @@ inline constexpr ReasonRow kReasonKinds[]{
      "wider wheel"},
     {{ReasonKind::kSlow, "slow"}, "the control loop takes {value} for a cycle on average, allowed {limit}"},
     {{ReasonKind::kSecondClearance, "second_clearance"},
-     "cutter.second_clearance_deg = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of "
+     "{cutter.second_clearance} = {limit}: tooth {tooth} is ground with {value} at X = {x}; allowed: within {low} of "
      "it; change the height or the swivel of the relief's set-up, or take a wheel with smaller corner radii"},
     {{ReasonKind::kPrimaryLand, "primary_land"},
-     "cutter.land_mm = {limit} there: the primary relief of tooth {tooth} is left {value} wide at X = {x}; allowed: "
+     "{cutter.land} = {limit} there: the primary relief of tooth {tooth} is left {value} wide at X = {x}; allowed: "
      "within {low} of it; change the set-up of the secondary relief"},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }

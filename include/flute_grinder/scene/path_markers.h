@@ -36,8 +36,8 @@ class ToolPath {
 
  private:
   struct Flute {
-    double angle;    ///< of the tooth [rad]
-    LogCurve curve;  ///< A over X of a tooth at angle 0
+    double angle;    ///< that its strokes add to the curve [rad]
+    LogCurve curve;  ///< A over X
     GroundEdge edge;
     std::vector<float> errors;  ///< per point of the strip [m]; empty until a pass is finished
   };

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "flute_grinder/GrindResult.h"
+#include "flute_grinder/geometry/tool_figure.h"
+#include "flute_grinder/plan/planned_job.h"
+
+#include <string>
+
+/// @file
+/// A plan as the result of a goal, and the texts of it that command line and panel share.
+namespace grinder {
+
+/// The result of a goal that is planned and not run. Its warnings are left to the caller.
+flute_grinder::GrindResult resultOf(const PlannedJob& plan);
+
+GroundFigure fromMessage(const flute_grinder::ToolFigure& message);
+
+/// "wheel and blank, 0.512 mm at X 3.000 mm"; empty if it was not checked.
+std::string closestText(const flute_grinder::PlanReport& plan);
+
+/// "axis A velocity, X 0.000 to 30.000 mm"
+std::string text(const flute_grinder::FeedLimit& limit);
+
+}  // namespace grinder

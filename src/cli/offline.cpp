@@ -94,7 +94,7 @@ void printStatistics(const PathStatistics& s) {
     std::printf("feed constancy       never reached\n");
   }
   for (const flute_grinder::FeedLimit& limit : toMessage(s).feed_limits) {
-    std::printf("feed limited by      %s\n", text(limit).c_str());
+    std::printf("feed limited by      %s\n", escaped(text(limit)).c_str());
   }
   const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
     std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,

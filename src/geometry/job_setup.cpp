@@ -65,7 +65,8 @@ std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
   const auto key = [](const char* path) { return fieldName(path); };
   const auto& [core, end] = nearest.core_diameter;
   return line(key("cutter.rake_angle"), c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian) +
-         line("chordal rake", c.rake_angle, nearest.chordal_rake, c.chordal_rake_tolerance, Unit::kRadian) +
+         line(rowOf(ToolFigure::kChordalRake).words, c.rake_angle, nearest.chordal_rake, c.chordal_rake_tolerance,
+              Unit::kRadian) +
          line(key("cutter.spiral_angle"), c.spiral_angle, nearest.spiral, c.spiral_tolerance, Unit::kRadian) +
          line(key("cutter.core_diameter"), c.core_diameter, {core, core}, c.core_tolerance, Unit::kMetre) +
          line(key("cutter.core_diameter_end"), c.core_diameter_end, {end, end}, c.core_tolerance, Unit::kMetre);

@@ -43,7 +43,7 @@ FigureValue offHelix(const Place& p) {
     return tooth.complete ? FigureValue(*tooth.edge - helix.a(section.x)) : std::nullopt;
   };
   const FigureValue here = off(p.section);
-  if (!here || p.tool == nullptr) return std::nullopt;
+  if (!here || p.tool == nullptr || p.tool->size() < 2) return std::nullopt;
   Range all{*here, *here};
   for (const GroundSection& section : *p.tool) widen(all, off(section).value_or(*here));
   return *here - (all.from + all.to) / 2;
@@ -99,6 +99,15 @@ static_assert(isInOrder(kMeasurements) && std::size(kMeasurements) == std::size(
 
 const Measurement& of(ToolFigure figure) { return kMeasurements[static_cast<std::size_t>(figure)]; }
 
+double scaleOf(const GroundFigure& figure) { return shopScale(rowOf(figure.figure).unit); }
+const char* unitOf(const GroundFigure& figure) { return rowOf(figure.figure).unit == Unit::kRadian ? " deg" : " mm"; }
+
+std::string rangeText(const GroundFigure& figure, const char* digits, const Range& range) {
+  const std::string low = format(digits, range.from / scaleOf(figure));
+  const std::string high = format(digits, range.to / scaleOf(figure));
+  return low == high ? low : low + " to " + high;
+}
+
 void add(GroundFigure& figure, double value, const Place& p) {
   const GroundFigure::At at{value, p.section.x, static_cast<int>(p.number)};
   if (value < figure.least.value) figure.least = at;
@@ -147,15 +156,17 @@ const GroundFigure* find(const CutterFigures& figures, ToolFigure figure) {
   return found == figures.end() ? nullptr : &*found;
 }
 
+std::string groundText(const GroundFigure& figure) {
+  return rangeText(figure, "%.3f", {figure.least.value, figure.largest.value}) + unitOf(figure);
+}
+
+std::string askedText(const GroundFigure& figure) { return figure.asked ? rangeText(figure, "%g", *figure.asked) : ""; }
+
 std::string text(const GroundFigure& figure) {
-  const Unit unit = rowOf(figure.figure).unit;
-  const double scale = shopScale(unit);
-  const char* name = unit == Unit::kRadian ? "deg" : "mm";
-  std::string all = format("%.3f to %.3f %s", figure.least.value / scale, figure.largest.value / scale, name);
-  if (!figure.asked) return all;
-  const auto [from, to] = *figure.asked;
-  all += format("; asked %g", from / scale) + (to == from ? "" : format(" to %g", to / scale));
-  return all + format(" %s within %g %s", name, figure.tolerance / scale, name);
+  if (!figure.asked) return groundText(figure);
+  const char* unit = unitOf(figure);
+  return groundText(figure) + "; asked " + askedText(figure) + unit + " within " +
+         format("%g", figure.tolerance / scaleOf(figure)) + unit;
 }
 
 }  // namespace grinder

@@ -228,13 +228,12 @@ void GoalServer::onPlanned(std::shared_ptr<const PlannedJob> planned) {
   const bool recalled = handle.getGoalStatus().status == actionlib_msgs::GoalStatus::RECALLING;
   if (recalled || gate_.canceled()) return cancelBeforeStart();
   if (handle.getGoal()->dry_run || !planned->good()) {
-    flute_grinder::GrindResult checked = resultOf(*planned);
-    checked.plan.warnings = offsetWarnings(goal_->offsets, *handle.getGoal());
+    flute_grinder::GrindResult checked = resultOfPlan(*planned);
     release();
     if (!planned->good()) return reject(handle, checked);
     checked.error_string = "planned and checked; nothing moved";
     handle.setAccepted();
-    telemetry_.show(planned);
+    telemetry_.show(planned, handle.getGoal()->job_name);
     return handle.setSucceeded(checked);
   }
   goal_->plan = std::move(planned);
@@ -252,7 +251,7 @@ void GoalServer::startJob() {
   goal_->stream = std::make_unique<SetpointStream>(plan.program);
   tracker_.begin(*plan.program, plan.digest, basisOf(asked, OffsetMethod::kUnknown), goal_->number, goal_->offsets);
   telemetry_.announceJob(
-      goal_->number, handle.getGoalID().id, goal_->plan,
+      goal_->number, handle.getGoalID().id, asked.job_name, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
                                   asked.ignore_offset_check != 0));
   const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false};
@@ -389,6 +388,14 @@ void GoalServer::endJob() {
   handle.setSucceeded(r);
 }
 
+flute_grinder::GrindResult GoalServer::resultOfPlan(const PlannedJob& plan) const {
+  flute_grinder::GrindResult r = resultOf(plan);
+  r.plan.offsets = toMessage(goal_->offsets);
+  r.plan.offsets.header.stamp = ros::Time::now();
+  r.plan.warnings = offsetWarnings(goal_->offsets, *goal_->handle.getGoal());
+  return r;
+}
+
 flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) const {
   const PlannedJob& plan = *goal_->plan;
   Place at = status.place;
@@ -405,7 +412,7 @@ flute_grinder::GrindResult GoalServer::resultOfJob(const LoopStatus& status) con
   } else if (status.end == JobEnd::kCanceled) {
     r = result(flute_grinder::GrindResult::CANCELED, {endReason(status, at, *plan.program)});
   }
-  r.plan = resultOf(plan).plan;
+  r.plan = resultOfPlan(plan).plan;
   r.setpoints_written = status.setpoints_written;
   return r;
 }

@@ -72,6 +72,7 @@ class GoalServer {
   void releaseWhenJournaled();
   void endWhenPublished();
   void endJob();
+  flute_grinder::GrindResult resultOfPlan(const PlannedJob& plan) const;
   flute_grinder::GrindResult resultOfJob(const LoopStatus& status) const;
   void cancelBeforeStart();
   void abortGoal(const std::string& text);

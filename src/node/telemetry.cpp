@@ -114,17 +114,19 @@ Telemetry::~Telemetry() {
   setpoints_.shutdown();
 }
 
-void Telemetry::show(std::shared_ptr<const PlannedJob> plan) {
-  thread_.post([this, plan = std::move(plan)] {
+void Telemetry::show(std::shared_ptr<const PlannedJob> plan, const std::string& job_name) {
+  thread_.post([this, plan = std::move(plan), job_name, offsets = offsets_.offsets()] {
     // While a job runs, that job is shown.
-    if (jobs_.empty() && !scene_cleared_) showJob(*plan);
+    if (!jobs_.empty() || scene_cleared_) return;
+    showJob(*plan, job_name, false);
+    shown_with_ = offsets;
   });
 }
 
-void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const PlannedJob> plan,
-                            std::shared_ptr<JobRecord> record) {
-  thread_.post([this, number, goal_id, plan = std::move(plan), record = std::move(record)] {
-    jobs_.push_back({number, goal_id, plan});
+void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, const std::string& job_name,
+                            std::shared_ptr<const PlannedJob> plan, std::shared_ptr<JobRecord> record) {
+  thread_.post([this, number, goal_id, job_name, plan = std::move(plan), record = std::move(record)] {
+    jobs_.push_back({number, goal_id, job_name, plan});
     recorder_.announce(number, record);
   });
 }
@@ -145,14 +147,30 @@ void Telemetry::clearScene() {
   thread_.post([this] {
     scene_cleared_ = true;
     for (Job& job : jobs_) job.shown = false;
+    shown_with_.reset();
     scene_.clear();
   });
 }
 
-void Telemetry::showJob(const PlannedJob& plan) {
+/// @param ground whether its job begins; else it is only planned.
+void Telemetry::showJob(const PlannedJob& plan, const std::string& name, bool ground) {
+  const GrindJob& job = *plan.program->job();
+  const char* operation = job.operations.size() > 1 ? rowOf(job.process.kind).words : "";
   last_change_ = ros::SteadyTime::now();
+  shown_with_.reset();
   frames_.show(plan.program, plan.edges);
-  scene_.show(plan.program, plan.edges, plan.digest, plan.program->run().first);
+  scene_.show(plan.program, plan.edges, plan.digest, plan.program->run().first,
+              (ground ? "Ground: " : "Planned: ") + jobText(name, operation, job.cutter, job.tooth_angles.size()));
+}
+
+/// A path that is shown where the work was is worse than none.
+void Telemetry::discardStalePlan() {
+  if (!shown_with_ || !jobs_.empty()) return;
+  const WorkOffsets offsets = offsets_.offsets();
+  const Axes now = offsets.values(), then = shown_with_->values();
+  if ((now == then).all() && offsets.wheel.mounting == shown_with_->wheel.mounting) return;
+  shown_with_.reset();
+  scene_.discard();
 }
 
 void Telemetry::tick() {
@@ -162,7 +180,7 @@ void Telemetry::tick() {
   recorder_watch_.look(ros::SteadyTime::now());
   Job* job = running();
   if (job && !job->shown && !scene_cleared_) {
-    showJob(*job->plan);
+    showJob(*job->plan, job->name, true);
     job->shown = true;
   }
   const bool begins = setPace();
@@ -172,6 +190,7 @@ void Telemetry::tick() {
     frames_.publish(sample_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(sample_.time));
   }
   if (batch_due) {
+    discardStalePlan();
     publishBatch();
     publishState();
     makeFeedback();

@@ -48,12 +48,13 @@ class Telemetry {
     thread_.start();
   }
 
-  /// Shows a valid plan, unless a job is running. Thread safe; never blocks.
-  void show(std::shared_ptr<const PlannedJob> plan);
+  /// Shows a valid plan, unless a job is running, until its zero points or the wheel on the spindle change. Thread
+  /// safe; never blocks.
+  void show(std::shared_ptr<const PlannedJob> plan, const std::string& job_name);
   /// Announces a job before it starts. Thread safe; never blocks.
-  /// @param number the loop's number for this job. @param goal_id of its goal. @param record new.
-  void announceJob(std::uint64_t number, const std::string& goal_id, std::shared_ptr<const PlannedJob> plan,
-                   std::shared_ptr<JobRecord> record);
+  /// @param number the loop's number for this job. @param goal_id,job_name of its goal. @param record new.
+  void announceJob(std::uint64_t number, const std::string& goal_id, const std::string& job_name,
+                   std::shared_ptr<const PlannedJob> plan, std::shared_ptr<JobRecord> record);
   /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
   std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number);
   /// The job announced last will not start. Thread safe; never blocks.
@@ -76,7 +77,7 @@ class Telemetry {
 
   struct Job {
     std::uint64_t number;
-    std::string goal_id;
+    std::string goal_id, name;
     std::shared_ptr<const PlannedJob> plan;
     bool shown = false;
     Setpoint last{};                  ///< that reached the axes
@@ -85,7 +86,8 @@ class Telemetry {
     std::deque<Buffered> buffered{};  ///< written, not yet published
   };
 
-  void showJob(const PlannedJob& plan);
+  void showJob(const PlannedJob& plan, const std::string& name, bool ground);
+  void discardStalePlan();
   void tick();
   bool setPace();
   flute_grinder::GrinderState stateMessage() const;
@@ -118,6 +120,7 @@ class Telemetry {
   RobotStatus robot_status_;
   Frames frames_;
   Scene scene_;
+  std::optional<WorkOffsets> shown_with_;  ///< the offsets of the plan that is shown; nothing if none is
 
   CycleSample sample_;  ///< the latest
   std::uint64_t samples_read_ = 0;

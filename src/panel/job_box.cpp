@@ -33,6 +33,8 @@ namespace grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
+constexpr const char* kFileChanged = "The job file or its wheel file has changed since it was planned. Plan it again.";
+constexpr const char* kZeroChanged = "A zero point or the wheel has changed since it was planned. Plan it again.";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
 constexpr int kAnswerLines = 3;   ///< that have room with a choice of the operation; one more without
@@ -101,6 +103,9 @@ JobBox::JobBox(QWidget* parent)
   connect(operation_, &OperationChoice::changed, this, &JobBox::readAnew);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::clickContinue);
   connect(plan_, &QPushButton::clicked, this, &JobBox::planAnew);
+  connect(&watch_, &QFileSystemWatcher::fileChanged, this, [this] {
+    if (planned_) discardPlan(kFileChanged);
+  });
   setFile("");
 }
 
@@ -232,6 +237,7 @@ void JobBox::read() {
     }
     job_ = std::make_shared<const GrindJob>(readJobFile(file, {}, operation_->chosen()));
     goal_ = goalFromFile(file, *job_);
+    watchFiles();
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -241,9 +247,23 @@ void JobBox::read() {
   }
 }
 
-void JobBox::discardPlan() {
+/// One that another replaces is no longer watched, and is so again once it is read.
+void JobBox::watchFiles() {
+  const QString wheel = QString::fromStdString(wheelFileOf(file_.toStdString(), job_->operation));
+  for (const QString& file : watch_.files()) watch_.removePath(file);
+  watch_.addPath(file_);
+  if (!wheel.isEmpty()) watch_.addPath(wheel);
+}
+
+void JobBox::discardPlan(const QString& why) {
   planned_.reset();
-  showVerdict(withoutPlan(), true);
+  showVerdict(why.isEmpty() ? withoutPlan() : why, why.isEmpty());
+}
+
+/// Of offsets that come from the grinder: those that it had when it planned may come later than the plan.
+bool JobBox::hasOtherZero(const flute_grinder::WorkOffsets& now) const {
+  return now.header.stamp > planned_with_.header.stamp &&
+         (now.values != planned_with_.values || now.wheel.mounting != planned_with_.wheel.mounting);
 }
 
 /// What is shown as long as nothing was planned.
@@ -285,6 +305,7 @@ void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::
   if (goalNow() != goal) return;
   planned_.reset();
   if (result.plan.valid) planned_ = goal;
+  planned_with_ = result.plan.offsets;
   showVerdict(QString::fromStdString(describe(result)), result.plan.valid != 0);
 }
 
@@ -380,7 +401,7 @@ std::optional<flute_grinder::GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
   if (goal && goal == goalNow()) return goal;
-  if (job_) showVerdict("The job file or its wheel file has changed since it was planned. Plan it again.", false);
+  if (job_) showVerdict(kFileChanged, false);
   return std::nullopt;
 }
 
@@ -393,6 +414,7 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
                      const std::optional<flute_grinder::WorkOffsets>& offsets, bool idle) {
   offsets_.reset();
   if (offsets) offsets_ = fromMessage(*offsets);
+  if (planned_ && offsets && hasOtherZero(*offsets)) discardPlan(kZeroChanged);
   showFile();
   showZeroPoints();
   if (state) swivel_ = {state->swivel, state->swivel_measured != 0};

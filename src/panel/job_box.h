@@ -11,6 +11,7 @@
 
 #include <QCheckBox>
 #include <QFileDialog>
+#include <QFileSystemWatcher>
 #include <QLabel>
 #include <QPlainTextEdit>
 #include <QPointer>
@@ -58,8 +59,8 @@ class JobBox : public QWidget {
   /// Plans the job once more, as it would be started now.
   void planAnew();
 
-  /// The plan is no longer valid.
-  void discardPlan();
+  /// The plan is no longer valid. @param why for the operator; empty if that is known.
+  void discardPlan(const QString& why = "");
 
   /// Which operation of the file is chosen, for readJobFile(). @throw std::invalid_argument if it is still to be
   /// chosen.
@@ -95,6 +96,8 @@ class JobBox : public QWidget {
   void showFile();
   void read();
   void readAnew();
+  void watchFiles();
+  bool hasOtherZero(const flute_grinder::WorkOffsets& now) const;
   std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();
   void makeQuestions();
@@ -123,6 +126,7 @@ class JobBox : public QWidget {
   std::shared_ptr<const GrindJob> job_;
   flute_grinder::GrindGoal goal_;                       ///< of that job, from its start
   std::optional<flute_grinder::GrindGoal> planned_;     ///< without violations
+  flute_grinder::WorkOffsets planned_with_;             ///< the offsets of that plan
   std::optional<flute_grinder::GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
   flute_grinder::JobProgress progress_;                 ///< as last received from the grinder
   std::string journal_error_;                           ///< the same; empty if the journal is good
@@ -154,6 +158,7 @@ class JobBox : public QWidget {
   Question* swivel_question_;
   QStackedWidget* pages_;  ///< form or a question
   QPointer<QFileDialog> file_dialog_;
+  QFileSystemWatcher watch_;  ///< of the job file and its wheel file
 };
 
 }  // namespace grinder

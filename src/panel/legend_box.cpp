@@ -102,7 +102,7 @@ void LegendBox::show(const std::optional<flute_grinder::Legend>& legend) {
     return;
   }
   const flute_grinder::Cutter& cutter = legend->cutter;
-  cutter_->setText(QString::fromStdString(toolText(fromMessage(cutter), cutter.tooth_angles.size())));
+  cutter_->setText(QString::fromStdString(legend->shown));
   set(0, "Measured error", micrometres(legend->tolerance));
   set(1, "Rake error, off " + degrees(cutter.rake_angle), degrees(cutter.rake_tolerance));
   const bool relieved = cutter.clearance > 0;

@@ -45,7 +45,7 @@ SectionView::SectionView(QWidget* parent)
   figures_->setObjectName("section_figures");
   figures_->setWordWrap(true);
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  figures_->setMinimumHeight(4 * figures_->fontMetrics().lineSpacing() + 4);
+  figures_->setMinimumHeight(5 * figures_->fontMetrics().lineSpacing() + 4);
   auto* choice = new QHBoxLayout;
   choice->addWidget(new QLabel("X"));
   choice->addWidget(x_, 1);

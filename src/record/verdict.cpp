@@ -242,13 +242,17 @@ std::vector<Criterion> ofReliefs(const Json& job, const Json& tool, const Tolera
   if (operation == toString(OperationKind::kFlute)) return {};
   const Json& cutter = job.at("cutter");
   std::vector<Criterion> criteria;
-  Criterion& clearance = criteria.emplace_back("clearance", "deg", 3, number(cutter.at("clearance_deg")),
-                                               number(cutter.at("clearance_tolerance_deg")));
-  forEachTooth(tool, [&](const Json&, const Json& tooth, const std::string& place) {
-    clearance.add(number(tooth.at("clearance_deg")), place);
-  });
+  const auto addClearance = [&](const char* name, const char* key) {
+    Criterion& clearance =
+        criteria.emplace_back(name, "deg", 3, number(cutter.at(key)), number(cutter.at("clearance_tolerance_deg")));
+    forEachTooth(tool, [&](const Json&, const Json& tooth, const std::string& place) {
+      clearance.add(number(tooth.at(key)), place);
+    });
+  };
+  addClearance("clearance", "clearance_deg");
   // A primary relief is as wide as asked once a secondary one ends it.
   if (operation != toString(OperationKind::kSecondaryRelief)) return criteria;
+  addClearance("second clearance", "second_clearance_deg");
   Criterion& primary =
       criteria.emplace_back("primary relief", "mm", 3, number(cutter.at("land_mm")), tolerances.primary_mm);
   forEachTooth(tool, [&](const Json& section, const Json& tooth, const std::string& place) {

@@ -15,6 +15,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
+constexpr double kTitleHeight = 0.04;              ///< of letters, of the flute's length
 const ros::WallDuration kGreeting(1);              ///< within which a viewer that has come knows the frames
 
 /// All strokes of a job have the same errors.
@@ -30,9 +31,14 @@ PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& 
   return errors;
 }
 
-MarkerArray sceneMarkers(const GrindJob& job) {
+MarkerArray sceneMarkers(const GrindJob& job, const std::string& shown) {
   MarkerArray array = clearedArray();
   appendWheel(array, wheelOf(job).worn(job.process.wheel_wear));
+  Marker& label = append(array, "shown", Marker::TEXT_VIEW_FACING, "work");
+  const double height = kTitleHeight * job.cutter.flute_length;
+  label.pose.position = point(job.cutter.flute_length / 2, 0, -job.cutter.end_diameter - 2 * height);
+  label.scale.z = height;
+  label.text = shown;
   return array;
 }
 
@@ -58,12 +64,13 @@ void Scene::publishCleared() {
 }
 
 void Scene::show(const std::shared_ptr<const GrindProgram>& program, const std::vector<GroundEdge>& edges,
-                 const std::string& digest, const ToothPass& first) {
+                 const std::string& digest, const ToothPass& first, const std::string& shown) {
   const GrindJob& job = *program->job();
   const bool continued = shown_ && shown_->digest == digest && (first.tooth > 0 || first.pass > 0);
   ToolPath path = continued ? shown_->tool_path : ToolPath(*program, edges);
   shown_.emplace(Shown{program->job(), digest, std::move(path), ExecutedPath(*program, edges),
                        errorsOfFirstStroke(program, edges), flute_grinder::Legend()});
+  shown_->legend.shown = shown;
   shown_->legend.cutter = toMessage(job.cutter, job.tooth_angles);
   shown_->legend.tolerance = job.interpolation.tolerance;
   publishAll();
@@ -81,7 +88,7 @@ void Scene::greet() {
 
 void Scene::publishAll() {
   if (!shown_) return scene_.publish(firstViewMarkers(first_view_));
-  scene_.publish(sceneMarkers(*shown_->job));
+  scene_.publish(sceneMarkers(*shown_->job, shown_->legend.shown));
   ground_.show(shown_->job, shown_->reached == Reached{} ? std::nullopt : std::optional(shown_->reached));
   tool_path_.publish(shown_->tool_path.markers());
   publishPathError();
@@ -137,6 +144,11 @@ void Scene::clear() {
   shown_.reset();
   publishCleared();
   ground_.clear();
+}
+
+void Scene::discard() {
+  clear();
+  publishAll();
 }
 
 void Scene::publishExecuted() {

@@ -10,7 +10,7 @@ import threading
 import time
 
 import rospy
-from flute_grinder.msg import GrinderState, GrindResult, OffsetBasis, WorkOffsets
+from flute_grinder.msg import GrinderState, GrindResult, Legend, OffsetBasis, WorkOffsets
 
 import grinder_client as gc
 from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z
@@ -201,6 +201,13 @@ class TestZeroPoints(OffsetsTest):
         self.assertEqual(len(plan.warnings), len(texts), plan.warnings)
         for warning, text in zip(plan.warnings, texts):
             self.assertIn(text, warning)
+
+    def test_a_plan_is_shown_until_a_zero_point_is_another(self):
+        legends = gc.received(self.addCleanup, '/%s/legend' % self.node.name, Legend)
+        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).plan.valid)
+        gc.poll(lambda: legends and legends[-1].shown.startswith('Planned: a job without a name (D 10 mm, '), 'the plan')
+        self.assertTrue(self.client.set_offset(Y, 0.0001).success)
+        gc.poll(lambda: legends[-1] == Legend(), 'the first view')
 
     def test_of_another_diameter(self):
         wheel = 'the wheel on the spindle is not confirmed; this job has straight, 3 mm wide, D 100 mm; once it is mounted, say so: grind confirm-wheel JOB'

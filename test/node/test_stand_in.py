@@ -11,7 +11,7 @@ import threading
 import actionlib
 import rosgraph
 import rospy
-from flute_grinder.msg import (GrindAction, GrinderState, GrindFeedback, GrindResult, SetpointBatch, Stop,
+from flute_grinder.msg import (FeedLimit, GrindAction, GrinderState, GrindFeedback, GrindResult, PathStatistics, PlanReport, SetpointBatch, Stop,
                                WorkOffsets, WrittenSetpoint)
 from flute_grinder.srv import SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
@@ -138,7 +138,8 @@ class TestStandIn(RunTest):
         goal.publish_feedback(GrindFeedback(state=bad))
         command.wait_text('  ' + shown)
         command.wait_text('held: ' + shown)
-        goal.set_succeeded(GrindResult(warnings=[bad]))
+        statistics = PathStatistics(setpoints=1, feed_limits=[FeedLimit(cause=bad)])
+        goal.set_succeeded(GrindResult(plan=PlanReport(statistics=statistics, closest_bodies=[bad] * 2, warnings=[bad])))
         self.assertEqual(command.end(), 0, command.text)
         self.assertIn('warning: ' + shown, command.text)
         self.assertNotIn('\x1b', command.text)
@@ -147,7 +148,7 @@ class TestStandIn(RunTest):
         command, goal = self.start_run('--dry-run', columns=30)
         goal.publish_feedback(GrindFeedback(state='planning', planned=0.5))
         command.wait_text('planning 50 %')
-        goal.set_succeeded(GrindResult())
+        goal.set_succeeded(GrindResult(plan=PlanReport(statistics=PathStatistics(setpoints=1), complete=[0, 0.03])))
         self.assertEqual(command.end(), 0, command.text)
         self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\n$')
         self.assertIn('flutes complete      X 0.000 to 30.000 mm\n', command.stdout)

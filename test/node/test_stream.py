@@ -105,5 +105,6 @@ class TestMarkers(unittest.TestCase):
             self.assertLessEqual(max(len(m.points) for m in markers), 16384, 'more than rviz stands')
         self.assertEqual({(m.header.frame_id, m.type, m.frame_locked) for m in path[1:]}, {('cutter', Marker.LINE_STRIP, True)})
         legend = rospy.wait_for_message('/grinder/legend', Legend, gc.PATIENCE)
+        self.assertRegex(legend.shown, r'^Planned: a job without a name \(D 10 mm, .*, 1 tooth\)$')
         self.assertEqual((legend.cutter, legend.tolerance, legend.max_error),
                          (gc.goal_of(gc.MOTION).cutter, gc.MOTION['interpolation.tolerance'], 0))

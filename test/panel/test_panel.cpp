@@ -131,6 +131,7 @@ TEST_F(OnStage, TheWindowIsNamedAfterTheGrinder) {
 flute_grinder::Legend legendOf(const QString& job) {
   flute_grinder::Legend legend;
   legend.cutter = goalFromFile(job.toStdString()).cutter;
+  legend.shown = "Planned: paper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth)";
   legend.tolerance = 0.5e-6;
   legend.max_error = 0.0698e-6;
   legend.arrow_scale = 2e5;
@@ -143,7 +144,7 @@ TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   EXPECT_EQ(panel.label("shown_cutter"), "No job is shown.");
   EXPECT_EQ(panel.label("max_error"), "");
   stage.publishLegend(legendOf(kPaper));
-  WAIT_FOR(panel.label("shown_cutter") == "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth");
+  WAIT_FOR(panel.label("shown_cutter") == legendOf(kPaper).shown);
   EXPECT_EQ(panel.label("flutes") + ", " + panel.label("flutes_end"), "Measured error, 0.5 um");
   EXPECT_EQ(panel.label("rake_faces") + ", " + panel.label("rake_faces_end"), "Rake error, off 8 deg, 0.5 deg");
   EXPECT_EQ(panel.label("reliefs") + ", " + panel.label("reliefs_end"), "Clearance error, -");
@@ -439,6 +440,27 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
   panel.picture("cannot_be_ground");
 }
 
+TEST_F(OnStage, APlanIsVoidOnceAZeroPointOrTheWheelIsAnother) {
+  flute_grinder::WorkOffsets offsets;
+  offsets.header.stamp = ros::Time(10);
+  const auto newer = [&] {
+    offsets.header.stamp += ros::Duration(1);
+    stage.publishOffsets(offsets);
+  };
+  const std::string zero = "A zero point or the wheel has changed since it was planned. Plan it again.";
+  for (const bool wheel : {false, true}) {
+    stage.change([&] { stage.planned.plan.offsets = offsets; });
+    panel.plan();
+    newer();
+    stage.be("lifting", panel);
+    stage.be("ready", panel);
+    EXPECT_TRUE(panel.enabled("start")) << "nothing of it has changed";
+    wheel ? ++offsets.wheel.mounting : offsets.values[kY] += 1e-6;
+    newer();
+    WAIT_FOR(panel.text("verdict") == zero && !panel.enabled("start"));
+  }
+}
+
 TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
   stage.change([&] { stage.plan_hangs = true; });
   panel.press("plan");
@@ -658,9 +680,7 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   stage.be("ready");
   panel.plan();
   changedJob(path, path, {{"depth_mm: 1.6", "depth_mm: 1.5"}});
-  panel.click("start");
-  EXPECT_TRUE(panel.says("verdict", "Plan it again"));
-  WAIT_FOR(!panel.enabled("start"));
+  WAIT_FOR(panel.says("verdict", "Plan it again") && !panel.enabled("start"));
   // A goal that was sent after all would have come before this.
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);

@@ -40,7 +40,8 @@ TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
   EXPECT_TRUE(says("Not planned yet."));
   panel.plan();
   panel.picture("operation_chosen");
-  const flute_grinder::GrindGoal primary = goalFromFile(kReamer.toStdString(), "primary");
+  flute_grinder::GrindGoal primary = goalFromFile(kReamer.toStdString(), "primary");
+  primary.dry_run = 1;
   ASSERT_EQ(primary.operation, 1);
   EXPECT_EQ(stage.get(&Stage::plans).back().goal, primary);
   panel.chooseOperation("3 secondary relief");

@@ -24,7 +24,8 @@ Json document() {
     "job": {"name": "a \"job\" {[,", "digest": "", "file": {
       "cutter": {"end_diameter_mm": 10, "cone_angle_deg": 5, "flute_length_mm": 20, "rake_angle_deg": 8,
                  "rake_tolerance_deg": 0.5, "chordal_rake_tolerance_deg": 4, "core_tolerance_mm": 0.25,
-                 "spiral_tolerance_deg": 0.25, "clearance_deg": 7, "clearance_tolerance_deg": 1, "land_mm": 1},
+                 "spiral_tolerance_deg": 0.25, "clearance_deg": 7, "clearance_tolerance_deg": 1, "second_clearance_deg": 20,
+                 "land_mm": 1},
       "process": {"feed_mm_min": 100, "wheel": {"wear_mm": 0}}, "operation": "secondary", "operations": [{}, {}],
       "interpolation": {"tolerance_um": 2}}},
     "started": "2026-11-22T17:04:13.123Z", "ended": "2026-11-22T17:04:23.123Z", "outcome": "done", "reason": "",

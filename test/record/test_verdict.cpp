@@ -183,10 +183,13 @@ Json reliefsDocument() {
   Json data = document();
   Json& file = data["job"]["file"];
   file["operation"] = "secondary";
-  file["cutter"].update({{"clearance_deg", 10}, {"clearance_tolerance_deg", 0.5}, {"land_mm", 0.4}});
+  file["cutter"].update(
+      {{"clearance_deg", 10}, {"clearance_tolerance_deg", 0.5}, {"second_clearance_deg", 22}, {"land_mm", 0.4}});
   for (Json& section : data["tool"]["sections"]) {
     const double wider = section["x_mm"].get<double>() / 10;
-    for (Json& tooth : section["teeth"]) tooth.update({{"clearance_deg", 10}, {"primary_mm", 0.4 + wider}});
+    for (Json& tooth : section["teeth"]) {
+      tooth.update({{"clearance_deg", 10}, {"second_clearance_deg", 22}, {"primary_mm", 0.4 + wider}});
+    }
   }
   data["tool"]["on_planned"] = false;
   return data;
@@ -194,12 +197,14 @@ Json reliefsDocument() {
 
 TEST(Verdict, AReliefIsJudgedByClearanceAndTheWidthOfThePrimary) {
   std::vector<std::string> names = kNames;
-  names.insert(names.begin() + 6, {"clearance", "primary relief"});
+  names.insert(names.begin() + 6, {"clearance", "second clearance", "primary relief"});
   EXPECT_EQ(namesOf(judged(reliefsDocument()), "passed"), names);
-  const Edge edges[]{{"clearance", "/tool/sections/2/teeth/1/clearance_deg", 10.5, 10.501, "tooth 2, X = 20.000 mm"},
-                     {"clearance", "/tool/sections/1/teeth/0/clearance_deg", 9.5, 9.499, "tooth 1, X = 10.000 mm"},
-                     {"primary relief", "/tool/sections/0/teeth/1/primary_mm", 0.42, 0.421, "tooth 2, X = 0.000 mm"},
-                     {"primary relief", "/tool/sections/0/teeth/0/primary_mm", 0.385, 0.379, "tooth 1, X = 0.000 mm"}};
+  const Edge edges[]{
+      {"clearance", "/tool/sections/2/teeth/1/clearance_deg", 10.5, 10.501, "tooth 2, X = 20.000 mm"},
+      {"clearance", "/tool/sections/1/teeth/0/clearance_deg", 9.5, 9.499, "tooth 1, X = 10.000 mm"},
+      {"second clearance", "/tool/sections/2/teeth/0/second_clearance_deg", 21.5, 21.499, "tooth 1, X = 20.000 mm"},
+      {"primary relief", "/tool/sections/0/teeth/1/primary_mm", 0.42, 0.421, "tooth 2, X = 0.000 mm"},
+      {"primary relief", "/tool/sections/0/teeth/0/primary_mm", 0.385, 0.379, "tooth 1, X = 0.000 mm"}};
   for (const Edge& edge : edges) {
     expectEdge(reliefsDocument(), edge);
     Json data = reliefsDocument();

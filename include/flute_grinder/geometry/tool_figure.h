@@ -102,7 +102,11 @@ CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& s
 /// Null if there is none.
 const GroundFigure* find(const CutterFigures& figures, ToolFigure figure);
 
-/// What is ground beside what is asked, in mm or deg: "7.980 to 8.030 deg; asked 8 deg within 0.5 deg".
+/// What is ground, in mm or deg: "7.980 to 8.030 deg".
+std::string groundText(const GroundFigure& figure);
+/// What is asked, in mm or deg without a unit: "6.8 to 12.05"; empty if nothing is.
+std::string askedText(const GroundFigure& figure);
+/// Both: "7.980 to 8.030 deg; asked 8 deg within 0.5 deg".
 std::string text(const GroundFigure& figure);
 
 }  // namespace grinder

@@ -27,9 +27,9 @@ class Scene {
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its
   /// measurements are kept.
   /// @param program not null. @param edges of the teeth that it grinds. @param digest of its job, see jobDigest().
-  /// @param first first pass to grind.
+  /// @param first first pass to grind. @param shown as Legend.shown.
   void show(const std::shared_ptr<const GrindProgram>& program, const std::vector<GroundEdge>& edges,
-            const std::string& digest, const ToothPass& first);
+            const std::string& digest, const ToothPass& first, const std::string& shown);
 
   /// Adds a setpoint of the job shown.
   /// @param actual position of the axes in work coordinates [m], A [rad].
@@ -47,6 +47,9 @@ class Scene {
 
   /// Takes back everything that is shown, so that it does not outlive the node in rviz.
   void clear();
+
+  /// Shows the first view again: what is shown is no longer so.
+  void discard();
 
  private:
   struct Shown {

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <utility>
 
 namespace grinder {
 
@@ -37,78 +39,79 @@ Value onOuterCircle(const Place& p, Value angle) {
 
 /// A figure of a tooth in a section.
 struct Figure {
-  const char* key;    ///< in files, ends in the unit
-  const char* title;  ///< in the table of extremes
-  const char* head;   ///< in the table of sections; empty for a figure that is not in either table
-  double unit;
-  bool of_section;  ///< the same for all teeth
-  Value (*value)(const Place&);
-  Value (*asked)(const Place&);
+  std::string key;    ///< in files, ends in the unit
+  std::string title;  ///< in the table of extremes
+  std::string head;   ///< in the table of sections; empty for a figure that is not in either table
+  double unit = 1;
+  std::function<Value(const Place&)> value;
+  std::function<Value(const Place&)> asked{};  ///< none if no job asks for it
+  bool of_section = false;                     ///< the same for all teeth
 };
 
-Value notAsked(const Place&) { return std::nullopt; }
-
-/// One of the table of figures, which a job asks for.
-template <ToolFigure figure>
-constexpr Figure askedFigure(const char* key, const char* title, const char* head) {
-  return {key,
-          title,
-          head,
-          rowOf(figure).unit == Unit::kRadian ? kDegree : kMillimetre,
-          figure == ToolFigure::kCoreDiameter,
-          [](const Place& p) { return measured(figure, p); },
-          [](const Place& p) { return asked(figure, p); }};
+/// One of the table of figures.
+Figure askedFigure(ToolFigure figure) {
+  const ToolFigureRow& row = rowOf(figure);
+  const std::string unit = row.unit == Unit::kRadian ? "deg" : "mm", words = row.words;
+  return {std::string(row.name) + "_" + unit,
+          words + ", " + unit,
+          words.substr(0, words.find(' ')) + " " + unit,
+          shopScale(row.unit),
+          [figure](const Place& p) { return measured(figure, p); },
+          [figure](const Place& p) { return asked(figure, p); },
+          figure == ToolFigure::kCoreDiameter};
 }
 
-constexpr Figure kFigures[]{
-    {"edge_deg", "", "", kDegree, false, [](const Place& p) { return p.tooth().edge; }, notAsked},
-    askedFigure<ToolFigure::kRake>("rake_deg", "radial rake, deg", "rake deg"),
-    askedFigure<ToolFigure::kChordalRake>("chordal_rake_deg", "chordal rake, deg", "chordal deg"),
-    {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree, false,
-     [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); },
-     [](const Place& p) {
-       return Value(std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(*asked(ToolFigure::kSpiral, p))));
-     }},
-    askedFigure<ToolFigure::kCoreDiameter>("core_diameter_mm", "core diameter, mm", "core mm"),
-    {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, false,
-     [](const Place& p) { return Value(p.tooth().depth); },
-     [](const Place& p) { return Value(askedDepth(*p.job, p.section.x)); }},
-    {"flute_deg", "flute, deg", "flute deg", kDegree, false, [](const Place& p) { return p.tooth().flute; }, notAsked},
-    {"flute_mm", "flute, mm", "flute mm", kMillimetre, false,
-     [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }, notAsked},
-    {"land_deg", "land, deg", "land deg", kDegree, false, [](const Place& p) { return p.tooth().land; }, notAsked},
-    {"land_mm", "land, mm", "land mm", kMillimetre, false,
-     [](const Place& p) { return onOuterCircle(p, p.tooth().land); }, notAsked},
-    askedFigure<ToolFigure::kSpiral>("spiral_deg", "spiral angle, deg", "spiral deg"),
-    {"area_removed_mm2", "area removed, mm^2", "area mm^2", kMillimetre* kMillimetre, true,
-     [](const Place& p) { return Value(p.area_removed); }, notAsked},
-};
-
-template <typename Get>
-Value ofRelief(const Place& p, const Get& get) {
-  return p.tooth().relief ? get(*p.tooth().relief) : std::nullopt;
+Value askedNormalRake(const Place& p) {
+  return std::atan(std::tan(p.job->cutter.rake_angle) * std::cos(*asked(ToolFigure::kSpiral, p)));
 }
 
-/// Of a job with a relief.
-constexpr Figure kReliefFigures[]{
-    askedFigure<ToolFigure::kClearance>("clearance_deg", "clearance, deg", "clear. deg"),
-    {"land_end_clearance_deg", "at the land's end", "end deg", kDegree, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.land_end_clearance; }); }, notAsked},
-    askedFigure<ToolFigure::kPrimary>("primary_mm", "primary relief, mm", "primary mm"),
-    askedFigure<ToolFigure::kSecondClearance>("second_clearance_deg", "second clearance, deg", "second deg"),
-    {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre, false,
-     [](const Place& p) { return ofRelief(p, [](const ReliefSection& r) { return r.heel; }); }, notAsked},
-    askedFigure<ToolFigure::kEdgeDiameter>("edge_diameter_mm", "edge diameter, mm", "edge mm"),
-};
+Value ofRelief(const Place& p, Value ReliefSection::*member) {
+  return p.tooth().relief ? *p.tooth().relief.*member : std::nullopt;
+}
+
+std::vector<Figure> figuresOfFlutes() {
+  return {
+      {"edge_deg", "", "", kDegree, [](const Place& p) { return p.tooth().edge; }},
+      askedFigure(ToolFigure::kRake),
+      askedFigure(ToolFigure::kChordalRake),
+      {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree,
+       [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); }, askedNormalRake},
+      askedFigure(ToolFigure::kCoreDiameter),
+      {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, [](const Place& p) { return p.tooth().depth; },
+       [](const Place& p) { return askedDepth(*p.job, p.section.x); }},
+      {"flute_deg", "flute, deg", "flute deg", kDegree, [](const Place& p) { return p.tooth().flute; }},
+      {"flute_mm", "flute, mm", "flute mm", kMillimetre,
+       [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }},
+      {"land_deg", "land, deg", "land deg", kDegree, [](const Place& p) { return p.tooth().land; }},
+      {"land_mm", "land, mm", "land mm", kMillimetre, [](const Place& p) { return onOuterCircle(p, p.tooth().land); }},
+      askedFigure(ToolFigure::kSpiral),
+      {"area_removed_mm2",
+       "area removed, mm^2",
+       "area mm^2",
+       kMillimetre * kMillimetre,
+       [](const Place& p) { return p.area_removed; },
+       {},
+       true}};
+}
 
 std::vector<Figure> figuresOf(const ValidJob& job) {
-  std::vector<Figure> figures(std::begin(kFigures), std::end(kFigures));
-  if (job.relief(0) != nullptr) figures.insert(figures.end(), std::begin(kReliefFigures), std::end(kReliefFigures));
+  std::vector<Figure> figures = figuresOfFlutes();
+  if (job.relief(0) == nullptr) return figures;
+  for (Figure& figure :
+       std::vector<Figure>{askedFigure(ToolFigure::kClearance),
+                           {"land_end_clearance_deg", "at the land's end", "end deg", kDegree,
+                            [](const Place& p) { return ofRelief(p, &ReliefSection::land_end_clearance); }},
+                           askedFigure(ToolFigure::kPrimary),
+                           askedFigure(ToolFigure::kSecondClearance),
+                           {"heel_mm", "edge to heel, mm", "heel mm", kMillimetre,
+                            [](const Place& p) { return ofRelief(p, &ReliefSection::heel); }},
+                           askedFigure(ToolFigure::kEdgeDiameter)}) {
+    figures.push_back(std::move(figure));
+  }
   return figures;
 }
 
-bool isShown(const Figure& figure) { return *figure.head != '\0'; }
-bool isAsked(const Figure& figure) { return figure.asked != notAsked; }
+bool isShown(const Figure& figure) { return !figure.head.empty(); }
 
 /// In the figure's unit.
 Value shown(const Figure& figure, Value value) {
@@ -131,7 +134,7 @@ std::string rowOf(const Place& place) {
   std::string row;
   for (const Figure& figure : figuresOf(place.job)) {
     if (!isShown(figure)) continue;
-    row += cell(static_cast<int>(std::string(figure.head).size()), shown(figure, figure.value(place)));
+    row += cell(static_cast<int>(figure.head.size()), shown(figure, figure.value(place)));
   }
   return row;
 }
@@ -159,7 +162,8 @@ struct Extremes {
 
   Extremes(const GroundTool& tool, const Figure& figure) {
     forEachTooth(tool, [&](const Place& p) {
-      const Value asks = shown(figure, figure.asked(p)), value = shown(figure, figure.value(p));
+      const Value asks = figure.asked ? shown(figure, figure.asked(p)) : std::nullopt,
+                  value = shown(figure, figure.value(p));
       if (asks) widen(asked, *asks);
       if (!value) return;
       if (asks) widen(difference, *value - *asks);
@@ -194,8 +198,8 @@ void printExtremes(const GroundTool& tool) {
   for (const Figure& figure : figuresOf(tool.job)) {
     if (!isShown(figure)) continue;
     const Extremes e(tool, figure);
-    std::printf("%-18s%s%s%s%s\n", figure.title, text(e.min).c_str(), text(e.max).c_str(), text(e.asked).c_str(),
-                text(e.difference, "+").c_str());
+    std::printf("%-18s%s%s%s%s\n", figure.title.c_str(), text(e.min).c_str(), text(e.max).c_str(),
+                text(e.asked).c_str(), text(e.difference, "+").c_str());
   }
 }
 
@@ -275,7 +279,7 @@ void append(Json& json, const Place& place, bool of_section) {
   for (const Figure& figure : figuresOf(place.job)) {
     if (figure.of_section != of_section) continue;
     json[figure.key] = number(shown(figure, figure.value(place)));
-    if (isAsked(figure)) json[std::string("asked_") + figure.key] = number(shown(figure, figure.asked(place)));
+    if (figure.asked) json["asked_" + figure.key] = number(shown(figure, figure.asked(place)));
   }
 }
 
@@ -348,7 +352,7 @@ void printText(const GroundTool& tool) {
   std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),
               toolText(tool.job->cutter, tool.job->tooth_angles.size()).c_str(), "X mm", "tooth");
   for (const Figure& figure : figuresOf(tool.job)) {
-    if (isShown(figure)) std::printf("  %s", figure.head);
+    if (isShown(figure)) std::printf("  %s", figure.head.c_str());
   }
   std::printf("\n");
   for (const MeasuredSection& section : tool.sections) printSection(tool.job, section);
@@ -396,8 +400,8 @@ namespace {
 std::string csvHeader(const ValidJob& job) {
   std::string header = "x_mm,tooth";
   for (const Figure& figure : figuresOf(job)) {
-    header += std::string(",") + figure.key;
-    if (isAsked(figure)) header += std::string(",asked_") + figure.key;
+    header += "," + figure.key;
+    if (figure.asked) header += ",asked_" + figure.key;
   }
   return header;
 }
@@ -412,7 +416,7 @@ void GroundToolCsv::write(const GroundTool& tool) {
     print("%.17g,%zu", place.section.x / kMillimetre, place.number);
     for (const Figure& figure : figuresOf(tool.job)) {
       field(shown(figure, figure.value(place)));
-      if (isAsked(figure)) field(shown(figure, figure.asked(place)));
+      if (figure.asked) field(shown(figure, figure.asked(place)));
     }
     print("\n");
   });

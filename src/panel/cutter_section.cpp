@@ -28,7 +28,7 @@ QString figureLine(const CutterSection& section, const GroundFigure& figure) {
   text[0] = text[0].toUpper();
   const QString asked = QString::fromStdString(askedText(figure));
   return line(text, good) +
-         (asked.isEmpty() ? "" : QString(", asked %1 ± %2").arg(asked).arg(figure.tolerance / shopScale(row.unit)));
+         (asked.isEmpty() ? "" : QString(" (%1 ± %2)").arg(asked).arg(figure.tolerance / shopScale(row.unit)));
 }
 
 /// What is wrong beyond the figures.

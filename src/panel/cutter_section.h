@@ -27,7 +27,7 @@ struct CutterSection {
 /// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.
 CutterSection cutterSection(const ValidJob& job, double x);
 
-/// The figures of all teeth against those asked, in mm and deg: rich text, with what is wrong in red.
+/// The figures of all teeth, in brackets what is asked, in mm and deg: rich text, with what is wrong in red.
 QString figuresText(const CutterSection& section);
 
 }  // namespace grinder

@@ -44,6 +44,7 @@ SectionView::SectionView(QWidget* parent)
   drawing_->setObjectName("section");
   figures_->setObjectName("section_figures");
   figures_->setWordWrap(true);
+  figures_->setToolTip("In brackets: what the job asks for, and its tolerance");
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   figures_->setMinimumHeight(5 * figures_->fontMetrics().lineSpacing() + 4);
   auto* choice = new QHBoxLayout;

@@ -15,7 +15,7 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
-constexpr double kTitleHeight = 0.04;              ///< of letters, of the flute's length
+constexpr double kTitleHeight = 0.06;              ///< of letters, of the flute's length
 const ros::WallDuration kGreeting(1);              ///< within which a viewer that has come knows the frames
 
 /// All strokes of a job have the same errors.
@@ -36,7 +36,7 @@ MarkerArray sceneMarkers(const GrindJob& job, const std::string& shown) {
   appendWheel(array, wheelOf(job).worn(job.process.wheel_wear));
   Marker& label = append(array, "shown", Marker::TEXT_VIEW_FACING, "work");
   const double height = kTitleHeight * job.cutter.flute_length;
-  label.pose.position = point(job.cutter.flute_length / 2, 0, -job.cutter.end_diameter - 2 * height);
+  label.pose.position = point(job.cutter.flute_length, 0, -2 * job.cutter.end_diameter - 4 * height);
   label.scale.z = height;
   label.text = shown;
   return array;

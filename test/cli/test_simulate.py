@@ -87,7 +87,7 @@ class TestOutput(TestSimulate):
         printed = self.grind(0, 'simulate', PAPER_JOB).stdout
         rakes = [(section['teeth'][0]['rake_deg'], section['x_mm']) for section in reported['sections']]
         least, largest = min(rakes), max(rakes)
-        line = 'radial rake, deg %.3f %.3f 1 %.3f %.3f 1 8.000 %+.3f to %+.3f' % (
+        line = 'rake, deg %.3f %.3f 1 %.3f %.3f 1 8.000 %+.3f to %+.3f' % (
             *least, *largest, least[0] - 8, largest[0] - 8)
         self.assertIn(line, re.sub(' +', ' ', printed).split('\n'))
         self.assertEqual(len(reported['sections']), 9)

@@ -43,14 +43,14 @@ TEST_F(SectionOnStage, AReliefHasItsClearanceAndWidth) {
   panel.chooseOperation("2 primary relief");
   openSection(panel);
   // The path is such that the clearance is the one asked.
-  WAIT_FOR(shows(panel, " deg, asked 10 ± 0.5<br>Edge diameter "));
+  WAIT_FOR(shows(panel, " deg (10 ± 0.5)<br>Edge diameter "));
   EXPECT_FALSE(shows(panel, "Primary relief")) << "it ends on the land, until the secondary one is ground";
   panel.picture("section_primary");
   panel.openTab("Job");
   panel.chooseOperation("3 secondary relief");
   openSection(panel);
   // As wide as asked at the small end, and wider with the diameter.
-  WAIT_FOR(shows(panel, "deg<br>Primary relief 0.32"));
+  WAIT_FOR(shows(panel, "<br>Primary relief 0.32"));
   EXPECT_FALSE(shows(panel, kRed));
   panel.picture("section_secondary");
 }
@@ -107,8 +107,8 @@ TEST_F(SectionOnStage, ItFollowsTheWheel) {
   const double core = 7.1 + (12.4 - 7.1) * 12.345 / 30;  // that the job asks for
   WAIT_FOR(numbers(panel).size() == 8 && std::abs(numbers(panel)[5] - core) < 0.003);
   EXPECT_EQ(QString::fromStdString(panel.label("section_figures")).replace(kNumber, "#").toStdString(),
-            "Rake # deg, asked 8 ± #<br>Chordal rake # deg, asked 8 ± 6<br>Spiral angle # deg, asked 30 ± 4<br>"
-            "Core diameter # mm, asked # ± #<br>Land # mm");
+            "Rake # deg (8 ± #)<br>Chordal rake # deg (8 ± 6)<br>Spiral angle # deg (30 ± 4)<br>"
+            "Core diameter # mm (# ± #)<br>Land # mm");
   const std::vector<double> shown = numbers(panel);
   EXPECT_NEAR(shown[4], core, 0.1);
   EXPECT_EQ(shown[6], 0.1);

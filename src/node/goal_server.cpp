@@ -392,7 +392,8 @@ flute_grinder::GrindResult GoalServer::resultOfPlan(const PlannedJob& plan) cons
   flute_grinder::GrindResult r = resultOf(plan);
   r.plan.offsets = toMessage(goal_->offsets);
   r.plan.offsets.header.stamp = ros::Time::now();
-  r.plan.warnings = offsetWarnings(goal_->offsets, *goal_->handle.getGoal());
+  const auto goal = goal_->handle.getGoal();
+  if (goal->dry_run) r.plan.warnings = offsetWarnings(goal_->offsets, *goal);
   return r;
 }
 

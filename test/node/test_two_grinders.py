@@ -146,7 +146,7 @@ class TestFaultOfOne(unittest.TestCase):
         runs[1].wait_complete()
         self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0), runs[1].text)
         self.assertTrue(checks.is_gapless(runs[1].setpoints))
-        self.assertEqual(runs[1].result.setpoints_written, runs[1].result.statistics.setpoints)
+        self.assertEqual(runs[1].result.setpoints_written, runs[1].result.plan.statistics.setpoints)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)
         self.assertEqual(left.fresh_state().state, GrinderState.FAULT)
 

@@ -54,6 +54,35 @@ void writeCsv(const StepTable& table, TableCsv& csv) {
   csv.close();
 }
 
+void printStatistics(const PathStatistics& s) {
+  std::printf("setpoints            %llu\n", static_cast<unsigned long long>(s.setpoints));
+  std::printf("duration             %.3f s:", s.duration);
+  for (const MoveRow& move : kMoveKinds) {
+    const double duration = s.move_duration[static_cast<std::size_t>(move.value)];
+    if (duration > 0) std::printf(" %s %.3f", move.name, duration);
+  }
+  std::printf("\nmaximum odd error    %.4e rad\n", s.max_odd_error);
+  std::printf("maximum even error   %.4e rad\n", s.max_even_error);
+  std::printf("maximum deviation    %.3g um at the cutter's surface\n", s.max_deviation / kMicrometre);
+  if (s.max_feed > 0) {
+    std::printf("feed constancy       %.6f to %.6f mm/min\n", s.min_feed / kMillimetrePerMinute,
+                s.max_feed / kMillimetrePerMinute);
+  } else {
+    std::printf("feed constancy       never reached\n");
+  }
+  for (const flute_grinder::FeedLimit& limit : toMessage(s).feed_limits) {
+    std::printf("feed limited by      %s\n", escaped(grinder::text(limit)).c_str());
+  }
+  const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
+    std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
+                v[kZ] / kMillimetre, linear, v[kA] / kDegree, rotary);
+  };
+  axes("maximum velocity", s.max_velocity, "mm/s", "deg/s");
+  axes("maximum acceleration", s.max_acceleration, "mm/s^2", "deg/s^2");
+  axes("maximum jerk", s.max_jerk, "mm/s^3", "deg/s^3");
+  axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
+}
+
 }  // namespace
 
 int runTable(const TableOptions& options) {
@@ -75,35 +104,6 @@ int runTable(const TableOptions& options) {
     printText(table);
   }
   return 0;
-}
-
-void printStatistics(const PathStatistics& s) {
-  std::printf("setpoints            %llu\n", static_cast<unsigned long long>(s.setpoints));
-  std::printf("duration             %.3f s:", s.duration);
-  for (const MoveRow& move : kMoveKinds) {
-    const double duration = s.move_duration[static_cast<std::size_t>(move.value)];
-    if (duration > 0) std::printf(" %s %.3f", move.name, duration);
-  }
-  std::printf("\nmaximum odd error    %.4e rad\n", s.max_odd_error);
-  std::printf("maximum even error   %.4e rad\n", s.max_even_error);
-  std::printf("maximum deviation    %.3g um at the cutter's surface\n", s.max_deviation / kMicrometre);
-  if (s.max_feed > 0) {
-    std::printf("feed constancy       %.6f to %.6f mm/min\n", s.min_feed / kMillimetrePerMinute,
-                s.max_feed / kMillimetrePerMinute);
-  } else {
-    std::printf("feed constancy       never reached\n");
-  }
-  for (const flute_grinder::FeedLimit& limit : toMessage(s).feed_limits) {
-    std::printf("feed limited by      %s\n", escaped(text(limit)).c_str());
-  }
-  const auto axes = [](const char* name, const Axes& v, const char* linear, const char* rotary) {
-    std::printf("%-20s X %.5g  Y %.5g  Z %.5g %s  A %.5g %s\n", name, v[kX] / kMillimetre, v[kY] / kMillimetre,
-                v[kZ] / kMillimetre, linear, v[kA] / kDegree, rotary);
-  };
-  axes("maximum velocity", s.max_velocity, "mm/s", "deg/s");
-  axes("maximum acceleration", s.max_acceleration, "mm/s^2", "deg/s^2");
-  axes("maximum jerk", s.max_jerk, "mm/s^3", "deg/s^3");
-  axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
 void printPlan(const flute_grinder::PlanReport& plan) {

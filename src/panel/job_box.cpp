@@ -1,8 +1,6 @@
 #include "panel/job_box.h"
 
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/job_setup.h"
-#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"

@@ -1,8 +1,6 @@
 #include "panel/legend_box.h"
 
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/scene/markers.h"
 
 #include <QGridLayout>

@@ -10,7 +10,7 @@
 /// A plan as the result of a goal, and the texts of it that command line and panel share.
 namespace grinder {
 
-/// The result of a goal that is planned and not run. Its warnings are left to the caller.
+/// The result of a goal that is planned and not run. Its offsets and warnings are left to the caller.
 flute_grinder::GrindResult resultOf(const PlannedJob& plan);
 
 GroundFigure fromMessage(const flute_grinder::ToolFigure& message);

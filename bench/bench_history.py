@@ -17,6 +17,7 @@ import rospkg
 
 sys.path.insert(0, rospkg.RosPack().get_path('flute_grinder') + '/test/node')
 import grinder_client as gc  # noqa: E402
+import record_files  # noqa: E402
 
 GRINDERS = 4
 
@@ -29,10 +30,9 @@ def keep_copies(folders, count, records):
     """Records in turn, a minute apart, each job with another wear of its wheel."""
     for i in range(count):
         record, start = records[i % len(records)], datetime.datetime(2020, 1, 1) + datetime.timedelta(minutes=i)
-        record.update(started=utc(start), ended=utc(start + datetime.timedelta(seconds=50)))
-        record['job']['file']['process']['wheel']['wear_mm'] = i * 1e-6
+        head = dict(record['head'], started=utc(start), ended=utc(start + datetime.timedelta(seconds=50)), wear_mm=i * 1e-6)
         name = '%010d_' % (i + 1) + start.strftime('%Y%m%dT%H%M%S.000Z.json')
-        (folders[i % len(folders)] / name).write_text(json.dumps(record, separators=(',', ':')))
+        (folders[i % len(folders)] / name).write_text(record_files.text_of(head, record['body']))
 
 
 def main():

@@ -3,11 +3,18 @@
 #include "cli/output_file.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
 #include "flute_grinder/motion/setpoint.h"
-#include "flute_grinder/report/csv_columns.h"
 
 #include <string>
 
 namespace grinder {
+
+/// First line of a CSV file of `grind table`, as in the paper's Table 1.
+inline constexpr char kTableColumns[] = "point,x_mm,a_rad,a_theory_rad,error_rad";
+/// Of `grind plan`.
+inline constexpr char kSetpointColumns[] =
+    "cycle,time_s,move,tooth,pass,step,x_mm,y_mm,z_mm,a_rad,error_rad,feed_mm_min";
+/// What `grind run` appends: the position that the drive read one cycle before.
+inline constexpr char kActualColumns[] = ",actual_x_mm,actual_y_mm,actual_z_mm,actual_a_rad";
 
 /// Writes lines of comma-separated values with 17 significant digits, enough to restore every double exactly.
 class CsvFile {

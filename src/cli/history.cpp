@@ -2,12 +2,15 @@
 
 #include "cli/csv.h"
 #include "cli/machine_file.h"
+#include "cli/recorded_run.h"
 #include "cli/time_text.h"
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/on_all_cores.h"
+#include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/regular_file.h"
 #include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
@@ -19,10 +22,13 @@
 #include <cctype>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -35,39 +41,8 @@ namespace {
 struct Entry {
   std::string file;
   std::string grinder;  ///< its folder, as given
-  std::string started;  ///< as in the record
-  std::string job;
-  std::string operation;  ///< as GrindJob::operationText()
-  std::string tool;
-  std::string outcome, reason;
-  std::size_t strokes = 0;  ///< ground to their end
-  std::size_t passes = 0;   ///< of the job, from the first to grind on
-  double duration = 0;      ///< [s]
-  std::size_t holds = 0;
-  std::string verdict;
-  std::vector<std::string> because;
+  RecordHead head;
 };
-
-/// Of the job in a record's summary.
-std::string operationOf(const Json& job) {
-  if (!job.contains("operations")) return "";
-  const auto kind = valueOf<OperationKind>(job.at("operation").get<std::string>());
-  if (!kind) throw std::runtime_error("operation = " + job["operation"].get<std::string>() + " is none");
-  return rowOf(*kind).words;
-}
-
-std::string toolOf(const Json& cutter) {
-  const auto angle = [&](const char* key) { return cutter.at(key).get<double>() * units::kDegree; };
-  const bool equal = cutter.contains("spiral_angle_deg");
-  CutterGeometry geometry;
-  geometry.end_diameter = cutter.at("end_diameter_mm").get<double>() * units::kMillimetre;
-  geometry.cone_angle = angle("cone_angle_deg");
-  geometry.spiral_angle =
-      equal ? angle("spiral_angle_deg") : cutter.at("spiral_angles_deg").at(0).get<double>() * units::kDegree;
-  geometry.rake_angle = angle("rake_angle_deg");
-  return toolText(geometry,
-                  cutter.contains("teeth") ? cutter["teeth"].get<std::size_t>() : cutter.at("tooth_angles_deg").size());
-}
 
 /// Which records are listed.
 class Filter {
@@ -84,10 +59,12 @@ class Filter {
 
   /// By the start in its file's name.
   bool takes(std::string_view path) const { return first_ <= startOf(path) && startOf(path) <= last_; }
-  bool takesTool(const Entry& entry) const {
-    return options_.tool.empty() || contains(entry.job) || contains(entry.tool);
+  bool takesTool(const RecordHead& head) const {
+    return options_.tool.empty() || contains(head.job) || contains(head.tool);
   }
-  bool takesVerdict(const Entry& entry) const { return options_.verdict.empty() || entry.verdict == options_.verdict; }
+  bool takesVerdict(const RecordHead& head) const {
+    return options_.verdict.empty() || head.verdict == options_.verdict;
+  }
 
  private:
   /// Upper or lower case.
@@ -100,75 +77,68 @@ class Filter {
   const std::string first_, last_;
 };
 
-/// @return nothing if it is filtered out. @throw std::exception if it is no record.
-std::optional<Entry> readEntry(const std::string& path, const std::string& grinder, const Tolerances& tolerances,
-                               const Filter& filter) {
-  Json record = readRecordSummary(path);
-  const Json& job = record["job"].at("file");
-  Entry entry;
-  entry.file = path;
-  entry.grinder = grinder;
-  entry.started = record["started"];
-  entry.job = record["job"].at("name");
-  entry.operation = operationOf(job);
-  entry.tool = toolOf(job.at("cutter"));
-  if (!filter.takesTool(entry)) return std::nullopt;
-  entry.outcome = record["outcome"];
-  entry.reason = record.at("reason");
-  entry.strokes = record["complete_strokes"];
-  entry.holds = record["holds"];
-  Verdict verdict = verdictOnRecord(record, tolerances);
-  entry.duration = record["duration_s"];
-  entry.verdict = std::move(verdict.verdict);
-  entry.because = std::move(verdict.because);
-  entry.passes = record["passes"];
-  if (!filter.takesVerdict(entry)) return std::nullopt;
-  return entry;
-}
-
 Json toJson(const Entry& entry) {
-  return {{"file", entry.file},       {"grinder", entry.grinder},        {"started", entry.started},
-          {"job", entry.job},         {"operation", entry.operation},    {"tool", entry.tool},
-          {"outcome", entry.outcome}, {"reason", entry.reason},          {"strokes", entry.strokes},
-          {"passes", entry.passes},   {"duration_s", entry.duration},    {"holds", entry.holds},
-          {"verdict", entry.verdict}, {"verdict_because", entry.because}};
+  Json json{{"file", entry.file}};
+  json.update(toJson(entry.head));
+  json["grinder"] = entry.grinder;
+  return json;
 }
 
 /// In short; what failed is named.
-std::string verdictText(const Entry& entry) {
-  if (entry.verdict == "incomplete") return "passed as far as measured";
-  if (entry.verdict != "failed") return entry.verdict;
+std::string verdictText(const RecordHead& head) {
+  if (head.verdict == "incomplete") return "passed as far as measured";
+  if (head.verdict != "failed") return head.verdict;
   std::string reasons;
-  for (const std::string& reason : entry.because) reasons += (reasons.empty() ? ": " : "; ") + reason;
+  for (const std::string& reason : head.because) reasons += (reasons.empty() ? ": " : "; ") + reason;
   return "FAILED" + reasons;
 }
 
-using Row = std::array<std::string, 9>;
+/// The rows of the table, which are held until all are read: of a hundred thousand records, in as little memory as can
+/// be.
+class Table {
+ public:
+  using Row = std::array<std::string, 9>;
 
-Row toRow(const Entry& entry) {
-  return {timeText(timeOf(entry.started), false),
-          entry.grinder,
-          (entry.job.empty() ? "-" : entry.job) + (entry.operation.empty() ? "" : ", " + entry.operation),
-          entry.tool,
-          entry.outcome,
-          format("%zu of %zu", entry.strokes, entry.passes),
-          format("%.1f s", entry.duration),
-          std::to_string(entry.holds),
-          verdictText(entry)};
-}
-
-/// @param grinders whether the table has a column for them.
-void printTable(const std::vector<Row>& rows, bool grinders) {
-  std::array<std::size_t, std::tuple_size_v<Row>> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i + 1 < row.size(); ++i) {
-      if (i != 1 || grinders) std::printf("%-*s  ", static_cast<int>(widths[i]), row[i].c_str());
+  void add(const Row& row) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths_[i] = std::max(widths_[i], row[i].size());
+      text_.insert(text_.end(), row[i].c_str(), row[i].c_str() + row[i].size() + 1);
     }
-    std::printf("%s\n", row.back().c_str());
   }
+
+  /// @param grinders whether it has a column for them.
+  void print(bool grinders) const {
+    std::string cell;
+    std::size_t column = 0;
+    for (const char c : text_) {
+      if (c != '\0') {
+        cell += c;
+        continue;
+      }
+      const bool last = column + 1 == widths_.size();
+      if (last) std::printf("%s\n", cell.c_str());
+      if (!last && (column != 1 || grinders)) std::printf("%-*s  ", static_cast<int>(widths_[column]), cell.c_str());
+      column = last ? 0 : column + 1;
+      cell.clear();
+    }
+  }
+
+ private:
+  std::array<std::size_t, std::tuple_size_v<Row>> widths_{};
+  std::deque<char> text_;  ///< of the cells, each with a 0 at its end
+};
+
+Table::Row rowOf(const Entry& entry) {
+  const RecordHead& head = entry.head;
+  return {timeText(timeOf(head.started), false),
+          entry.grinder,
+          (head.job.empty() ? "-" : head.job) + (head.operation.empty() ? "" : ", " + head.operation),
+          head.tool,
+          head.outcome,
+          format("%ju of %ju", std::uintmax_t{head.strokes}, std::uintmax_t{head.passes}),
+          format("%.1f s", head.duration),
+          std::to_string(head.holds),
+          verdictText(head)};
 }
 
 /// The fields of a CSV line; a list is one field. @param take of an entry's member what the line has.
@@ -181,7 +151,7 @@ std::string csvLine(const Json& entry, const Take& take) {
 
 std::string csvField(const Json& value) {
   std::string plain;
-  if (value.is_number()) return grinder::text(value, -1);
+  if (value.is_number() || value.is_boolean()) return grinder::text(value, -1);
   if (value.is_string()) plain = value;
   for (const Json& item : value.is_array() ? value : Json::array()) {
     plain += (plain.empty() ? "" : "; ") + item.get<std::string>();
@@ -201,7 +171,7 @@ class HistoryCsv : public CsvFile {
 
 /// An entry as it is printed and written.
 struct Lines {
-  Row row;
+  Table::Row row;
   std::string json, csv;
 };
 
@@ -211,12 +181,13 @@ class Listing {
  public:
   explicit Listing(const HistoryOptions& options) : json_(options.json), grinders_(options.folders.size() > 1) {
     if (!options.csv.empty()) csv_.emplace(options.csv);
+    table_.add({"start", "grinder", "job", "tool", "outcome", "strokes", "duration", "holds", "verdict"});
   }
 
   /// What add() needs of an entry. Thread safe.
   Lines linesOf(const Entry& entry) const {
     Lines lines;
-    if (!json_) lines.row = toRow(entry);
+    if (!json_) lines.row = rowOf(entry);
     if (!json_ && !csv_) return lines;
     const Json json = toJson(entry);
     if (json_) lines.json = grinder::text(json, -1);
@@ -226,7 +197,7 @@ class Listing {
 
   void add(Lines&& lines) {
     if (json_) std::printf("%s%s", count_ == 0 ? "[\n" : ",\n", lines.json.c_str());
-    if (!json_) rows_.push_back(std::move(lines.row));
+    if (!json_) table_.add(lines.row);
     if (csv_) csv_->write(lines.csv);
     ++count_;
   }
@@ -239,7 +210,7 @@ class Listing {
     } else if (count_ == 0 && !none.empty()) {
       std::printf("%s\n", none.c_str());
     } else {
-      printTable(rows_, grinders_);
+      table_.print(grinders_);
     }
   }
 
@@ -247,7 +218,7 @@ class Listing {
   const bool json_, grinders_;
   std::optional<HistoryCsv> csv_;
   std::size_t count_ = 0;
-  std::vector<Row> rows_{{"start", "grinder", "job", "tool", "outcome", "strokes", "duration", "holds", "verdict"}};
+  Table table_;
 };
 
 /// Of the records, the newest last. Prints what is skipped.
@@ -265,10 +236,10 @@ std::vector<std::string> pathsIn(const std::string& folder) {
 }
 
 /// A record to read.
-struct Record {
+struct Listed {
   std::string path;
   const std::string* grinder;  ///< outlives this
-  std::string place;           ///< its start, or that of one written after it by the same grinder, if that is earlier
+  std::string_view place;      ///< its start, or that of one written after it by the same grinder, if that is earlier
 };
 
 struct Folder {
@@ -297,14 +268,14 @@ std::vector<Folder> foldersOf(const std::string& node, const HistoryOptions& opt
 
 /// The records of all folders, the newest last: those of a folder in their order, also if the clock was once ahead.
 /// Prints why a folder cannot be read. @return whether all could.
-bool findRecords(const std::vector<Folder>& folders, std::vector<Record>& records) {
+bool findRecords(const std::vector<Folder>& folders, std::vector<Listed>& records) {
   bool good = true;
   for (const Folder& folder : folders) {
     try {
       const std::size_t first = records.size();
-      for (const std::string& path : pathsIn(folder.path)) {
-        records.push_back({path, &folder.grinder, std::string(startOf(path))});
-      }
+      for (std::string& path : pathsIn(folder.path)) records.push_back({std::move(path), &folder.grinder, {}});
+      // The texts stay where they are when their paths move.
+      for (std::size_t i = first; i < records.size(); ++i) records[i].place = startOf(records[i].path);
       for (std::size_t i = records.size(); i-- > first + 1;) {
         records[i - 1].place = std::min(records[i - 1].place, records[i].place);
       }
@@ -313,7 +284,7 @@ bool findRecords(const std::vector<Folder>& folders, std::vector<Record>& record
       good = false;
     }
   }
-  const auto older = [](const Record& a, const Record& b) { return a.place < b.place; };
+  const auto older = [](const Listed& a, const Listed& b) { return a.place < b.place; };
   std::stable_sort(records.begin(), records.end(), older);
   return good;
 }
@@ -324,25 +295,55 @@ struct Read {
   std::string error;           ///< why it could not be read; empty if it could
 };
 
-Read readOne(const Record& record, const Tolerances& tolerances, const Filter& filter, const Listing& listing) {
+/// Nothing if it was measured before, or cannot be: `grind report` says why.
+std::optional<GroundTool> toolOf(const Record& record, const std::string& path) {
+  if (record.head.outcome != "done" || isToolMeasured(record)) return std::nullopt;
   try {
-    const std::optional<Entry> entry = readEntry(record.path, *record.grinder, tolerances, filter);
-    return {entry ? std::optional<Lines>(listing.linesOf(*entry)) : std::nullopt, ""};
+    const ValidJob job = jobOf(record, path);
+    return measure("", strokesOf(record, job), evenSections(*job, kJudgedSections));
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
+/// Writes a record's new verdict, if there is one.
+void judgeAgain(const std::string& path, const Tolerances& tolerances) {
+  Record record = readRecord(path);
+  const std::optional<GroundTool> tool = toolOf(record, path);
+  if (!judgeAgain(record, tool ? &*tool : nullptr, tolerances)) return;
+  try {
+    replaceFile(path, text(record));
+  } catch (const std::system_error& error) {
+    throw FileError(path + ": the new verdict cannot be kept: " + error.code().message());
+  }
+}
+
+/// @param tolerances by which it is judged again; nothing: not again.
+Read readOne(const Listed& record, const std::optional<Tolerances>& tolerances, const Filter& filter,
+             const Listing& listing) {
+  try {
+    if (tolerances) judgeAgain(record.path, *tolerances);
+    const RecordHead head = readHead(record.path);
+    if (!filter.takesTool(head) || !filter.takesVerdict(head)) return {};
+    return {listing.linesOf({record.path, *record.grinder, head}), ""};
   } catch (const std::exception& error) {
-    std::string reason = error.what();
-    if (reason.rfind(record.path, 0) != 0) reason = record.path + ": is no record of a job: " + reason;
+    const std::string reason = error.what();
     return {std::nullopt, reason.substr(0, reason.find('\n'))};
   }
 }
 
-/// Reads records on all cores. @param read a record. @param take what has become of each, in order.
+/// Reads records on all cores, and forgets their paths. @param read a record. @param take what has become of each, in
+/// order.
 template <typename ReadOne, typename Take>
-void readAll(const std::vector<Record>& records, const ReadOne& read, const Take& take) {
+void readAll(std::vector<Listed> records, const ReadOne& read, const Take& take) {
   constexpr std::size_t block = 1024;  // bounds the memory
   std::vector<Read> done;
   for (std::size_t begin = 0; begin < records.size(); begin += block) {
     done.assign(std::min(block, records.size() - begin), {});
-    onAllCores(done.size(), [&](std::size_t i) { done[i] = read(records[begin + i]); });
+    onAllCores(done.size(), [&](std::size_t i) {
+      done[i] = read(records[begin + i]);
+      records[begin + i].path = {};
+    });
     std::for_each(done.begin(), done.end(), take);
   }
 }
@@ -363,9 +364,10 @@ std::string historyFolder(const std::string& node) {
   return ros_home + "/flute_grinder/history" + ros::names::resolve(node);
 }
 
-std::optional<std::string> newestRecord(const std::string& folder) {
-  const std::vector<std::string> paths = pathsIn(folder);
-  if (paths.empty()) return std::nullopt;
+std::string lastRecord(const std::string& node, const std::string& folder) {
+  const std::string path = folder.empty() ? historyFolder(node) : folder;
+  const std::vector<std::string> paths = pathsIn(path);
+  if (paths.empty()) throw FileError(path + ": has no record of a job");
   return paths.back();
 }
 
@@ -386,8 +388,8 @@ std::string doneOperations(const std::string& node, const std::string& job) {
   std::map<std::string, std::string> ended;
   for (const std::string& path : paths) {
     try {
-      const Json record = readRecord(path);
-      if (record["outcome"] == "done") ended[record["job"]["digest"]] = record["ended"];
+      const RecordHead head = readHead(path);
+      if (head.outcome == "done") ended[head.digest] = head.ended;
     } catch (const std::exception&) {
       // `grind history` names it.
     }
@@ -403,21 +405,29 @@ std::string doneOperations(const std::string& node, const std::string& job) {
   return "done by the records: " + (done.empty() ? "none" : done);
 }
 
+std::string tolerancesFile(const std::string& path) {
+  return path.empty() ? packageFile("config/tolerances.yaml") : path;
+}
+
 int printHistory(const std::string& node, const HistoryOptions& options) {
   const Filter filter(options);
   const std::vector<Folder> folders = foldersOf(node, options);
-  const Tolerances tolerances =
-      readTolerances(options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
+  std::optional<Tolerances> tolerances;
+  if (options.judge_again) tolerances = readTolerances(tolerancesFile(options.tolerances));
   Listing listing(options);
-  std::vector<Record> records;
+  std::vector<Listed> records;
   int status = findRecords(folders, records) ? 0 : 2;
   if (status != 0 && folders.size() == 1) return status;
   std::string none = records.empty() ? "no records in" : "no such records in";
   for (const Folder& folder : folders) none += (&folder == &folders.front() ? " " : ", ") + folder.path;
-  const auto is_other = [&](const Record& record) { return !filter.takes(record.path); };
+  const auto is_other = [&](const Listed& record) { return !filter.takes(record.path); };
   records.erase(std::remove_if(records.begin(), records.end(), is_other), records.end());
+  // None of them is written over.
+  for (const Listed& record : records) {
+    if (!options.csv.empty()) requireRegularFile(record.path);
+  }
   readAll(
-      records, [&](const Record& record) { return readOne(record, tolerances, filter, listing); },
+      std::move(records), [&](const Listed& record) { return readOne(record, tolerances, filter, listing); },
       [&](Read& read) {
         if (read.lines) listing.add(std::move(*read.lines));
         if (read.error.empty()) return;

@@ -17,6 +17,17 @@ namespace grinder {
 
 namespace {
 
+/// What a grinder has recorded: a file, or its newest record. @param words what the file may be.
+template <typename Options>
+void addRecorded(CLI::App& command, const char* words, Options& options) {
+  auto* file = command.add_option("FILE", options.file, words)->type_name(kAnyFile);
+  auto* last = command.add_flag("--last", options.last, "the newest record that the grinder has kept by itself");
+  last->excludes(file);
+  command.add_option("--from", options.folder, "folder of the records (default: the grinder's below ~/.ros)")
+      ->needs(last)
+      ->type_name(kFolder);
+}
+
 void addTable(Commands& commands) {
   const auto options = std::make_shared<TableOptions>();
   auto& command =
@@ -58,10 +69,9 @@ void addSetup(Commands& commands) {
 void addSimulate(Commands& commands) {
   const auto options = std::make_shared<SimulateOptions>();
   auto& command = commands.add("simulate", "compute and measure the cutter that a job grinds or a run has ground",
-                               "jobs/paper.yaml --at 1,17,29", [options] { return runSimulate(*options); });
-  command.add_option("FILE", options->file, "job file, CSV file of run, or a bag of 'roslaunch ... bag:=true'")
-      ->required()
-      ->type_name(kAnyFile);
+                               "jobs/paper.yaml --at 1,17,29",
+                               [&commands, options] { return runSimulate(commands.node, *options); });
+  addRecorded(command, "job file, record of 'grind history', or bag of 'roslaunch ... bag:=true'", *options);
   auto* at = command.add_option("--at", options->at_mm, "X of the sections in mm, separated by commas")->delimiter(',');
   at->type_name("MM,MM,...");
   command.add_option("--sections", options->sections, "number of sections over the flute's length (default: 9)")
@@ -71,7 +81,7 @@ void addSimulate(Commands& commands) {
   command.add_option("--stl", options->stl, "write the cutter as a solid to this file, in mm")->type_name(kAnyFile);
   command.add_option("--svg", options->svg, "draw the sections at both ends and in the middle, and the figures over X")
       ->type_name(kAnyFile);
-  command.add_option("--job", options->job, "job file of a record that does not have its job")->type_name(kYamlFile);
+  command.add_option("--job", options->job, "job file of a bag that does not have its job")->type_name(kYamlFile);
   addOperation(command, options->operation);
   addCountedJob(command, "--run", options->run);
   addJson(command, options->json);
@@ -105,34 +115,24 @@ void addGoal(Commands& commands) {
   addOperation(command, *operation);
 }
 
-void addTolerances(CLI::App& command, std::string& path) {
-  command.add_option("--tolerances", path, "what the tool is passed by (default: config/tolerances.yaml)")
-      ->type_name(kYamlFile);
+CLI::Option& addTolerances(CLI::App& command, std::string& path, const std::string& words) {
+  return *command.add_option("--tolerances", path, words + " (default: config/tolerances.yaml)")->type_name(kYamlFile);
 }
 
 void addReport(Commands& commands) {
   const auto options = std::make_shared<ReportOptions>();
-  auto& command = commands.add("report", "draw a table, a plan or a recorded run, and pass or fail the ground tool",
-                               "setpoints.csv -o report.html",
-                               [&commands, options] { return writeReport(commands.node, *options); });
-  auto* file = command.add_option("FILE", options->file,
-                                  "bag of 'roslaunch ... bag:=true', record of 'grind history', or CSV file of table, "
-                                  "plan or run");
-  file->type_name(kAnyFile);
-  auto* last = command.add_flag("--last", options->last, "the newest record that the grinder has kept by itself");
-  last->excludes(file);
-  command.add_option("--from", options->folder, "folder of the records (default: the grinder's below ~/.ros)")
-      ->needs(last)
-      ->type_name(kFolder);
+  auto& command =
+      commands.add("report", "draw a recorded run, and pass or fail the ground tool", "--last -o report.html",
+                   [&commands, options] { return writeReport(commands.node, *options); });
+  addRecorded(command, "record of 'grind history', or bag of 'roslaunch ... bag:=true'", *options);
   command.add_option("-o,--output", options->html, "HTML file to write")->type_name(kAnyFile);
   command.add_option("--pdf", options->pdf, "PDF file to write, by Chromium")->type_name(kAnyFile);
   addJson(command, options->json);
   command.add_option("--note", options->note, "the operator's words for the first page")->type_name("TEXT");
   command.add_option("--operator", options->operator_name, "who ground the tool, for every page")->type_name("NAME");
   command.add_option("--serial", options->serial, "serial number of the tool, for every page")->type_name("NUMBER");
-  addTolerances(command, options->tolerances);
+  addTolerances(command, options->tolerances, "what the tool is passed by");
   addCountedJob(command, "--job", options->job);
-  addMachine(command, options->parameters, options->urdf);
 }
 
 /// A day or a time of `grind history`. @param last as of timeOfDate().
@@ -166,7 +166,10 @@ void addHistory(Commands& commands) {
   command.add_option("--verdict", options->verdict, "only with this one; incomplete: passed as far as measured")
       ->check(CLI::IsMember({"passed", "incomplete", "failed"}).description(""))
       ->type_name("{passed|incomplete|failed}");
-  addTolerances(command, options->tolerances);
+  auto* again =
+      command.add_flag("--judge-again", options->judge_again,
+                       "first measure the tools that were not, judge all, and keep the verdicts in the records");
+  addTolerances(command, options->tolerances, "what they are judged by").needs(again);
   addJson(command, options->json);
   addCsv(command, options->csv, "write the list to this file");
 }

@@ -1,15 +1,13 @@
 #include "cli/report.h"
 
-#include "cli/ground_tool.h"
 #include "cli/history.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "cli/run_before.h"
+#include "cli/recorded_run.h"
+#include "cli/tool_output.h"
 #include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/record/machine_info.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/report/findings.h"
 
@@ -30,8 +28,6 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSections = 17;  ///< in which a report has the tool measured
-
 std::filesystem::path ownPath() {
   std::error_code error;
   std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -48,13 +44,6 @@ std::vector<char*> pointersTo(std::vector<std::string>& arguments) {
   for (std::string& argument : arguments) argv.push_back(argument.data());
   argv.push_back(nullptr);
   return argv;
-}
-
-/// The newest record in a folder. @throw FileError if there is none.
-std::string lastRecord(const std::string& folder) {
-  const std::optional<std::string> newest = newestRecord(folder);
-  if (!newest) throw FileError(folder + ": has no record of a job");
-  return *newest;
 }
 
 /// A file of the program's own, open to be read from its beginning. @throw FileError
@@ -76,9 +65,15 @@ std::string reasonWhyNot(const Action& action) {
   }
 }
 
-/// Goes through the rows of a file for the report, and for the tool if it has the job and the positions read.
+/// Measures the tool of a run.
+void measureTool(const RunStrokes& strokes, const std::string& place, ReportContext& context) {
+  context.tool.emplace(measure(context.file + place, strokes, evenSections(*strokes.job(), kJudgedSections)));
+  context.tool_json = toJson(*context.tool);
+}
+
+/// Goes through the rows of a bag for the report, and for the tool if it has the job and the positions read.
 /// @param job of the run, with its laws.
-void surveyRun(const std::string& path, const RunFile& run, const std::optional<ValidJob>& job, Survey& survey,
+void surveyRun(const std::string& path, const BagRun& run, const std::optional<ValidJob>& job, Survey& survey,
                ReportContext& context) {
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
@@ -90,34 +85,39 @@ void surveyRun(const std::string& path, const RunFile& run, const std::optional<
   if (!strokes || !why.empty()) return;
   why = reasonWhyNot([&] {
     strokes->finish();
-    context.tool = toJson(measure(context.file + ", " + run.place() + recordedBeforeText(run), *strokes,
-                                  evenSections(*strokes->job(), kSections)));
+    measureTool(*strokes, ", " + run.place() + recordedBeforeText(run), context);
   });
 }
 
-/// What a report says of a file, with the points of its pictures if they are wanted.
-Json documentOf(const std::string& path, int job, bool draws, ReportContext& context) {
-  if (kindOf(path) == FileKind::kRecord) {
-    if (job != 0) throw FileError(path + ": job " + std::to_string(job) + ": only a bag has several jobs");
-    const Json record = readRecord(path);
-    context.no_tool = reasonWhyNot([&] {
-      const ValidJob asked = withLaws(ValidJob(parseJob(record["job"]["file"].dump(), path)));
-      context.tool = toJson(measure(asked, context.file, groundCutterOf(asked), evenSections(*asked, kSections)));
-    });
-    return findingsOfRecord(record, context);
-  }
-  const std::unique_ptr<RunFile> run = RunFile::open(path, job);
+/// What a report says of a job in a bag, with the points of its pictures if they are wanted.
+Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& context) {
+  const BagRun run(path, job);
   std::optional<ValidJob> asked;
-  if (run->job()) {
-    context.no_tool = reasonWhyNot([&] { asked = withLaws(*run->job()); });
-  } else if (run->kind() == FileKind::kBag) {
-    context.no_tool = "the bag does not have the goal of " + run->place();
+  if (run.job()) {
+    context.no_tool = reasonWhyNot([&] { asked = withLaws(*run.job()); });
+  } else {
+    context.no_tool = "the bag does not have the goal of " + run.place();
   }
-  Survey survey(*run, asked, draws);
-  surveyRun(path, *run, asked, survey, context);
+  Survey survey(run, asked, draws);
+  surveyRun(path, run, asked, survey, context);
   Json document = survey.findings(context);
   if (draws) document["plots"] = survey.plots();
   return document;
+}
+
+Json documentOfRecord(const std::string& path, ReportContext& context) {
+  Record record = readRecord(path);
+  context.no_tool = reasonWhyNot([&] { measureTool(strokesOf(record, jobOf(record, path)), "", context); });
+  judgeAgain(record, context.tool ? &*context.tool : nullptr, context.tolerances);
+  return findingsOfRecord(record, context);
+}
+
+Json documentOf(const std::string& path, const ReportOptions& options, bool draws, ReportContext& context) {
+  if (isBag(path)) return documentOfBag(path, options.job, draws, context);
+  if (options.job != 0) {
+    throw FileError(path + ": job " + std::to_string(options.job) + ": only a bag has several jobs");
+  }
+  return documentOfRecord(path, context);
 }
 
 /// Runs a program that draws. @param words it and its arguments. @param document on its standard input.
@@ -165,9 +165,7 @@ int writeReport(const std::string& node, const ReportOptions& options) {
   const bool draws = !options.html.empty() || !options.pdf.empty();
   if (!draws && !options.json) throw std::invalid_argument("nothing to write; allowed: --output, --pdf, --json");
   ReportContext context;
-  context.limits = machineInfo(readMachineFiles({options.parameters}, options.urdf).config.loop, "");
-  context.tolerances =
-      readTolerances(options.tolerances.empty() ? packageFile("config/tolerances.yaml") : options.tolerances);
+  context.tolerances = readTolerances(tolerancesFile(options.tolerances));
   context.words = Json::object();
   const auto add = [&](const char* key, const std::string& value) {
     if (!value.empty()) context.words[key] = value;
@@ -175,12 +173,11 @@ int writeReport(const std::string& node, const ReportOptions& options) {
   add("note", options.note);
   add("operator", options.operator_name);
   add("serial", options.serial);
-  const std::string path =
-      options.last ? lastRecord(options.folder.empty() ? historyFolder(node) : options.folder) : options.file;
+  const std::string path = options.last ? lastRecord(node, options.folder) : options.file;
   context.file = std::filesystem::path(path).filename();
-  kindOf(path);  // before the files are opened, none of which may be this one
+  isBag(path);  // before the files are opened, none of which may be this one
   const ReportFiles files{openOutput(options.html), openOutput(options.pdf)};
-  Json document = documentOf(path, options.job, draws, context);
+  Json document = documentOf(path, options, draws, context);
   if (options.json) {
     Json data = document;
     data.erase("plots");

@@ -8,7 +8,7 @@ namespace grinder {
 
 /// Arguments of `grind report`.
 struct ReportOptions {
-  std::string file;           ///< a bag, a record of the grinder, or points or setpoints (CSV)
+  std::string file;           ///< a bag, or a record of the grinder
   bool last = false;          ///< the newest record of the grinder instead
   std::string folder;         ///< of these records; empty for the default folder of the grinder
   std::string html;           ///< file to write; empty for none
@@ -19,14 +19,12 @@ struct ReportOptions {
   std::string serial;         ///< of the tool
   std::string tolerances;     ///< YAML of what the tool is passed by; empty for the package's own
   int job = 0;                ///< which of a bag's jobs, from 1; 0 for the last
-  std::string parameters;     ///< YAML of the machine, for files without its limits
-  std::string urdf;
 };
 
 /// Writes a report: works out what it says, and has a Python program draw it, if it is to be drawn.
 /// @param node the grinder's name, as for historyFolder().
-/// @throw JobFileError or ParameterError if the machine or the tolerances cannot be read, FileError if the file cannot,
-/// there is no record, or the program is missing, std::invalid_argument if nothing is asked for.
+/// @throw JobFileError if the tolerances cannot be read, FileError if the file cannot, there is no record, or the
+/// program is missing, std::invalid_argument if nothing is asked for.
 /// @return the exit status.
 int writeReport(const std::string& node, const ReportOptions& options);
 

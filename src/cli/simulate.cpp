@@ -1,23 +1,27 @@
 #include "cli/simulate.h"
 
-#include "cli/ground_tool.h"
+#include "cli/history.h"
 #include "cli/output_file.h"
+#include "cli/recorded_run.h"
 #include "cli/report.h"
-#include "cli/run_before.h"
+#include "cli/tool_output.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/cutter_solid.h"
 #include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/stl.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/report/run_file.h"
+#include "flute_grinder/record/record_file.h"
+#include "flute_grinder/report/bag_run.h"
 
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
+#include <utility>
 
 namespace grinder {
 
@@ -70,38 +74,40 @@ struct Source {
   ValidJob job;
   std::string name;  ///< for the reader
   std::string file;
-  std::unique_ptr<RunFile> run;
+  std::optional<BagRun> bag;
+  std::optional<Record> record;
 };
 
 /// @throw FileError, JobFileError
-Source sourceOf(const SimulateOptions& options) {
-  const std::string name = std::filesystem::path(options.file).filename();
-  const FileKind kind = kindOf(options.file);
-  if (kind == FileKind::kOther || kind == FileKind::kRecord)
-    return {ValidJob(readJobFile(options.file, {}, options.operation)), name, options.file, nullptr};
-  if (kind == FileKind::kTable || kind == FileKind::kPlan) {
-    throw FileError(options.file +
-                    ": is no file of 'grind run --csv'; without the positions that the drive read there is "
-                    "nothing to simulate");
-  }
-  if (kind == FileKind::kRun && options.job.empty())
-    throw FileError(options.file + ": a CSV file does not have the job; give its file with --job");
-  std::unique_ptr<RunFile> run = RunFile::open(options.file, options.run);
-  if (!run->job() && options.job.empty()) {
-    throw FileError(options.file + ": the bag does not have the goal of " + run->place() +
+Source sourceOfBag(const SimulateOptions& options, const std::string& name) {
+  BagRun run(options.file, options.run);
+  if (!run.job() && options.job.empty()) {
+    throw FileError(options.file + ": the bag does not have the goal of " + run.place() +
                     "; give its job file with --job");
   }
-  const ValidJob job = options.job.empty() ? *run->job() : ValidJob(readJobFile(options.job, {}, options.operation));
-  const std::string place = (run->place().empty() ? "" : ", ") + run->place() + recordedBeforeText(*run);
-  return {job, name + place, options.file, std::move(run)};
+  const ValidJob job = options.job.empty() ? *run.job() : ValidJob(readJobFile(options.job, {}, options.operation));
+  const std::string place = name + ", " + run.place() + recordedBeforeText(run);
+  return {job, place, options.file, std::move(run), {}};
+}
+
+/// @throw FileError, JobFileError
+Source sourceOf(const std::string& node, const SimulateOptions& options) {
+  const std::string file = options.last ? lastRecord(node, options.folder) : options.file;
+  const std::string name = std::filesystem::path(file).filename();
+  if (isBag(file)) return sourceOfBag(options, name);
+  if (!isRecord(file)) return {ValidJob(readJobFile(file, {}, options.operation)), name, file, {}, {}};
+  Record record = readRecord(file);
+  const ValidJob job = jobOf(record, file);
+  return {job, name, file, {}, std::move(record)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
+  if (source.record) return measure(source.name, strokesOf(*source.record, source.job), at);
   const ValidJob job = withLaws(source.job);
-  if (!source.run) return measure(job, source.name, groundCutterOf(job), at);
-  RunStrokes strokes(job, recordedBefore(source.file, *source.run));
-  source.run->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
+  if (!source.bag) return measure(job, source.name, groundCutterOf(job), at);
+  RunStrokes strokes(job, recordedBefore(source.file, *source.bag));
+  source.bag->visit([&](const RunRow& row) { strokes.add(row.setpoint, row.actual); });
   strokes.finish();
   return measure(source.name, strokes, at);
 }
@@ -121,8 +127,9 @@ int show(const GroundTool& tool, bool json) {
 
 }  // namespace
 
-int runSimulate(const SimulateOptions& options) {
-  const Source source = sourceOf(options);
+int runSimulate(const std::string& node, const SimulateOptions& options) {
+  if (options.file.empty() && !options.last) throw std::invalid_argument("FILE is missing; allowed: a file, or --last");
+  const Source source = sourceOf(node, options);
   const std::vector<double> at = sectionsOf(options, *source.job);
   std::optional<GroundToolCsv> csv;
   if (!options.csv.empty()) csv.emplace(options.csv, source.job);

@@ -170,7 +170,8 @@ MachineConfig readMachineConfig(const MachineModel& model, const ParameterReader
   config.thresholds = readDiagnosticThresholds(p);
   config.first_view = readFirstView(p);
   config.drive = p.text("hardware/type", drives);
-  p.refuseUnknown({"hardware", "journal", "offsets", "history", "configuration", "recorder", "diagnostic_period"});
+  p.refuseUnknown(
+      {"hardware", "journal", "offsets", "history", "tolerances", "configuration", "recorder", "diagnostic_period"});
   return config;
 }
 

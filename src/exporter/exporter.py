@@ -108,12 +108,6 @@ def tool_text(cutter):
         'tooth' if teeth == 1 else 'teeth')
 
 
-def ends_tool(file):
-    """Whether the job of a record is the last of its tool's operations, or the only one."""
-    last = file.get('operations', [{'kind': None}])[-1]
-    return file.get('operation') == last.get('relief', last['kind'])
-
-
 def like(value, model):
     """Whether a value of a JSON file has the type of a model, or is of it, with the same keys; numbers not negative, and finite."""
     if isinstance(model, type):
@@ -199,22 +193,20 @@ class Records:
                     say(self.folder / name, 'not counted: %s' % error)
             listed = subprocess.run([str(job.GRIND), 'history', '--from', folder, '--json'], stdout=subprocess.PIPE)
             for entry in json.loads(listed.stdout.decode()):
-                file = pathlib.Path(entry['file'])
-                yield dict(entry, name=file.name, text=file.read_bytes())
+                yield dict(entry, name=pathlib.Path(entry['file']).name)
 
     def add(self, entry):
-        record, sums = json.loads(entry['text'].decode()), self.sums
-        file = record['job']['file']
+        sums = self.sums
         sums['jobs'][entry['outcome']] += 1
         sums['verdicts'][entry['verdict']] += 1
-        sums['tools'] += entry['outcome'] == 'done' and ends_tool(file)
+        sums['tools'] += entry['outcome'] == 'done' and entry['ends_tool']
         sums['strokes'] += entry['strokes']
-        sums['setpoints'] += record['setpoints']['written']
+        sums['setpoints'] += entry['setpoints']
         sums['seconds'] += entry['duration_s']
-        self.add_wheel(record['wheel'], file['process']['wheel']['wear_mm'] / 1e3, entry['outcome'] == 'done')
+        self.add_wheel(entry['wheel'], entry['dressed'], entry['wear_mm'] / 1e3, entry['outcome'] == 'done')
 
-    def add_wheel(self, wheel, wear, done):
-        wheels, name, dressed = self.sums['wheels'], wheel['name'], wheel['dressed']
+    def add_wheel(self, name, dressed, wear, done):
+        wheels = self.sums['wheels']
         if wheels.get(name, {}).get('dressed') != dressed:
             wheels[name] = {'dressed': dressed, 'tools': 0}
         wheels[name]['tools'] += done

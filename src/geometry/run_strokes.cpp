@@ -38,6 +38,23 @@ double maxRadius(const ValidJob& job) {
 RunStrokes::RunStrokes(const ValidJob& job, std::optional<GroundCutter> before)
     : job_(job), before_(std::move(before)), radius_(maxRadius(job)) {}
 
+RunStrokes::RunStrokes(const ValidJob& job, std::vector<RunStroke> strokes, std::optional<GroundCutter> before)
+    : RunStrokes(job, std::move(before)) {
+  for (const RunStroke& stroke : strokes) {
+    requirePlace(stroke.place, "a stroke");
+    if (stroke.deviations.empty()) throw std::invalid_argument("a stroke has no positions");
+  }
+  strokes_ = std::move(strokes);
+}
+
+void RunStrokes::requirePlace(const ToothPass& place, const std::string& what) const {
+  const int passes = static_cast<int>(job_.depths().size());
+  if (place.tooth >= 0 && place.tooth < job_.teeth() && place.pass >= 0 && place.pass < passes) return;
+  throw std::invalid_argument(what + " grinds tooth " + std::to_string(place.tooth + 1) + ", pass " +
+                              std::to_string(place.pass + 1) + "; the job has " + std::to_string(job_.teeth()) +
+                              " teeth and " + std::to_string(passes) + " passes");
+}
+
 double RunStrokes::wearOf(const ToothPass& place) const {
   const std::vector<JobPass>& passes = job_.passes();
   return std::find_if(passes.begin(), passes.end(), [&](const JobPass& pass) { return pass.place == place; })->wear;
@@ -45,12 +62,7 @@ double RunStrokes::wearOf(const ToothPass& place) const {
 
 void RunStrokes::add(const Setpoint& setpoint, const Axes& actual) {
   const Part part{{setpoint.tooth, setpoint.pass}, setpoint.move, setpoint.cycle};
-  if (!(part.place.tooth < job_.teeth() && part.place.pass < static_cast<int>(job_.depths().size()))) {
-    throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + " grinds tooth " +
-                                std::to_string(part.place.tooth + 1) + ", pass " + std::to_string(part.place.pass + 1) +
-                                "; the job has " + std::to_string(job_.teeth()) + " teeth and " +
-                                std::to_string(job_.depths().size()) + " passes");
-  }
+  requirePlace(part.place, "cycle " + std::to_string(setpoint.cycle));
   if (!actual.isFinite().all()) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + ": the position read is not finite");
   }

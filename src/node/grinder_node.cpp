@@ -87,6 +87,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const LoopConfig& config = own.loop;
   const std::string name = private_nh_.getNamespace();
   const NodeFiles files = readNodeFiles(parameters, name);
+  const Tolerances tolerances = readTolerances(files.tolerances);
   journal_ = std::make_unique<JournalWriter>(files.journal, name);
   offsets_ = std::make_unique<OffsetStore>(files.offsets, name);
   const std::string unknown = offsets_->unknown();
@@ -111,8 +112,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   machine_ = private_nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
   machine_.publish(toMessage(machine, can, config.jog_timeout));
   planner_ = std::make_unique<Planner>(config.machine, MachineShapes(model));
-  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, machine,
-                                           own.thresholds, model, own.first_view);
+  telemetry_ = std::make_unique<Telemetry>(nh_, private_nh_, *loop_, *journal_, *offsets_, *history_, tolerances,
+                                           machine, own.thresholds, model, own.first_view);
   stops_ = std::make_unique<StopServer>(private_nh_, *loop_, gate_);
   loop_->startThread();
   watchdog_ = std::make_unique<LoopWatchdog>(*loop_, drive);

@@ -4,8 +4,8 @@
 
 namespace grinder {
 
-JobRecorder::JobRecorder(std::string grinder, MachineInfo machine, History& history)
-    : grinder_(std::move(grinder)), machine_(std::move(machine)), history_(history) {}
+JobRecorder::JobRecorder(std::string grinder, MachineInfo machine, const Tolerances& tolerances, History& history)
+    : grinder_(std::move(grinder)), machine_(std::move(machine)), tolerances_(tolerances), history_(history) {}
 
 JobRecorder::~JobRecorder() {
   for (const auto& entry : jobs_) keep(entry.second.record);
@@ -33,8 +33,8 @@ void JobRecorder::keepIfComplete(std::uint64_t number) {
 
 void JobRecorder::keep(const std::shared_ptr<const JobRecord>& record) {
   if (!record->moved()) return;
-  history_.keep(record->started(), [record, grinder = grinder_, machine = machine_] {
-    return text(record->json(grinder, machine), -1) + "\n";
+  history_.keep(record->started(), [record, grinder = grinder_, machine = machine_, tolerances = tolerances_] {
+    return text(record->record(grinder, machine, tolerances));
   });
 }
 

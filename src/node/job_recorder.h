@@ -14,8 +14,9 @@ namespace grinder {
 /// result is known, in either order. Not thread safe.
 class JobRecorder {
  public:
-  /// @param grinder the node's name. @param history must outlive this object.
-  JobRecorder(std::string grinder, MachineInfo machine, History& history);
+  /// @param grinder the node's name. @param tolerances by which jobs are judged. @param history must outlive this
+  /// object.
+  JobRecorder(std::string grinder, MachineInfo machine, const Tolerances& tolerances, History& history);
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
   /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
@@ -42,6 +43,7 @@ class JobRecorder {
 
   const std::string grinder_;
   const MachineInfo machine_;
+  const Tolerances tolerances_;
   History& history_;
   std::map<std::uint64_t, Job> jobs_;
 };

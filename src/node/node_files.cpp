@@ -13,7 +13,8 @@ std::string filePath(const std::string& parameter, const std::string& node, cons
 
 NodeFiles readNodeFiles(const ParameterReader& parameters, const std::string& node) {
   return {filePath(parameters.path("journal"), node, ".journal"),
-          filePath(parameters.path("offsets"), node, ".offsets"), filePath(parameters.path("history"), node, "/")};
+          filePath(parameters.path("offsets"), node, ".offsets"), filePath(parameters.path("history"), node, "/"),
+          parameters.path("tolerances")};
 }
 
 }  // namespace grinder

@@ -76,8 +76,8 @@ const char* powerInWords(LoopWatchdog::Finding finding) {
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
                      const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const MachineModel& model,
-                     const FirstView& first_view)
+                     const Tolerances& tolerances, const MachineInfo& machine, const DiagnosticThresholds& thresholds,
+                     const MachineModel& model, const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
@@ -91,7 +91,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
       robot_status_(nh),
       frames_(model, first_view),
       scene_(private_nh, first_view),
-      recorder_(private_nh.getNamespace(), machine, history),
+      recorder_(private_nh.getNamespace(), machine, tolerances, history),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);

@@ -38,8 +38,9 @@ class Telemetry {
   /// @param private_nh the node's private namespace, for everything else.
   /// @param loop,journal,offsets,history must outlive this object.
   Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, History& history, const MachineInfo& machine,
-            const DiagnosticThresholds& thresholds, const MachineModel& model, const FirstView& first_view);
+            const JournalWriter& journal, const OffsetStore& offsets, History& history, const Tolerances& tolerances,
+            const MachineInfo& machine, const DiagnosticThresholds& thresholds, const MachineModel& model,
+            const FirstView& first_view);
   ~Telemetry();
 
   /// Starts publishing. @param watchdog must outlive this object.

@@ -1,13 +1,16 @@
 #include "flute_grinder/record/job_record.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/record/cycle_figures.h"
-#include "flute_grinder/record/record_file.h"
+#include "flute_grinder/record/ground_strokes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 namespace grinder {
@@ -35,7 +38,8 @@ JobRecord::JobRecord(const PlannedJob& plan, JobNames names, const WorkOffsets& 
       offsets_(offsets),
       offsets_said_right_(said_right),
       pass_(plan.program->run().first),
-      strokes_(plan.program->job()) {
+      strokes_(plan.program->job()),
+      ground_(plan.program->job()) {
   conclusion_.reason = kNoEnd;
 }
 
@@ -51,6 +55,7 @@ void JobRecord::addCycle(const CycleSample& sample) {
 
 void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleSample& sample) {
   ++setpoints_;
+  addGround(setpoint, sample);
   pass_ = {setpoint.tooth, setpoint.pass};
   if (setpoint.move != MoveKind::kStroke) return;
   strokes_.add(setpoint, since(sample));
@@ -59,9 +64,13 @@ void JobRecord::addSetpoint(const Setpoint& setpoint, const CycleSample& sample)
   strokes_.addFollowingError(error);
 }
 
-Json JobRecord::jobJson() const {
-  const GrindJob& job = *program_->job();
-  return {{"name", names_.job}, {"digest", digest_}, {"file", grinder::toJson(job)}};
+void JobRecord::addGround(const Setpoint& setpoint, const CycleSample& sample) {
+  if (!not_ground_.empty()) return;
+  try {
+    ground_.add(setpoint, sample.position - program_->run().offset);
+  } catch (const std::invalid_argument& error) {
+    not_ground_ = error.what();
+  }
 }
 
 Json JobRecord::zeroPointsJson() const {
@@ -76,39 +85,70 @@ Json JobRecord::zeroPointsJson() const {
   return json;
 }
 
-Json JobRecord::strokesJson() const {
-  Json list = strokes_.json(true);
-  for (std::size_t i = 0; i < list.size(); ++i) list[i]["complete"] = strokes_.strokes()[i].complete;
-  return list;
+RecordHead JobRecord::head() const {
+  const GrindJob& job = *program_->job();
+  const std::vector<Move>& moves = program_->moves();
+  const auto is_stroke = [](const Move& move) { return move.kind == MoveKind::kStroke; };
+  const auto is_complete = [](const StrokeFigures& stroke) { return stroke.complete; };
+  const auto count = [](const auto& list, const auto& counts) {
+    return static_cast<std::uint64_t>(std::count_if(list.begin(), list.end(), counts));
+  };
+  RecordHead head;
+  head.started = utcText(started_);
+  head.ended = utcText(ended_);
+  // As the difference of these, which are in whole milliseconds.
+  head.duration = std::round(1000 * (timeOf(head.ended) - timeOf(head.started))) / 1000;
+  head.job = names_.job;
+  head.digest = digest_;
+  head.operation = job.operationText();
+  head.tool = toolText(job.cutter, job.tooth_angles.size());
+  head.ends_tool = job.operations.empty() || job.operation + 1 == static_cast<int>(job.operations.size());
+  head.wheel = names_.wheel;
+  head.dressed = names_.wheel_dressed;
+  head.wear = job.process.wheel_wear / kMillimetre;
+  head.outcome = conclusion_.outcome;
+  head.reason = conclusion_.reason;
+  head.strokes = count(strokes_.strokes(), is_complete);
+  head.passes = count(moves, is_stroke);
+  head.holds = events_.holds().size();
+  head.setpoints = std::max(conclusion_.setpoints_written, setpoints_ + lost_);
+  head.lost = lost_;
+  return head;
 }
 
-Json JobRecord::json(const std::string& grinder, const MachineInfo& machine) const {
-  const std::uint64_t written = std::max(conclusion_.setpoints_written, setpoints_ + lost_);
+std::vector<Criterion> JobRecord::judge(const Tolerances& tolerances) const {
+  const ValidJob& job = program_->job();
+  std::vector<Criterion> criteria = criteriaOfTool(job, nullptr, tolerances);
+  const RunFacts facts{job, strokes_.strokes(), planned_.feed_limits, cycles_, late_, longest_};
+  for (Criterion& criterion : criteriaOfRun(facts, tolerances)) criteria.push_back(std::move(criterion));
+  return criteria;
+}
+
+Record JobRecord::record(const std::string& grinder, const MachineInfo& machine, const Tolerances& tolerances) const {
+  RunStrokes ground = ground_;
+  ground.finish();
+  const std::vector<Criterion> criteria = judge(tolerances);
+  RecordHead head = this->head();
+  head.grinder = grinder;
+  Verdict verdict = verdictOn(criteria, head.outcome, lost_);
+  head.verdict = std::move(verdict.verdict);
+  head.because = std::move(verdict.because);
   const ToothPass& first = program_->run().first;
-  const std::vector<Move>& moves = program_->moves();
-  const auto passes =
-      std::count_if(moves.begin(), moves.end(), [](const Move& move) { return move.kind == MoveKind::kStroke; });
-  Json record{{"record", 1},
-              {"grinder", grinder},
-              {"machine", toJson(machine)},
-              {"job", jobJson()},
-              {"started", utcText(started_)},
-              {"ended", utcText(ended_)},
-              {"outcome", conclusion_.outcome},
-              {"reason", conclusion_.reason},
-              {"wheel", {{"name", names_.wheel}, {"dressed", names_.wheel_dressed}}},
-              {"first", {{"tooth", first.tooth + 1}, {"pass", first.pass + 1}}},
-              {"passes", passes},
-              {"work_offsets", grinder::toJson(program_->run().offset, "")},
-              {"zero_points", zeroPointsJson()},
-              {"planned", plannedJson(planned_)},
-              {"setpoints", {{"written", written}, {"lost", lost_}}},
-              {"late_cycles", {{"count", late_}, {"longest_ms", longest_ * 1e3}}},
-              {"strokes", strokesJson()},
-              {"holds", events_.holds()},
-              {"overrides", events_.overrides()}};
-  if (events_.omitted() > 0) record["omitted"] = events_.omitted();
-  return record;
+  Json body{{"machine", toJson(machine)},
+            {"job_file", toJson(*program_->job())},
+            {"first", {{"tooth", first.tooth + 1}, {"pass", first.pass + 1}}},
+            {"work_offsets", toJson(program_->run().offset, "")},
+            {"zero_points", zeroPointsJson()},
+            {"planned", plannedJson(planned_)},
+            {"late_cycles", {{"count", late_}, {"longest_ms", longest_ * 1e3}}},
+            {"criteria", toJson(criteria)},
+            {"strokes", strokes_.json()},
+            {"holds", events_.holds()},
+            {"overrides", events_.overrides()},
+            {"omitted", events_.omitted()},
+            {"ground", toJson(ground.strokes())},
+            {"not_ground", not_ground_}};
+  return {std::move(head), std::move(body)};
 }
 
 }  // namespace grinder

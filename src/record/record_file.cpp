@@ -4,15 +4,18 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/regular_file.h"
 #include "flute_grinder/job/yaml_text.h"
-#include "record/record_shape.h"
-#include "record/record_summary.h"
+#include "flute_grinder/plan/sha256.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
+#include <type_traits>
 
 namespace grinder {
 
@@ -29,14 +32,43 @@ constexpr std::uint64_t kMostRecords = 9999999999;  ///< of so many digits
 /// Without the folder.
 std::string_view nameIn(std::string_view path) { return path.substr(path.rfind('/') + 1); }
 
-std::string textOf(const std::string& path) {
-  requireRegularFile(path);
-  std::ifstream file(path, std::ios::binary | std::ios::ate);
-  std::string text(file ? static_cast<std::size_t>(file.tellg()) : 0, '\0');
-  if (!file.seekg(0).read(text.data(), static_cast<std::streamsize>(text.size()))) {
-    throw FileError(path + ": cannot be read");
-  }
-  return text;
+// The lines of a file: a reader of JSON has one object, one of heads the first line.
+constexpr std::string_view kHead = R"({"record":2,"head":)";
+constexpr std::string_view kBody = R"("body":)";
+constexpr std::string_view kSeal = R"("seal":")";
+constexpr std::string_view kEnd = "\"}\n";
+
+/// Calls `visit(key, member)` for each field, in the order in which files and lists have them.
+template <typename AnyHead, typename Visit>
+void visitHead(AnyHead& head, const Visit& visit) {
+  visit("grinder", head.grinder);
+  visit("started", head.started);
+  visit("ended", head.ended);
+  visit("job", head.job);
+  visit("digest", head.digest);
+  visit("operation", head.operation);
+  visit("tool", head.tool);
+  visit("ends_tool", head.ends_tool);
+  visit("wheel", head.wheel);
+  visit("dressed", head.dressed);
+  visit("wear_mm", head.wear);
+  visit("outcome", head.outcome);
+  visit("reason", head.reason);
+  visit("strokes", head.strokes);
+  visit("passes", head.passes);
+  visit("duration_s", head.duration);
+  visit("holds", head.holds);
+  visit("setpoints", head.setpoints);
+  visit("lost", head.lost);
+  visit("verdict", head.verdict);
+  visit("verdict_because", head.because);
+}
+
+/// @throw FileError
+std::ifstream opened(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw FileError(path + ": cannot be read: " + std::strerror(errno));
+  return file;
 }
 
 /// What the library says, without its own numbers.
@@ -46,35 +78,48 @@ std::string wordsOf(const std::exception& error) {
   return numbered ? words.substr(words.find("] ") + 2) : words;
 }
 
-/// As summaryOf(). What is JSON, but has something else where the scanner looks for an object or a list, is named by
-/// its key.
-Json namedSummaryOf(const std::string& text) {
+/// Does something with a file's text. @throw FileError naming the file.
+template <typename Action>
+auto ofRecord(const std::string& path, const Action& action) {
   try {
-    return summaryOf(text);
-  } catch (const std::invalid_argument&) {
-    Json whole = Json::accept(text) ? Json::parse(text) : Json();
-    if (whole.is_object()) checkRecord(whole, false);
-    throw;
-  }
-}
-
-/// @throw FileError
-Json recordIn(const std::string& path, bool summary) {
-  try {
-    const std::string text = textOf(path);
-    Json record = summary ? namedSummaryOf(text) : Json::parse(text);
-    if (!record.is_object() || record.value("record", Json()) != 1) {
-      throw FileError(path + ": is no record of a job that this program knows; allowed: \"record\": 1");
-    }
-    checkRecord(record, summary);
-    return record;
-  } catch (const FileError&) {
-    throw;
-  } catch (const JobFileError&) {
-    throw;
+    return action();
   } catch (const std::exception& error) {
     throw FileError(path + ": is no record of a job: " + wordsOf(error));
   }
+}
+
+/// @param line with the comma at its end, without the line feed.
+RecordHead headIn(const std::string& line) {
+  if (line.compare(0, kHead.size(), kHead) != 0)
+    throw std::invalid_argument("it begins otherwise than " + std::string(kHead));
+  if (line.back() != ',') throw std::invalid_argument("it is cut off");
+  const Json json = Json::parse(line.begin() + kHead.size(), line.end() - 1);
+  RecordHead head;
+  visitHead(head, [&](const char* key, auto& value) {
+    const auto found = json.find(key);
+    if (found == json.end()) throw std::invalid_argument(std::string(key) + " is missing");
+    try {
+      found->get_to(value);
+    } catch (const Json::exception&) {
+      throw std::invalid_argument(std::string(key) + " = " + text(*found, -1) + ", which is of another type");
+    }
+    if constexpr (std::is_same_v<decltype(value), std::string&>) value = escaped(value);
+  });
+  for (std::string& reason : head.because) reason = escaped(reason);
+  return head;
+}
+
+std::string sealOf(const std::string& text) { return sha256Hex(text.data(), text.size()); }
+
+/// What is sealed of a text. @throw std::invalid_argument if it is damaged.
+std::string unsealed(const std::string& text) {
+  const std::size_t at = text.rfind('\n', text.empty() ? 0 : text.size() - 2);
+  if (at == std::string::npos) throw std::invalid_argument("it is cut off");
+  std::string sealed = text.substr(0, at + 1);
+  if (text.substr(at + 1) != std::string(kSeal) + sealOf(sealed) + std::string(kEnd)) {
+    throw std::invalid_argument("its seal is not that of its text: it is cut off, or was changed");
+  }
+  return sealed;
 }
 
 }  // namespace
@@ -147,8 +192,71 @@ std::string recordName(double start, const RecordFiles& before) {
          ".json";
 }
 
-Json readRecord(const std::string& path) { return recordIn(path, false); }
+bool isRecord(const std::string& path) {
+  requireRegularFile(path);
+  std::string begin(kHead.size(), '\0');
+  opened(path).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kHead;
+}
 
-Json readRecordSummary(const std::string& path) { return recordIn(path, true); }
+bool isToolMeasured(const Record& record) {
+  const std::vector<Criterion> criteria = criteriaFrom(record.body.at("criteria"));
+  return std::any_of(criteria.begin(), criteria.end(),
+                     [](const Criterion& c) { return c.of_tool && (c.measured || c.missing); });
+}
+
+bool judgeAgain(Record& record, const GroundTool* tool, const Tolerances& tolerances) {
+  Json& judged = record.body.at("criteria");
+  const Json before = judged;
+  std::vector<Criterion> criteria = criteriaFrom(judged);
+  if (tool != nullptr) {
+    criteria.erase(std::remove_if(criteria.begin(), criteria.end(), [](const Criterion& c) { return c.of_tool; }),
+                   criteria.end());
+    std::vector<Criterion> of_tool = criteriaOfTool(tool->job, tool, tolerances);
+    criteria.insert(criteria.begin(), of_tool.begin(), of_tool.end());
+  }
+  judgeAgain(criteria, tolerances);
+  judged = toJson(criteria);
+  const Verdict verdict = verdictOn(criteria, record.head.outcome, record.head.lost);
+  record.head.verdict = verdict.verdict;
+  record.head.because = verdict.because;
+  return judged != before;
+}
+
+Json toJson(const RecordHead& head) {
+  Json json = Json::object();
+  visitHead(head, [&](const char* key, const auto& value) { json[key] = value; });
+  return json;
+}
+
+std::string text(const Record& record) {
+  std::string lines = std::string(kHead) + text(toJson(record.head), -1) + ",\n";
+  lines += std::string(kBody) + text(record.body, -1) + ",\n";
+  return lines + std::string(kSeal) + sealOf(lines) + std::string(kEnd);
+}
+
+RecordHead readHead(const std::string& path) {
+  std::ifstream file = opened(path);
+  return ofRecord(path, [&] {
+    std::string line;
+    std::getline(file, line);
+    if (file.eof()) throw std::invalid_argument("it is cut off");
+    return headIn(line);
+  });
+}
+
+Record readRecord(const std::string& path) {
+  requireRegularFile(path);
+  std::ifstream file = opened(path);
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  return ofRecord(path, [&] {
+    const std::string sealed = unsealed(whole);
+    const std::size_t body = sealed.find('\n') + 1;
+    Record record{headIn(sealed.substr(0, body - 1)),
+                  Json::parse(sealed.begin() + static_cast<std::ptrdiff_t>(body + kBody.size()), sealed.end() - 2)};
+    escapeTexts(record.body);
+    return record;
+  });
+}
 
 }  // namespace grinder

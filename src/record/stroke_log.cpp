@@ -63,7 +63,7 @@ void StrokeLog::addFollowingError(const Axes& error) {
   for (int axis = 0; axis < kAxisCount; ++axis) updateMax(strokes_.back().following_error[axis], error[axis]);
 }
 
-Json StrokeLog::json(bool following_error) const {
+Json StrokeLog::json() const {
   Json list = Json::array();
   for (const StrokeFigures& stroke : strokes_) {
     const auto if_any = [](bool any, double value) { return any ? Json(value) : Json(nullptr); };
@@ -79,7 +79,8 @@ Json StrokeLog::json(bool following_error) const {
               {"feed_max_mm_min", if_any(stroke.has_feed, stroke.max_feed / kMillimetrePerMinute)},
               {"deviation_um", if_any(has_edge, stroke.deviation / kMicrometre)},
               {"deviation_x_mm", if_any(has_edge, stroke.deviation_x / kMillimetre)}};
-    if (following_error) json["following_error"] = followingJson(stroke.following_error);
+    json["following_error"] = followingJson(stroke.following_error);
+    json["complete"] = stroke.complete;
     list.push_back(std::move(json));
   }
   return list;

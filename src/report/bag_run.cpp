@@ -1,11 +1,13 @@
-#include "report/bag_run.h"
+#include "flute_grinder/report/bag_run.h"
 
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/GrindActionResult.h"
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/regular_file.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/record/job_record.h"
@@ -17,11 +19,18 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
 #include <utility>
 
 namespace grinder {
 
 namespace {
+
+constexpr std::uint64_t kMinRows = 3;
+constexpr char kBagHead[] = "#ROSBAG ";
 
 /// Types that are read of the grinder's topics, with the digests of their definitions.
 template <typename... Messages>
@@ -69,7 +78,17 @@ void readBag(const std::string& path, const Read& read) {
 
 }  // namespace
 
-BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::kBag), asked_(job) {
+bool isBag(const std::string& path) {
+  requireRegularFile(path);
+  std::ifstream file(path, std::ios::binary);
+  std::string head(sizeof kBagHead - 1, '\0');
+  if (!file || file.read(head.data(), static_cast<std::streamsize>(head.size())).bad()) {
+    throw FileError(path + ": cannot be read: " + std::strerror(errno));
+  }
+  return head == kBagHead;
+}
+
+BagRun::BagRun(std::string path, int job) : path_(std::move(path)), asked_(job) {
   readBag(path_, [this](const rosbag::Bag& bag) {
     findTopics(bag);
     rosbag::View view(bag, rosbag::TopicQuery(topics_));
@@ -79,7 +98,10 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   if (asked_ > static_cast<int>(goals_.size())) {
     fail("job " + std::to_string(asked_) + ": the bag has " + std::to_string(goals_.size()) + " job(s)");
   }
-  finish();
+  if (summary_.count < kMinRows) {
+    fail("has " + (summary_.count == 0 ? "no points" : std::to_string(summary_.count) + " point(s)") +
+         "; allowed: 3 or more");
+  }
   const std::size_t number = asked_ == 0 ? goals_.size() : static_cast<std::size_t>(asked_);
   place_ = "job " + std::to_string(number) + " of " + std::to_string(goals_.size());
   try {
@@ -90,6 +112,10 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   findBefore(static_cast<int>(number));
   selectStates();
   for (const auto& [name, status] : worst_) diagnostics_.emplace_back(name, status);
+  setHead();
+}
+
+void BagRun::setHead() {
   Json head{{"grinder", (node_.front() == '/' ? "" : "/") + node_.substr(0, node_.size() - 1)},
             {"in_bag", place_.substr(4) + ", goal " + goal_},
             {"started", utcText(start_)},
@@ -98,8 +124,45 @@ BagRun::BagRun(std::string path, int job) : RunFile(std::move(path), FileKind::k
   for (const auto& [time, offsets] : offsets_) {
     if (time <= start_) head["work_offsets"] = offsets;
   }
-  if (heads_.count(goal_) > 0) head.update(heads_[goal_]);
+  const Goal& goal = heads_[goal_];
+  head.update(goal.head);
+  outcome_ = goal.outcome;
+  feed_limits_ = goal.feed_limits;
   head_ = std::move(head);
+}
+
+void BagRun::fail(const std::string& reason) const { throw FileError(path_ + ": " + reason); }
+
+void BagRun::summarise(const RunRow& row) {
+  const Setpoint& s = row.setpoint;
+  const auto cycle = static_cast<std::int64_t>(s.cycle);
+  const std::string named = "cycle " + std::to_string(s.cycle);
+  if (cycle <= last_cycle_)
+    fail(named + " follows cycle " + std::to_string(last_cycle_) + "; allowed: ascending cycles");
+  // The position read may be NaN, of a faulty drive: the report of its job is wanted most.
+  const auto require = [&](bool finite, const char* name) {
+    if (!finite) fail(named + ": " + name + " is not a finite number");
+  };
+  require(s.position.allFinite(), "position");
+  require(std::isfinite(s.path_error), "error");
+  require(std::isfinite(s.feed), "feed");
+  require(std::isfinite(row.cycle_period), "cycle_period");
+  RowSummary& all = summary_;
+  if (all.count++ == 0) {
+    all.first_cycle = s.cycle;
+    all.first = s.position;
+    all.begin = row.time;
+  }
+  all.end = row.time;
+  all.missing += static_cast<std::uint64_t>(cycle - last_cycle_ - 1);
+  last_cycle_ = cycle;
+  if (s.step == StepKind::kNone) return;
+  const double error = std::abs(s.path_error), x = s.position[kX];
+  if (!all.worst || error > std::max(all.odd_error, all.even_error)) all.worst = ToothPass{s.tooth, s.pass};
+  double& max_error = s.step == StepKind::kOdd ? all.odd_error : all.even_error;
+  max_error = std::max(max_error, error);
+  all.min_x = std::min(all.min_x, x);
+  all.max_x = std::max(all.max_x, x);
 }
 
 void BagRun::findTopics(const rosbag::Bag& bag) {
@@ -150,7 +213,8 @@ void BagRun::takeBatch(const flute_grinder::SetpointBatch& batch) {
   if (goals_.empty() || batch.goal_id != goals_.back()) {
     goals_.push_back(batch.goal_id);
     if (isAsked()) {
-      restart();
+      summary_ = RowSummary();
+      last_cycle_ = -1;
       goal_ = batch.goal_id;
       period_ = batch.period;
       const std::uint64_t first = batch.setpoints.empty() ? 0 : batch.setpoints.front().cycle;
@@ -180,14 +244,17 @@ void BagRun::visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisi
 
 void BagRun::takeHead(const rosbag::MessageInstance& message) {
   if (const auto goal = message.instantiate<flute_grinder::GrindActionGoal>()) {
-    heads_[goal->goal_id.id]["job_name"] = goal->goal.job_name;
+    heads_[goal->goal_id.id].head["job_name"] = goal->goal.job_name;
     jobs_[goal->goal_id.id] = jobFromGoal(goal->goal);
     if (goal->goal.first_tooth != 0 || goal->goal.first_pass != 0) continued_.insert(goal->goal_id.id);
   } else if (const auto result = message.instantiate<flute_grinder::GrindActionResult>()) {
-    Json& head = heads_[result->status.goal_id.id];
-    head["outcome"] = outcomeOf(result->status.status);
-    head["reason"] = result->result.error_string;
-    head["planned"] = plannedJson(grinder::fromMessage(result->result.plan.statistics));
+    Goal& goal = heads_[result->status.goal_id.id];
+    const PathStatistics planned = grinder::fromMessage(result->result.plan.statistics);
+    goal.outcome = outcomeOf(result->status.status);
+    goal.feed_limits = planned.feed_limits;
+    goal.head["outcome"] = goal.outcome;
+    goal.head["reason"] = result->result.error_string;
+    goal.head["planned"] = plannedJson(planned);
   } else if (const auto machine = message.instantiate<flute_grinder::MachineInfo>()) {
     head_["machine"] = toJson(fromMessage(*machine));
   } else if (const auto offsets = message.instantiate<flute_grinder::WorkOffsets>()) {

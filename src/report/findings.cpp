@@ -8,6 +8,8 @@
 #include "report/plots.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace grinder {
 
@@ -17,51 +19,25 @@ using namespace units;
 
 constexpr double kMillisecond = 1e-3;
 
-/// Key and description of a kind of file.
-std::pair<const char*, const char*> namesOf(FileKind kind) {
-  switch (kind) {
-    case FileKind::kTable: return {"table", "points of a curve, from \"grind table\""};
-    case FileKind::kPlan: return {"setpoints", "setpoints, from \"grind plan\""};
-    case FileKind::kRun: return {"run", "setpoints, from \"grind run\""};
-    case FileKind::kBag: return {"bag", "bag of the grinder"};
-    default: return {"record", "the grinder's own record"};
-  }
-}
-
-Json headOf(FileKind kind, const ReportContext& context) {
-  const auto [key, description] = namesOf(kind);
-  Json data{{"file", context.file}, {"kind", key}, {"type", description}};
+Json headOf(const char* kind, const char* type, const ReportContext& context) {
+  Json data{{"file", context.file}, {"kind", kind}, {"type", type}};
   data.update(context.words);
   return data;
 }
 
-/// What a report lacks, and why.
-Json leftOut(const RunFile& run, const Json& data, const std::string& no_tool) {
-  Json reasons = Json::array();
-  if (!run.summary().worst) reasons.push_back("Curve, error and feed: the job ended before its first stroke.");
-  switch (run.kind()) {
-    case FileKind::kTable:
-      reasons.push_back(
-          "Feed, axis speeds and accelerations, following error, loop timing: the points of a table have no time.");
-      break;
-    case FileKind::kPlan:
-      reasons.push_back(
-          "Following error and loop timing: the CSV file of a plan has only commanded values; a bag has more.");
-      break;
-    case FileKind::kRun: reasons.push_back("Loop timing: a CSV file does not have it; a bag does."); break;
-    default: break;
-  }
-  if (run.kind() != FileKind::kBag) {
-    reasons.push_back(
-        "The tool and its tolerances: a CSV file does not have the job; a bag or a record of the grinder does.");
-  } else if (!no_tool.empty()) {
-    reasons.push_back("The ground tool: " + no_tool);
-  } else if (!allTeethGround(data["tool"])) {
-    reasons.push_back(
-        "The tolerances of the ground tool: not all of its teeth were ground in this job; the others are not in the "
-        "file.");
-  }
-  return reasons;
+void addTool(Json& data, const ReportContext& context) {
+  if (context.tool) data["tool"] = context.tool_json;
+  if (!context.no_tool.empty()) data["left_out"].push_back("The ground tool: " + context.no_tool);
+  if (!context.tool || context.tool->allTeethGround()) return;
+  data["left_out"].push_back(
+      "The tolerances of the ground tool: not all of its teeth were ground in this job; the others are not in the "
+      "file.");
+}
+
+void addVerdict(Json& data, const std::vector<Criterion>& criteria, const Verdict& verdict) {
+  data["criteria"] = toJson(criteria);
+  data["verdict"] = verdict.verdict;
+  data["verdict_because"] = verdict.because;
 }
 
 }  // namespace
@@ -71,7 +47,7 @@ void Survey::MaxOfAxes::add(bool in_stroke, const Axes& values) {
   part = part.max(values.abs());
 }
 
-Survey::Survey(const RunFile& run, const std::optional<ValidJob>& job, bool draws)
+Survey::Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws)
     : run_(run),
       motion_(std::make_unique<MotionOfRows>(run)),
       plots_(draws ? std::make_unique<Plots>(run) : nullptr),
@@ -98,26 +74,35 @@ void Survey::add(const RunRow& row) {
 Json Survey::plots() const { return plots_->json(); }
 
 Json Survey::findings(const ReportContext& context) const {
-  Json data = headOf(run_.kind(), context);
+  Json data = headOf("bag", "bag of the grinder", context);
   data.update(run_.head());
   escapeTexts(data);
+  data["left_out"] = Json::array();
+  if (!run_.summary().worst) {
+    data["left_out"].push_back("Curve, error and feed: the job ended before its first stroke.");
+  }
+  data["points"] = run_.summary().count;
+  data["odd_error_rad"] = run_.summary().odd_error;
+  data["even_error_rad"] = run_.summary().even_error;
+  data.update(ofSetpoints());
+  data["axes"] = axesJson(data.value("machine", Json::object()));
+  data.update(loopJson());
   if (run_.job()) {
     data["job"] = {{"name", data.value("job_name", "")}, {"file", toJson(**run_.job())}};
     data.erase("job_name");
+    judge(data, context);
   }
-  if (!context.tool.is_null()) data["tool"] = context.tool;
-  // As `grind table` and the paper count them: point 0 is where the curve starts.
-  data["points"] = run_.summary().count - (run_.kind() == FileKind::kTable ? 1 : 0);
-  data["odd_error_rad"] = run_.summary().odd_error;
-  data["even_error_rad"] = run_.summary().even_error;
-  if (run_.kind() != FileKind::kTable) {
-    data.update(ofSetpoints());
-    data["axes"] = axesJson(data.contains("machine") ? data["machine"] : toJson(context.limits));
-  }
-  if (run_.kind() == FileKind::kBag) data.update(loopJson());
-  if (data.contains("job")) addVerdict(data, context.tolerances);
-  data["left_out"] = leftOut(run_, data, context.no_tool);
+  addTool(data, context);
   return data;
+}
+
+void Survey::judge(Json& data, const ReportContext& context) const {
+  const RowSummary& all = run_.summary();
+  std::vector<Criterion> criteria =
+      criteriaOfTool(*run_.job(), context.tool ? &*context.tool : nullptr, context.tolerances);
+  const RunFacts facts{*run_.job(), strokes_.strokes(), run_.feedLimits(), all.count + all.missing, late_, longest_};
+  for (Criterion& criterion : criteriaOfRun(facts, context.tolerances)) criteria.push_back(std::move(criterion));
+  addVerdict(data, criteria, verdictOn(criteria, run_.outcome(), all.missing));
 }
 
 Json Survey::ofSetpoints() const {
@@ -125,7 +110,7 @@ Json Survey::ofSetpoints() const {
   Json data{{"setpoints", {{"written", all.count + all.missing}, {"lost", all.missing}}},
             {"period_ms", run_.period() / kMillisecond},
             {"duration_s", all.end - all.begin},
-            {"strokes", strokes_.json(run_.hasActual())}};
+            {"strokes", strokes_.json()}};
   data.update(holdsAndOverrides());
   return data;
 }
@@ -141,23 +126,27 @@ Json Survey::holdsAndOverrides() const {
   return {{"holds", events.holds()}, {"overrides", events.overrides()}};
 }
 
-Json Survey::axesJson(const Json& limits) const {
+/// @param machine of a record; empty if it is not known.
+Json Survey::axesJson(const Json& machine) const {
   struct Quantity {
     const char* key;
     const MaxOfAxes& max;
     const char* limit;
   };
-  std::vector<Quantity> quantities{{"speed", speed_, "max_velocity"},
-                                   {"acceleration", acceleration_, "max_acceleration"}};
-  if (run_.hasActual()) quantities.push_back({"following", following_, "max_following_error"});
+  const Quantity quantities[]{{"speed", speed_, "max_velocity"},
+                              {"acceleration", acceleration_, "max_acceleration"},
+                              {"following", following_, "max_following_error"}};
   Json rows = Json::array();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const double unit = axis == kA ? kDegree : kMillimetre;
     Json row{{"axis", std::string(1, "XYZA"[axis])}};
+    const auto limit = [&](const char* key) {
+      return machine.empty() ? Json(nullptr) : Json(std::next(machine.at(key).begin(), axis).value());
+    };
     for (const Quantity& quantity : quantities) {
       row[quantity.key] = {{"stroke", quantity.max.stroke[axis] / unit},
                            {"rapid", quantity.max.rapid[axis] / unit},
-                           {"limit", std::next(limits[quantity.limit].begin(), axis).value()}};
+                           {"limit", limit(quantity.limit)}};
     }
     rows.push_back(std::move(row));
   }
@@ -182,15 +171,21 @@ Json Survey::loopJson() const {
           {"diagnostics", diagnostics}};
 }
 
-Json findingsOfRecord(const Json& record, const ReportContext& context) {
-  Json data = headOf(FileKind::kRecord, context);
-  data.update(record);
-  if (!context.tool.is_null()) data["tool"] = context.tool;
-  judgeRecord(data, context.tolerances);
+Json findingsOfRecord(const Record& record, const ReportContext& context) {
+  Json data = headOf("record", "the grinder's own record", context);
+  const RecordHead& head = record.head;
+  const Json heads = toJson(head);
+  for (const char* key : {"grinder", "started", "ended", "duration_s", "outcome", "reason"}) data[key] = heads[key];
+  data.update(record.body);
+  data["job"] = {{"name", head.job}, {"digest", head.digest}, {"file", record.body.at("job_file")}};
+  data["setpoints"] = {{"written", head.setpoints}, {"lost", head.lost}};
+  data.erase("job_file");
+  data.erase("ground");
+  data.erase("not_ground");
   data["left_out"] = {
-      "Pictures of the axes: a record of the grinder keeps each stroke's figures only; a bag (bag:=true) has every "
-      "setpoint. The tool is the one that the job asks for, not measured."};
-  if (!context.no_tool.empty()) data["left_out"].push_back("The ground tool: " + context.no_tool);
+      "Pictures of the axes: a record has each stroke's figures; a bag (bag:=true) has every setpoint."};
+  addTool(data, context);
+  addVerdict(data, criteriaFrom(record.body.at("criteria")), {head.verdict, head.because});
   return data;
 }
 

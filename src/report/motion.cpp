@@ -11,7 +11,7 @@ constexpr std::int64_t kUnknown = std::numeric_limits<std::int64_t>::min() / 2;
 
 }  // namespace
 
-MotionOfRows::MotionOfRows(const RunFile& run) : period_(run.period()), has_actual_(run.hasActual()) {
+MotionOfRows::MotionOfRows(const BagRun& run) : period_(run.period()) {
   // A job starts at rest; if its beginning was not recorded, the motion before is unknown.
   const RowSummary& all = run.summary();
   for (std::size_t i = 0; i < before_.size(); ++i) {
@@ -24,7 +24,7 @@ AxisMotion MotionOfRows::add(const RunRow& row) {
   AxisMotion motion;
   if (now.cycle - before_[0].cycle == 1) {
     motion.speed = (now.position - before_[0].position) / period_;
-    if (has_actual_ && row.actual.allFinite()) motion.following_error = before_[0].position - row.actual;
+    if (row.actual.allFinite()) motion.following_error = before_[0].position - row.actual;
   }
   if (now.cycle % 2 == 0 && now.cycle - before_[3].cycle == 4) {
     const double pair = 2 * period_;

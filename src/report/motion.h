@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/report/run_file.h"
+#include "flute_grinder/report/bag_run.h"
 
 #include <array>
 #include <optional>
@@ -17,7 +17,7 @@ struct AxisMotion {
 /// Follows the rows of a file. Where cycles are missing there is no motion.
 class MotionOfRows {
  public:
-  explicit MotionOfRows(const RunFile& run);
+  explicit MotionOfRows(const BagRun& run);
 
   /// @param row the next one.
   AxisMotion add(const RunRow& row);
@@ -29,7 +29,6 @@ class MotionOfRows {
   };
 
   const double period_;
-  const bool has_actual_;
   std::array<Point, 4> before_;  ///< the newest first
 };
 

@@ -11,11 +11,11 @@ constexpr std::size_t kMaxShown = 600;       ///< points of the whole curve
 constexpr std::size_t kMaxCounts = 1 << 16;  ///< far beyond what the picture shows
 constexpr double kCountsPerPeriod = 50;
 
-Envelope overTime(const RunFile& run, std::size_t curves) {
+Envelope overTime(const BagRun& run, std::size_t curves) {
   return {run.summary().begin, run.summary().end, run.summary().count, curves};
 }
 
-Envelope overX(const RunFile& run) { return {run.summary().min_x, run.summary().max_x, run.summary().count}; }
+Envelope overX(const BagRun& run) { return {run.summary().min_x, run.summary().max_x, run.summary().count}; }
 
 Json pointsJson(const std::vector<Setpoint>& points) {
   Json x = Json::array(), a = Json::array(), error = Json::array(), odd = Json::array();
@@ -30,7 +30,7 @@ Json pointsJson(const std::vector<Setpoint>& points) {
 
 }  // namespace
 
-Plots::OfAxes::OfAxes(const RunFile& run) : stroke(overTime(run, kAxisCount)), rapid(stroke) {}
+Plots::OfAxes::OfAxes(const BagRun& run) : stroke(overTime(run, kAxisCount)), rapid(stroke) {}
 
 void Plots::OfAxes::add(const RunRow& row, const std::optional<Axes>& value) {
   if (value) (row.setpoint.step != StepKind::kNone ? stroke : rapid).add(row.time, value->data());
@@ -38,7 +38,7 @@ void Plots::OfAxes::add(const RunRow& row, const std::optional<Axes>& value) {
 
 Json Plots::OfAxes::json() const { return {{"stroke", stroke.json()}, {"rapid", rapid.json()}}; }
 
-Plots::Curve::Curve(const RunFile& run) : worst(*run.summary().worst), odd(overX(run)), even(overX(run)) {}
+Plots::Curve::Curve(const BagRun& run) : worst(*run.summary().worst), odd(overX(run)), even(overX(run)) {}
 
 void Plots::Curve::add(const Setpoint& setpoint) {
   (setpoint.step == StepKind::kOdd ? odd : even).add(setpoint.position[kX], &setpoint.path_error);
@@ -72,39 +72,37 @@ Json Plots::Timing::json() const {
   return {{"width", width}, {"counts", std::vector<std::uint64_t>(counts.begin(), last.base())}};
 }
 
-Plots::Plots(const RunFile& run)
-    : is_table_(run.kind() == FileKind::kTable),
-      begin_(run.summary().begin),
+Plots::Plots(const BagRun& run)
+    : begin_(run.summary().begin),
       end_(run.summary().end),
-      period_(run.period()) {
-  if (run.summary().worst) curve_.emplace(run);
-  if (is_table_) return;
-  speed_.emplace(run);
-  acceleration_.emplace(run);
-  if (run.hasActual()) following_.emplace(run);
-  if (curve_) feed_.emplace(overTime(run, 1));
-  if (run.kind() == FileKind::kBag) timing_.emplace(run.period());
+      period_(run.period()),
+      speed_(run),
+      acceleration_(run),
+      following_(run),
+      timing_(run.period()) {
+  if (!run.summary().worst) return;
+  curve_.emplace(run);
+  feed_.emplace(overTime(run, 1));
 }
 
 void Plots::add(const RunRow& row, const AxisMotion& motion) {
   const Setpoint& setpoint = row.setpoint;
   const bool in_stroke = setpoint.step != StepKind::kNone;
   if (curve_ && in_stroke) curve_->add(setpoint);
-  if (speed_) speed_->add(row, motion.speed);
-  if (acceleration_) acceleration_->add(row, motion.acceleration);
-  if (following_) following_->add(row, motion.following_error);
   if (feed_ && in_stroke) feed_->add(row.time, &setpoint.feed);
-  if (timing_) timing_->add(row.cycle_period);
+  speed_.add(row, motion.speed);
+  acceleration_.add(row, motion.acceleration);
+  following_.add(row, motion.following_error);
+  timing_.add(row.cycle_period);
 }
 
 Json Plots::json() const {
-  Json json = Json::object();
-  if (!is_table_) json["clock"] = {{"from", begin_}, {"to", end_}, {"period", period_}};
+  Json json{{"clock", {{"from", begin_}, {"to", end_}, {"period", period_}}}};
   if (feed_) json["feed"] = feed_->json();
-  if (speed_) json["speed"] = speed_->json();
-  if (acceleration_) json["acceleration"] = acceleration_->json();
-  if (following_) json["following"] = following_->json();
-  if (timing_) json["timing"] = timing_->json();
+  json["speed"] = speed_.json();
+  json["acceleration"] = acceleration_.json();
+  json["following"] = following_.json();
+  json["timing"] = timing_.json();
   if (curve_) json["curve"] = curve_->json();
   return json;
 }

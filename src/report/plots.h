@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/report/run_file.h"
+#include "flute_grinder/report/bag_run.h"
 #include "report/envelope.h"
 #include "report/motion.h"
 
@@ -12,7 +12,7 @@ namespace grinder {
 /// The points of a report's pictures.
 class Plots {
  public:
-  explicit Plots(const RunFile& run);
+  explicit Plots(const BagRun& run);
 
   void add(const RunRow& row, const AxisMotion& motion);
   Json json() const;
@@ -20,7 +20,7 @@ class Plots {
  private:
   /// A quantity of the axes over time, in the strokes and apart from them.
   struct OfAxes {
-    OfAxes(const RunFile& run);
+    OfAxes(const BagRun& run);
     void add(const RunRow& row, const std::optional<Axes>& value);
     Json json() const;
 
@@ -28,7 +28,7 @@ class Plots {
   };
   /// The curve and its errors. Of the stroke with the maximum error, thinned to some hundred points, and its ends.
   struct Curve {
-    explicit Curve(const RunFile& run);
+    explicit Curve(const BagRun& run);
     void add(const Setpoint& setpoint);
     Json json() const;
 
@@ -48,12 +48,11 @@ class Plots {
     std::vector<std::uint64_t> counts;
   };
 
-  const bool is_table_;
   const double begin_, end_, period_;
-  std::optional<OfAxes> speed_, acceleration_, following_;
+  OfAxes speed_, acceleration_, following_;
   std::optional<Envelope> feed_;
   std::optional<Curve> curve_;
-  std::optional<Timing> timing_;
+  Timing timing_;
 };
 
 }  // namespace grinder

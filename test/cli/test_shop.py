@@ -13,7 +13,7 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 from grind_command import CommandLine  # noqa: E402
-from record_files import job_of, record_of  # noqa: E402
+from record_files import head_of, text_of  # noqa: E402
 
 NAME = '00000000{0:02}_20261122T{0:02}0000.000Z.json'
 
@@ -29,9 +29,9 @@ class TestShop(CommandLine):
                 ('right/grinder', 9, 'four.yaml', 'jobs/unequal_d12_t4.yaml', 'canceled'),
                 ('left/grinder', 10, 'four.yaml', 'jobs/unequal_d12_t4.yaml', 'fault'),
                 ('old', 7, 'mill.yaml', 'test/jobs/paper.yaml', 'done')):
-            self.keep(grinder, hour, json.dumps(record_of(
-                job_of(file), '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T%02d:00:01.500Z' % hour, outcome, name=name)))
-        self.keep('old', 6, '{"record": 1, "machine": {')
+            self.keep(grinder, hour, text_of(head_of(
+                file, '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T%02d:00:01.500Z' % hour, outcome, job=name)))
+        self.keep('old', 6, '{"record":2,"head":{')
         self.folders = [self.path(folder) for folder in ('left/grinder', 'right/grinder/', 'old')]
 
     def keep(self, grinder, hour, text):
@@ -47,10 +47,10 @@ class TestShop(CommandLine):
         self.folders.append(self.path('none'))
         self.write('old/notes.json', 'not ours')
         with open(self.path('old/' + NAME.format(7))) as file:
-            other = file.read().replace('"cutter"', '"knife"')
-        for text, reason in (('{"record": 1, "machine": {', 'is no record of a job: it is cut off'), ('', 'is no record of a job: '),
-                             ('[]', 'is no record of a job: '), (other, 'is no record of a job: '),
-                             ('{"record": 2}', 'is no record of a job that this program knows; allowed: "record": 1')):
+            other = file.read().replace('"tool"', '"knife"')
+        for text, reason in (('{"record":2,"head":{', 'is no record of a job: it is cut off'), ('', 'is no record of a job: '),
+                             ('[]', 'is no record of a job: '), (other, 'is no record of a job: tool is missing'),
+                             ('{"record":1,\n', 'is no record of a job: it begins otherwise than {"record":2,"head":')):
             with self.subTest(text[:30]):
                 self.keep('old', 6, text)
                 hours, said = self.hours(2)
@@ -61,8 +61,8 @@ class TestShop(CommandLine):
 
     def test_those_of_a_grinder_are_in_its_order_whatever_its_clock_was(self):
         for number, hour in ((11, 20), (12, 1), (13, 11)):  # ahead, then not set
-            record = record_of(job_of('test/jobs/paper.yaml'), '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T23:00:00.000Z')
-            self.write('left/grinder/00000000%d_20261122T%02d0000.000Z.json' % (number, hour), json.dumps(record))
+            head = head_of('test/jobs/paper.yaml', '2026-11-22T%02d:00:00.000Z' % hour, '2026-11-22T23:00:00.000Z')
+            self.write('left/grinder/00000000%d_20261122T%02d0000.000Z.json' % (number, hour), text_of(head))
         self.assertEqual(self.hours(0, '--grinder', 'left')[0], [8, 10, 20, 1, 11])
         hours, _ = self.hours(2)
         self.assertEqual(sorted(hours), [1, 7, 8, 9, 10, 11, 20])
@@ -110,8 +110,10 @@ class TestShop(CommandLine):
         with open(self.path('list.csv'), newline='') as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([list(row) for row in rows], [list(entry) for entry in listed])
-        texts = [{key: '; '.join(value) if isinstance(value, list) else str(value) for key, value in entry.items()}
-                 for entry in listed]
+        def text(value):
+            return '; '.join(value) if isinstance(value, list) else value if isinstance(value, str) else json.dumps(value)
+
+        texts = [{key: text(value) for key, value in entry.items()} for entry in listed]
         self.assertEqual([dict(row) for row in rows], texts)
         self.assertEqual([row['grinder'] for row in rows],
                          [self.path(folder) for folder in ('old', 'left/grinder', 'right/grinder', 'left/grinder')])

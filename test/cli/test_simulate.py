@@ -8,23 +8,17 @@ import re
 import sys
 import xml.etree.ElementTree as xml
 
-import rosbag
 import rostest
 import yaml
-from flute_grinder.msg import GrindActionGoal, SetpointBatch, WrittenSetpoint
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
+from bag_files import Bag  # noqa: E402
 from grind_command import PAPER_JOB, CommandLine  # noqa: E402
-from grinder_client import DEG, MM  # noqa: E402
+from grinder_client import DEG  # noqa: E402
 
 NULLABLE = {'edge_deg', 'rake_deg', 'chordal_rake_deg', 'normal_rake_deg', 'flute_deg', 'land_deg', 'land_mm', 'spiral_deg'}
-
-
-def paper_goal():
-    """The goal of test/jobs/paper.yaml."""
-    return gc.goal_of(gc.job_from_file(PAPER_JOB))
 
 
 class TestSimulate(CommandLine):
@@ -153,10 +147,6 @@ class TestOutput(TestSimulate):
         self.grind(2, 'simulate', self.folder)
 
 
-COLUMNS = ['cycle', 'time_s', 'move', 'tooth', 'pass', 'step', 'x_mm', 'y_mm', 'z_mm', 'a_rad', 'error_rad', 'feed_mm_min']
-ACTUAL = ['actual_x_mm', 'actual_y_mm', 'actual_z_mm', 'actual_a_rad']
-
-
 class TestRecord(TestSimulate):
     """Records are made of a plan's setpoints: what the drive reads is what was commanded one cycle before."""
 
@@ -171,16 +161,15 @@ class TestRecord(TestSimulate):
         job['process'].update(infeed_mm=2, feed_mm_min=1000)
         return self.write('left_hand.yaml', yaml.safe_dump(job))
 
-    def record(self, rows):
-        lines = [','.join(COLUMNS + ACTUAL)]
-        before = rows[0]
-        for row in rows:
-            lines.append(','.join([row[key] for key in COLUMNS] + [before[key] for key in COLUMNS[6:10]]))
-            before = row
-        return self.write('run.csv', '\n'.join(lines) + '\n')
+    def record(self, rows, job=PAPER_JOB):
+        """A bag; without its goal if there is no job."""
+        bag = Bag(self.path('run.bag'), 1e-3)
+        bag.add(job, '', rows)
+        bag.close()
+        return self.path('run.bag')
 
-    def sections(self, status, path, job=PAPER_JOB):
-        return self.json(status, 'simulate', path, '--job', job, '--at', '3,15,27')[0]['sections']
+    def sections(self, status, path, *arguments):
+        return self.json(status, 'simulate', path, '--at', '3,15,27', *arguments)[0]['sections']
 
     def planned(self, job=PAPER_JOB):
         return self.json(0, 'simulate', job, '--at', '3,15,27')[0]['sections']
@@ -195,9 +184,9 @@ class TestRecord(TestSimulate):
     def test_exact_record_of_many_passes_is_the_plan(self):
         job = self.left_hand()
         rows = self.plan(job)
-        record = self.record(rows)
-        self.check_same(self.sections(0, record, job), self.planned(job))
-        reported, _ = self.json(0, 'simulate', record, '--job', job, '--at', '5')
+        record = self.record(rows, job)
+        self.check_same(self.sections(0, record), self.planned(job))
+        reported, _ = self.json(0, 'simulate', record, '--at', '5')
         self.assertEqual([(stroke['tooth'], stroke['pass']) for stroke in reported['strokes']],
                          sorted({(int(row['tooth']), int(row['pass'])) for row in rows}))
         self.assertEqual(reported['gouges'], [])
@@ -208,7 +197,7 @@ class TestRecord(TestSimulate):
         last = max(rows, key=lambda row: int(row['pass']))['pass']
         gouged = [dict(row, y_mm=str(float(row['y_mm']) - 0.1)) if (row['tooth'], row['pass'], row['move']) == ('1', last, 'stroke')
                   else row for row in rows]
-        reported, reasons = self.json(1, 'simulate', self.record(gouged), '--job', job, '--at', '5')
+        reported, reasons = self.json(1, 'simulate', self.record(gouged, job), '--at', '5')
         gouge, = reported['gouges']
         self.assertEqual((gouge['tooth'], gouge['pass'], gouge['move']), (1, int(last), 'stroke'))
         self.assertAlmostEqual(gouge['depth_mm'], 0.1, delta=1e-4)
@@ -216,14 +205,14 @@ class TestRecord(TestSimulate):
         self.assertRegex(reasons, r'(?m)^%sthe wheel went 0\.100 mm beyond the flute' % place)
         planned, = self.json(0, 'simulate', job, '--at', '5')[0]['sections']
         self.assertLess(reported['sections'][0]['core_diameter_mm'], planned['core_diameter_mm'] - 0.19)
-        self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job, '--at', '5').stdout,
+        self.assertRegex(self.grind(1, 'simulate', self.path('run.bag'), '--at', '5').stdout,
                          r'(?m)^beyond the flute +%s0\.100 mm at X ' % place)
 
     def test_interrupted_stroke_grinds_no_further(self):
         rows = self.plan(PAPER_JOB)
         rows = [row for row in rows if row['move'] != 'stroke' or float(row['x_mm']) < 10]
         end = max(i for i, row in enumerate(rows) if row['move'] == 'stroke')
-        reported, reasons = self.json(1, 'simulate', self.record(rows[:end + 1]), '--job', PAPER_JOB, '--at', '2,29')
+        reported, reasons = self.json(1, 'simulate', self.record(rows[:end + 1]), '--at', '2,29')
         self.assertRegex(reasons, 'complete')
         stroke, = reported['strokes']
         self.assertAlmostEqual(stroke['to_x_mm'], 10, delta=0.02)
@@ -236,65 +225,40 @@ class TestRecord(TestSimulate):
     def test_teeth_that_are_not_in_the_record_are_not_ground(self):
         job = self.left_hand()
         rows = [row for row in self.plan(job) if row['tooth'] != '1']
-        reported, _ = self.json(1, 'simulate', self.record(rows), '--job', job, '--at', '5')
+        reported, _ = self.json(1, 'simulate', self.record(rows, job), '--at', '5')
         self.assertEqual({stroke['tooth'] for stroke in reported['strokes']}, {0, 2})
         teeth = reported['sections'][0]['teeth']
         self.assertEqual([tooth['edge_deg'] is None for tooth in teeth], [False, True, False])
         self.assertEqual(teeth[1]['depth_mm'], 0)
-        self.assertRegex(self.grind(1, 'simulate', self.path('run.csv'), '--job', job, '--at', '5').stdout,
+        self.assertRegex(self.grind(1, 'simulate', self.path('run.bag'), '--at', '5').stdout,
                          r'(?m)^tooth 2 +not in the record$')
 
-    def bag(self, rows, goal=True):
-        """Two jobs, of which the second is the record."""
-        with rosbag.Bag(self.path('run.bag'), 'w') as bag:
-            for name in ('first', 'second'):
-                message = GrindActionGoal(goal=paper_goal())
-                message.goal_id.id = name
-                if goal:
-                    bag.write('/grinder/grind/goal', message)
-                count = len(rows) if name == 'second' else 500
-                for start in range(0, count, 500):
-                    batch = SetpointBatch(goal_id=name, period=1e-3)
-                    batch.setpoints = [self.setpoint(rows, i) for i in range(start, min(start + 500, count))]
-                    bag.write('/grinder/setpoints', batch)
-        return self.path('run.bag')
-
-    def setpoint(self, rows, i):
-        row, before = rows[i], rows[max(i - 1, 0)]
-        units = (MM, MM, MM, 1)
-        position, actual = ([float(r[key]) * unit for key, unit in zip(COLUMNS[6:10], units)] for r in (row, before))
-        setpoint = WrittenSetpoint(cycle=int(row['cycle']), position=position, actual=actual)
-        setpoint.move, setpoint.step = gc.MOVES.index(row['move']), gc.STEPS.index(row['step'])
-        setpoint.tooth, setpoint.pass_ = int(row['tooth']), int(row['pass'])
-        return setpoint
-
-    def test_bag_has_its_job(self):
-        bag = self.bag(self.plan(PAPER_JOB))
-        reported, _ = self.json(0, 'simulate', bag, '--at', '3,15,27')
+    def test_of_several_runs_the_last_counts_unless_another_is_asked_for(self):
+        rows = self.plan(PAPER_JOB)
+        bag = Bag(self.path('two.bag'), 1e-3)
+        bag.add(PAPER_JOB, '', rows[:500])
+        bag.add(PAPER_JOB, '', rows)
+        bag.close()
+        reported, _ = self.json(0, 'simulate', self.path('two.bag'), '--at', '3,15,27')
         self.check_same(reported['sections'], self.planned())
-        self.assertEqual(reported['source'], 'run.bag, job 2 of 2')
-        self.json(1, 'simulate', bag, '--run', '1')
+        self.assertEqual(reported['source'], 'two.bag, job 2 of 2')
+        self.json(1, 'simulate', self.path('two.bag'), '--run', '1')
 
-    def test_report_of_a_bag_without_its_goal_says_why_it_shows_no_tool(self):
-        reported, _ = self.json(0, 'report', self.bag(self.plan(PAPER_JOB), goal=False))
+    def test_bag_without_its_goal_needs_the_job(self):
+        bag = self.record(self.plan(PAPER_JOB), job=None)
+        self.assertRegex(self.grind(2, 'simulate', bag).stderr, 'does not have the goal of job 1 of 1; .* --job')
+        self.check_same(self.sections(0, bag, '--job', PAPER_JOB), self.planned())
+        reported, _ = self.json(0, 'report', bag)
         self.assertNotIn('tool', reported)
         self.assertIn('The ground tool: ', ''.join(reported['left_out']))
 
-    def test_bag_without_its_goal_needs_the_job(self):
-        bag = self.bag(self.plan(PAPER_JOB), goal=False)
-        self.assertRegex(self.grind(2, 'simulate', bag).stderr, 'does not have the goal of job 2 of 2; .* --job')
-        self.check_same(self.sections(0, bag), self.planned())
-
     def test_records_that_cannot_be_used(self):
         rows = self.plan(PAPER_JOB)
-        record = self.record(rows[:100])
-        self.assertRegex(self.grind(2, 'simulate', record).stderr, '--job')
-        self.record([dict(rows[0], tooth='7'), *rows[1:3]])
-        self.assertRegex(self.grind(2, 'simulate', record, '--job', PAPER_JOB).stderr, 'line 2: .*tooth 8.*1 teeth')
-        self.write('plan.csv', ','.join(COLUMNS[:12]) + '\n')
-        self.assertRegex(self.grind(2, 'simulate', self.path('plan.csv'), '--job', PAPER_JOB).stderr, 'is no file of')
+        self.assertRegex(self.grind(1, 'simulate', self.record([dict(rows[0], tooth='7'), *rows[1:3]])).stderr,
+                         'cycle 0 grinds tooth 8, pass 1; the job has 1 teeth')
         self.write('cut.bag', '#ROSBAG V2.0\n')
         self.grind(2, 'simulate', self.path('cut.bag'))
+        self.assertRegex(self.grind(2, 'simulate').stderr, 'FILE is missing; allowed: a file, or --last')
 
 
 if __name__ == '__main__':

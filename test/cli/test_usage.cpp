@@ -69,7 +69,7 @@ TEST(UnknownWord, IsNamedWithTheNearest) {
 
 TEST(Usage, ThatIsWrongIsRefused) {
   const std::vector<std::pair<std::string, Words>> rows{
-      {"", {"", "plan", "run", "simulate", "spindle", "wheel", "probe", "override", "touch-off", "completion"}},
+      {"", {"", "plan", "run", "spindle", "wheel", "probe", "override", "touch-off", "completion"}},
       {"table j", {"", "--step-length 0", "--step-length -0.2", "--step-length long", "--step-length nan"}},
       {"table j --step-length 0.2 --even-step", {"newest"}},
       {"simulate j", {"--at 1,x", "--sections 1", "--sections 2000", "--at 1 --sections 3"}},

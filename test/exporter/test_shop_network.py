@@ -97,14 +97,14 @@ class Computer:
         return command
 
     def records(self):
-        return [json.loads(path.read_text()) for path in sorted(self.history.glob('*Z.json'))]
+        return [record_files.read(path) for path in sorted(self.history.glob('*Z.json'))]
 
     def counts(self):
         """What Prometheus is to have."""
         records = self.records()
         times = [[datetime.datetime.strptime(record[key], '%Y-%m-%dT%H:%M:%S.%fZ') for key in ('started', 'ended')] for record in records]
         return {'jobs done': len(records), 'tools': len(records), 'strokes': sum(len(record['strokes']) for record in records),
-                'setpoints': sum(record['setpoints']['written'] for record in records),
+                'setpoints': sum(record['setpoints'] for record in records),
                 'job_duration_seconds': round(sum((ended - started).total_seconds() for started, ended in times), 3)}
 
     def cost(self):
@@ -183,8 +183,8 @@ class TestShopNetwork(unittest.TestCase):
             self.assertEqual(command.end(), 0, command.text)
             records = gc.poll(lambda: [computer.records()] if len(computer.records()) == self.jobs else [], 'the record')[0]
             for record in records:
-                self.assertEqual((record['outcome'], record['holds'], record['overrides'], record['setpoints']),
-                                 ('done', [], [], {'written': record['planned']['setpoints'], 'lost': 0}))
+                self.assertEqual((record['outcome'], record['holds'], record['overrides'], record['setpoints'], record['lost']),
+                                 ('done', [], [], record['planned']['setpoints'], 0))
         expected = {computer.instance: computer.counts() for computer in self.computers}
         try:
             gc.poll(lambda: self.counters() == expected, 'the counters', interval=0.1)

@@ -135,6 +135,7 @@ class Node:
         machine['journal'] = folder + '/journal'
         machine['offsets'] = folder + '/offsets'
         machine['history'] = folder + '/history'
+        machine['tolerances'] = gc.package_file('config/tolerances.yaml')
         rosgraph.Master('/hal_bench').setParam('/' + name, machine)
         self.log = tempfile.TemporaryFile('w+')
         self.process = subprocess.Popen([*prefix, gc.program('grinder'), '__name:=' + name], stdin=subprocess.DEVNULL,

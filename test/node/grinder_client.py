@@ -673,7 +673,8 @@ class NodeProcess:
         if parameters:
             parameters = dict({'journal': os.path.join(self.folder, 'journal'),
                                'offsets': os.path.join(self.folder, 'offsets'),
-                               'history': os.path.join(self.folder, 'history')}, **parameters)
+                               'history': os.path.join(self.folder, 'history'),
+                               'tolerances': package_file('config/tolerances.yaml')}, **parameters)
             parameters = {key: value for key, value in parameters.items() if value is not None}
             rosgraph.Master(rospy.get_name()).setParam('/' + name, parameters)
         # Not a pipe, which would have to be emptied.

@@ -1,44 +1,40 @@
 """Records of jobs, made without a grinder."""
 
+import datetime
+import hashlib
+import json
+
 import yaml
 
 import grinder_client as gc
 
 
-def wheel_of(process):
-    """A wheel as records have it."""
-    if 'file' not in process['wheel']:
-        return process['wheel']
-    with open(gc.package_file('jobs/' + process['wheel']['file'])) as text:
-        wheel = yaml.safe_load(text)
-    return dict({key: wheel[key] for key in wheel if key not in ('flange_mm', 'measured', 'dressed')}, wear_mm=0)
-
-
-def job_of(path, operation=None):
-    """A job file, or one of its operations, as records have it."""
+def head_of(path, started, ended, outcome='done', complete=1, passes=1, **fields):
+    """The head of a record of a job file, all of whose figures are as asked. @param complete of the strokes that were begun."""
     with open(gc.package_file(path)) as text:
-        file = yaml.safe_load(text)
-    for process in file.get('operations', [file.get('process')]):
-        process['wheel'] = wheel_of(process)
-    operations = file.get('operations', [])
-    for before, relief in zip(operations, operations[1:]):
-        for key in ('clearance_mm', 'spark_out', 'order', 'direction'):
-            relief.setdefault(key, before[key])
-    if operation is not None:
-        file['process'] = file['operations'][operation]
-        file['operation'] = file['process'].get('relief', file['process']['kind'])
-    return file
+        cutter = yaml.safe_load(text)['cutter']
+    teeth = cutter.get('teeth') or len(cutter['tooth_angles_deg'])
+    tool = 'D %g mm, cone %g deg, spiral %g deg, rake %g deg, %d %s' % (
+        cutter['end_diameter_mm'], cutter['cone_angle_deg'], (cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']])[0],
+        cutter['rake_angle_deg'], teeth, 'tooth' if teeth == 1 else 'teeth')
+    times = [datetime.datetime.fromisoformat(time.replace('Z', '+00:00')).timestamp() for time in (started, ended)]
+    head = {'grinder': '/grinder', 'started': started, 'ended': ended, 'job': 'job', 'digest': '', 'operation': '', 'tool': tool,
+            'ends_tool': True, 'wheel': 'wheel.yaml', 'dressed': '', 'wear_mm': 0, 'outcome': outcome, 'reason': '',
+            'strokes': complete, 'passes': passes, 'duration_s': round(times[1] - times[0], 3), 'holds': 0, 'setpoints': 0,
+            'lost': 0, 'verdict': 'incomplete' if outcome == 'done' else 'failed',
+            'verdict_because': ['rake: not measured'] if outcome == 'done' else ['the job ended as ' + outcome]}
+    assert fields.keys() <= head.keys()
+    return dict(head, **fields)
 
 
-def record_of(file, started, ended, outcome='done', complete=(True,), setpoints=0, name='job', wheel='wheel.yaml',
-              dressed=''):
-    """A record of a job whose figures are all as asked. @param complete of each stroke."""
-    stroke = {'tooth': 1, 'pass': 1, 'depth_mm': 1, 'started_s': 0, 'duration_s': 1, 'feed_min_mm_min': 600,
-              'feed_max_mm_min': 600, 'feed_min_x_mm': 0, 'deviation_um': 0, 'deviation_x_mm': 0,
-              'following_error': {'x_um': 0, 'y_um': 0, 'z_um': 0, 'a_mdeg': 0}}
-    return {'record': 1, 'machine': {'software': '0.1.0', 'period_ms': 1}, 'job': {'name': name, 'digest': '', 'file': file},
-            'started': started, 'ended': ended, 'outcome': outcome, 'reason': '', 'first': {'tooth': 1, 'pass': 1},
-            'passes': len(complete), 'wheel': {'name': wheel, 'dressed': dressed},
-            'planned': {'feed_limits': []}, 'setpoints': {'written': setpoints, 'lost': 0},
-            'late_cycles': {'count': 0, 'longest_ms': 1}, 'strokes': [dict(stroke, complete=whole) for whole in complete],
-            'holds': [], 'overrides': []}
+def text_of(head, body=()):
+    """A record as the grinder writes it, sealed."""
+    lines = '{"record":2,"head":%s,\n"body":%s,\n' % (json.dumps(head), json.dumps(dict({'criteria': []}, **dict(body))))
+    return '%s"seal":"%s"}\n' % (lines, hashlib.sha256(lines.encode()).hexdigest())
+
+
+def read(path):
+    """The head and the body of a record, in one."""
+    with open(path) as file:
+        record = json.load(file)
+    return dict(record['head'], **record['body'])

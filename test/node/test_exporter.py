@@ -1,7 +1,6 @@
 """Shows that the exporter follows a grinder over HTTP: its states, a job whose counters are those of its record, a fault, the
 exporter's restart, the grinder's end and its return; and that nothing knows of the exporter, which listens on loopback alone."""
 
-import json
 import os
 import signal
 import subprocess
@@ -15,6 +14,7 @@ from flute_grinder.msg import GrinderState
 from prometheus_client.parser import text_string_to_metric_families
 
 import grinder_client as gc
+import record_files
 from grinder_client import MM, MM_MIN
 
 sys.path.insert(0, gc.package_file('test'))
@@ -91,9 +91,8 @@ class TestExporter(unittest.TestCase):
         self.assertEqual(run.wait_complete().status, 'SUCCEEDED', run.text)
         metrics = self.wait('jobs_total done')
         name, = [name for name in os.listdir(self.parameters['history']) if name != 'exporter.json']
-        with open(os.path.join(self.parameters['history'], name)) as file:
-            record = json.load(file)
-        self.assertEqual(metrics['setpoints_total'], record['setpoints']['written'])
+        record = record_files.read(os.path.join(self.parameters['history'], name))
+        self.assertEqual(metrics['setpoints_total'], record['setpoints'])
         self.assertEqual(metrics['strokes_total'], len(record['strokes']))
         self.assertEqual((metrics['tools_total'], metrics['jobs_total fault'], metrics['jobs_total canceled']), (1, 0, 0))
         # Figures of the diagnostics, each after the next report.

@@ -17,6 +17,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from flute_grinder.msg import MachineInfo
 
 import grinder_client as gc
+import record_files
 from grinder_client import DEG, MM, MM_MIN, STROKE
 from test_diagnostics import Reports
 
@@ -62,10 +63,7 @@ class Kept(unittest.TestCase):
         result = do()
         gc.poll(lambda: [f for f in cls.files() if f not in before and re.fullmatch(NAME, f)], 'the record')
         new, = [f for f in cls.files() if f not in before]
-        with open(os.path.join(cls.folder, new)) as file:
-            record = json.load(file)
-        record['file'] = new
-        return record, result
+        return dict(record_files.read(os.path.join(cls.folder, new)), file=new), result
 
 
 class TestRecords(Kept):
@@ -112,7 +110,7 @@ class TestRecords(Kept):
             return run
 
         record, _ = self.record_of(end)
-        self.assertEqual((record['outcome'], record['job']['name']), ('canceled', 'broken off'))
+        self.assertEqual((record['outcome'], record['job']), ('canceled', 'broken off'))
         self.assertIn('canceled; stopped on the path', record['reason'])
         self.assertEqual(self.files()[:-1], before)
         self.assertEqual(self.files()[-1], record['file'])
@@ -203,23 +201,29 @@ class TestCommand(Kept):
     def test_json(self):
         done = self.grind('--json')
         first, second = json.loads(done.stdout)
-        self.assertEqual(list(first), ['file', 'grinder', 'started', 'job', 'operation', 'tool', 'outcome', 'reason', 'strokes',
-                                       'passes', 'duration_s', 'holds', 'verdict', 'verdict_because'])
+        self.assertEqual(list(first), ['file', 'grinder', 'started', 'ended', 'job', 'digest', 'operation', 'tool', 'ends_tool', 'wheel', 'dressed',
+                                       'wear_mm', 'outcome', 'reason', 'strokes', 'passes', 'duration_s', 'holds', 'setpoints', 'lost',
+                                       'verdict', 'verdict_because'])
         self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))
         self.assertEqual([first[key] for key in ('started', 'job', 'outcome', 'reason', 'strokes', 'passes', 'holds')],
                          [self.first['started'], 'two.yaml', 'done', '', 4, 4, 0])
         self.assertEqual([second['outcome'], second['reason'], second['strokes']], ['canceled', self.second['reason'], 1])
 
-    def test_verdict_is_by_the_tolerances(self):
+    def test_verdict_is_by_the_tolerances_of_the_node_until_it_is_judged_again(self):
+        listed = json.loads(self.grind('--json').stdout)
+        self.assertEqual([entry['verdict'] for entry in listed], [self.first['verdict'], 'failed'])
         tolerances = os.path.join(self.home, 'tolerances.yaml')
-        for most, verdict, text in ((1e5, 'incomplete', '^passed as far as measured$'), (0, 'failed', '^FAILED: .*feed constancy')):
+        for most, failed in ((1e5, []), (0, ['feed constancy'])):
             with open(tolerances, 'w') as file:
-                json.dump(dict(land_mm=0, primary_mm=most, following_error_um=most, feed_percent=most, late_cycles_percent=most), file)
-            listed = json.loads(self.grind('--json', '--tolerances', tolerances).stdout)
-            self.assertEqual([entry['verdict'] for entry in listed], [verdict, 'failed'])
-            last = [re.split('  +', line)[-1] for line in self.grind('--tolerances', tolerances).stdout.splitlines()]
-            self.assertRegex(last[1], text)
-            self.assertRegex(last[2], '^FAILED: the job ended as canceled')
+                json.dump(dict(land_mm=0, edge_diameter_mm=most, following_error_um=most, feed_percent=most,
+                               late_cycles_percent=most), file)
+            again = json.loads(self.grind('--json', '--judge-again', '--tolerances', tolerances).stdout)
+            self.assertEqual([reason for reason in again[0]['verdict_because'] if 'feed' in reason], failed)
+            # The tool is measured by what the record has of its strokes, and the verdicts are kept.
+            self.assertNotIn('rake: not measured', again[0]['verdict_because'])
+            self.assertEqual(json.loads(self.grind('--json').stdout), again)
+            rows = [re.split('  +', line)[-1] for line in self.grind().stdout.splitlines()]
+            self.assertRegex(rows[2], '^FAILED: the job ended as canceled')
 
     def test_empty_folder(self):
         folder = gc.temp_folder(self.addCleanup)

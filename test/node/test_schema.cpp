@@ -277,7 +277,7 @@ const Section kSections[]{
 YAML::Node goodParameters(bool with_hal) {
   YAML::Node p = YAML::LoadFile("config/grinder.yaml");
   if (with_hal) p["hardware"] = YAML::LoadFile("config/hal.yaml")["hardware"];
-  for (const char* file : {"journal", "offsets", "history"}) p[file] = "/tmp/";
+  for (const char* file : {"journal", "offsets", "history", "tolerances"}) p[file] = "/tmp/";
   for (const char* joint : kJointNames) {
     YAML::Node limits = p["joint_limits"][joint];
     limits["has_position_limits"] = true;
@@ -461,7 +461,7 @@ TEST(Schema, KnowsEveryParameterOfTheShippedFilesWhichLackNone) {
   }
   for (const std::string& name : shipped) EXPECT_TRUE(known.count(name)) << name;
   // The launch file sets these.
-  for (const char* name : {"journal", "offsets", "history"}) EXPECT_EQ(needed.erase(name), 1U) << name;
+  for (const char* name : {"journal", "offsets", "history", "tolerances"}) EXPECT_EQ(needed.erase(name), 1U) << name;
   for (const std::string& name : needed) EXPECT_TRUE(shipped.count(name)) << name;
 }
 

@@ -56,6 +56,7 @@ class Master:
     def of_grinder(cls, folder, **parameters):
         """With the parameters of a grinder, which keeps its files in a folder."""
         files = {name: os.path.join(folder, name) for name in ('journal', 'offsets', 'history')}
+        files['tolerances'] = gc.package_file('config/tolerances.yaml')
         with open(gc.package_file('urdf/grinder.urdf')) as urdf:
             return cls(grinder=dict(gc.machine(), **files), robot_description=urdf.read(), **parameters)
 

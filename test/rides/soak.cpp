@@ -72,7 +72,7 @@ class Soak {
       : config_(machineConfig()),
         job_(readJobFile(job)),
         history_(folder_.path() / "history", kHistory),
-        recorder_("/grinder", machineInfo(config_, "simulated"), history_),
+        recorder_("/grinder", machineInfo(config_, "simulated"), readTolerances("config/tolerances.yaml"), history_),
         journal_(folder_.path() / "journal", "soak"),
         tracker_(journal_) {
     static_cast<JobPlan&>(plan_) = planJob(job_, config_.machine, RunStart(config_.machine.park));
@@ -132,10 +132,9 @@ class Soak {
     require(history_.error().empty() && tracker_.error().empty(), history_.error() + tracker_.error());
     const auto records = recordFilesIn(folder_.path() / "history").records;
     if (records.empty()) return;
-    const Json record = readRecord(records.back());
-    require(record["outcome"] == "done" && record["strokes"].size() == record["passes"], record.dump());
-    const double duration = timeOf(record["ended"]) - timeOf(record["started"]);
-    require(std::abs(duration - plan_.statistics.duration) < 1, std::to_string(duration) + " s in a record");
+    const RecordHead head = readRecord(records.back()).head;
+    require(head.outcome == "done" && head.strokes == head.passes, text(toJson(head)));
+    require(std::abs(head.duration - plan_.statistics.duration) < 1, std::to_string(head.duration) + " s in a record");
   }
 
  private:

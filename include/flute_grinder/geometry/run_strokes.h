@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace grinder {
@@ -35,6 +36,10 @@ class RunStrokes {
   /// @param job from withLaws().
   /// @param before the cutter as the operations ahead of a relief ground it; nothing: as they are planned.
   explicit RunStrokes(const ValidJob& job, std::optional<GroundCutter> before = std::nullopt);
+
+  /// Those of a run that is over. @param strokes of this job, as strokes() had them.
+  /// @throw std::invalid_argument for a tooth or a pass that the job does not have, and for a stroke without positions.
+  RunStrokes(const ValidJob& job, std::vector<RunStroke> strokes, std::optional<GroundCutter> before = std::nullopt);
 
   /// Takes the setpoints of a job in order. Those that do not belong to a stroke are needed as well.
   /// @param actual position that was read one cycle before [m], A [rad].
@@ -93,6 +98,7 @@ class RunStrokes {
   GroundCutter relieved(const std::vector<const RunStroke*>& kept) const;
   Path pathOf(const ToothPass& place) const { return {job_, place.tooth, wearOf(place)}; }
   double wearOf(const ToothPass& place) const;
+  void requirePlace(const ToothPass& place, const std::string& what) const;
   double depthOf(const RunStroke& s) const { return job_.depths()[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
   void beginStroke(const ToothPass& place, double x);

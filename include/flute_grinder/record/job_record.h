@@ -1,13 +1,16 @@
 #pragma once
 
 #include "flute_grinder/control/cycle_sample.h"
+#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/plan/planned_job.h"
 #include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/stroke_log.h"
+#include "flute_grinder/record/verdict.h"
 
 #include <cstdint>
 #include <memory>
@@ -50,14 +53,16 @@ class JobRecord {
   /// Of the first cycle, since the epoch [s].
   double started() const { return started_; }
 
-  /// The record as it is kept, see docs/ros-interface.md.
+  /// The record as it is kept, with the verdict on the run. The tool, whose computation takes seconds, is measured by
+  /// whoever reads the record.
   /// @param grinder the node's name.
-  Json json(const std::string& grinder, const MachineInfo& machine) const;
+  Record record(const std::string& grinder, const MachineInfo& machine, const Tolerances& tolerances) const;
 
  private:
   double since(const CycleSample& sample) const { return sample.time - started_; }
-  Json jobJson() const;
-  Json strokesJson() const;
+  void addGround(const Setpoint& setpoint, const CycleSample& sample);
+  RecordHead head() const;
+  std::vector<Criterion> judge(const Tolerances& tolerances) const;
   Json zeroPointsJson() const;
 
   std::shared_ptr<const GrindProgram> program_;
@@ -74,6 +79,8 @@ class JobRecord {
   double longest_ = 0;  ///< period of a cycle [s]
   ToothPass pass_;      ///< of the setpoint that reached the axes last
   StrokeLog strokes_;
+  RunStrokes ground_;       ///< where the wheel was
+  std::string not_ground_;  ///< why that is not known; empty if it is
   JobEvents events_;
   JobConclusion conclusion_;
 };

@@ -36,8 +36,8 @@ class StrokeLog {
   void addFollowingError(const Axes& error);
 
   const std::vector<StrokeFigures>& strokes() const noexcept { return strokes_; }
-  /// The strokes as records have them, see docs/ros-interface.md; without `complete`. @param following_error is known.
-  Json json(bool following_error) const;
+  /// The strokes as records have them, see docs/ros-interface.md.
+  Json json() const;
 
  private:
   std::vector<FormedEdge> edges_;  ///< of the teeth

@@ -1,10 +1,11 @@
 #pragma once
 
+#include "flute_grinder/geometry/ground_tool.h"
 #include "flute_grinder/messages/json.h"
-#include "flute_grinder/record/machine_info.h"
+#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/stroke_log.h"
 #include "flute_grinder/record/verdict.h"
-#include "flute_grinder/report/run_file.h"
+#include "flute_grinder/report/bag_run.h"
 
 #include <memory>
 #include <optional>
@@ -17,27 +18,27 @@ class Plots;
 
 /// What a report says beside what its file has.
 struct ReportContext {
-  std::string file;       ///< its name for the reader
-  Json words;             ///< note, operator and serial, of whoever asks for the report
-  Json tool;              ///< as `grind simulate` measures it; null if it cannot be
-  std::string no_tool;    ///< why not
-  Tolerances tolerances;  ///< by which the tool is passed
-  MachineInfo limits;     ///< of a machine, for files without theirs
+  std::string file;                ///< its name for the reader
+  Json words;                      ///< note, operator and serial, of whoever asks for the report
+  std::optional<GroundTool> tool;  ///< as the run ground it; nothing if that is not known
+  Json tool_json;                  ///< the same as `grind simulate` has it
+  std::string no_tool;             ///< why it is not known
+  Tolerances tolerances;           ///< by which the tool is passed
 };
 
-/// Goes through the rows of a file once, and works out all that a report says of them.
+/// Goes through the rows of a bag once, and works out all that a report says of them.
 class Survey {
  public:
   /// @param run must outlive this object. @param job of the run, with its laws; nothing if it has none.
   /// @param draws pictures are wanted.
-  Survey(const RunFile& run, const std::optional<ValidJob>& job, bool draws);
+  Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws);
   Survey(const Survey&) = delete;
   Survey& operator=(const Survey&) = delete;
   ~Survey();
 
   void add(const RunRow& row);
 
-  /// The data of the report, in the keys of the grinder's own records, with more.
+  /// The data of the report.
   Json findings(const ReportContext& context) const;
   /// The points of its pictures. Only if they are wanted.
   Json plots() const;
@@ -50,11 +51,12 @@ class Survey {
   };
 
   Json ofSetpoints() const;
-  Json axesJson(const Json& limits) const;
+  void judge(Json& data, const ReportContext& context) const;
+  Json axesJson(const Json& machine) const;
   Json loopJson() const;
   Json holdsAndOverrides() const;
 
-  const RunFile& run_;
+  const BagRun& run_;
   std::unique_ptr<MotionOfRows> motion_;
   std::unique_ptr<Plots> plots_;
   StrokeLog strokes_;
@@ -63,7 +65,7 @@ class Survey {
   std::uint64_t late_ = 0, count_ = 0;
 };
 
-/// What a report says of a record that the grinder keeps of a job, see readRecord().
-Json findingsOfRecord(const Json& record, const ReportContext& context);
+/// What a report says of a record that the grinder has kept of a job.
+Json findingsOfRecord(const Record& record, const ReportContext& context);
 
 }  // namespace grinder

@@ -52,8 +52,7 @@ def axis_unit(axis, per, largest):
 def curve_pictures(data):
     """As the paper's Figures 3 to 5, and of the error; of the stroke with the maximum error."""
     curve, every = data['plots']['curve'], data['plots']['curve']['every']
-    which = 'the table' if data['kind'] == 'table' else 'tooth %d, pass %d, the stroke with the maximum error' % (
-        curve['tooth'] + 1, curve['pass'] + 1)
+    which = 'tooth %d, pass %d, the stroke with the maximum error' % (curve['tooth'] + 1, curve['pass'] + 1)
     whole = 'A in rad over X in mm for %s; the line is the theoretical curve, %s.' % (
         which, 'with all %d points' % curve['count'] if every == 1
         else 'with one in %d of its %d points' % (every, curve['count']))
@@ -149,12 +148,13 @@ def axis_picture(data, clock, quantity, curve):
         many, unit = axis_unit(axis, per, top)
         time, values = broken(data['plots'][key][part], clock.gap, curve)
         axes.plot(time, values / scale * many, color=CURVE)
-        for sign in (-1, 1):
+        for sign in (-1, 1) if limit is not None else ():
             axes.axhline(sign * limit * many, color=LIMIT, linestyle='--')
         # Following errors in a stroke are a small part of the limit, which would hide them.
         span = 1.1 * top * many or 1.0
         axes.set(ylim=(-span, span), ylabel=unit)
-        axes.set_title('%s: max %.4g %s, %.3g %% of the limit' % (where, top * many, unit, 100 * top / limit), loc='left')
+        of_limit = '' if limit is None else ', %.3g %% of the limit' % (100 * top / limit)
+        axes.set_title('%s: max %.4g %s%s' % (where, top * many, unit, of_limit), loc='left')
         clock.finish(axes)
     panels[1].set_xlabel('time since the start [s]')
     return picture('%s-%s' % (key, axis.lower()), '%s of %s' % (title, axis),

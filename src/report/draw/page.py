@@ -152,8 +152,7 @@ def run_facts(data):
             ('work offsets', ', '.join('%s %.4f %s' % (name[0].upper(), value, name[2:]) for name, value in offsets.items())
              if offsets else None),
             ('setpoints', setpoints.get('written')),
-            ('missing', '%d setpoints are not in the file' % setpoints['lost'] if setpoints.get('lost') else None),
-            ('points', data['points'] if data['kind'] == 'table' else None)]
+            ('missing', '%d setpoints are not in the file' % setpoints['lost'] if setpoints.get('lost') else None)]
 
 
 def outcome(data):
@@ -198,18 +197,15 @@ def events_of(data, stroke):
 
 
 def stroke_table(data):
-    has_following = any('following_error' in stroke for stroke in data['strokes'])
-    head = ['tooth, pass', 'depth mm', 'begun s', 'time s', 'feed mm/min', 'deviation µm']
-    table = Table(head + (['following X, Y, Z µm', 'A mdeg'] if has_following else []) + ['holds, overrides'],
-                  range(1, 8 if has_following else 6))
+    table = Table(['tooth, pass', 'depth mm', 'begun s', 'time s', 'feed mm/min', 'deviation µm', 'following X, Y, Z µm', 'A mdeg',
+                   'holds, overrides'], range(1, 8))
     for stroke in data['strokes']:
         low, high = (number(stroke['feed_%s_mm_min' % which], 1) for which in ('min', 'max'))
         cells = ['%d, %d' % (stroke['tooth'], stroke['pass']), number(stroke['depth_mm'], 4), number(stroke['started_s'], 1),
                  number(stroke['duration_s'], 1), None if low is None else '%s to %s' % (low, high),
                  three_digits(stroke['deviation_um'])]
-        if has_following:
-            errors = stroke['following_error']
-            cells += [', '.join(number(errors[key], 2) or '-' for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]
+        errors = stroke['following_error']
+        cells += [', '.join(number(errors[key], 2) or '-' for key in ('x_um', 'y_um', 'z_um')), number(errors['a_mdeg'], 2)]
         table.add(*cells, events_of(data, stroke))
     return table.html()
 
@@ -229,7 +225,8 @@ def axis_table(data, name):
     table = Table(['axis', 'in the strokes', 'between them', 'limit'], (1, 2, 3))
     for row in data['axes']:
         unit = ('deg' if row['axis'] == 'A' else 'mm') + per
-        table.add(row['axis'], *('%.5g %s' % (row[name][key], unit) for key in ('stroke', 'rapid', 'limit')))
+        figures = (row[name][key] for key in ('stroke', 'rapid', 'limit'))
+        table.add(row['axis'], *('not known' if figure is None else '%.5g %s' % (figure, unit) for figure in figures))
     return table.html()
 
 
@@ -293,8 +290,7 @@ def first_page(data, parts):
 def appendix(data, parts):
     errors = facts([('maximum odd error', '%.4e rad' % data['odd_error_rad']),
                     ('maximum even error', '%.4e rad' % data['even_error_rad'])])
-    opened = ' open' if data['kind'] == 'table' else ''
-    return ['<details%s>\n<summary>The interpolation, in radians</summary>' % opened, errors, pictures(parts, 'curve'), '</details>']
+    return ['<details>\n<summary>The interpolation, in radians</summary>', errors, pictures(parts, 'curve'), '</details>']
 
 
 def page(data, parts):
@@ -303,8 +299,7 @@ def page(data, parts):
     if data.get('strokes') or data.get('holds') or data.get('overrides'):
         body += ['<h2>Teeth and passes</h2>', stroke_table(data) if data['strokes'] else '', events_between(data)]
     if parts.get('tool'):
-        body += ['<h2>%s</h2>' % ('The tool that the job asks for' if data['kind'] == 'record' else 'The ground tool'),
-                 pictures(parts, 'tool')]
+        body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
     if parts.get('feed'):
         body += ['<h2>Feed</h2>', pictures(parts, 'feed')]
     for name, title, *_ in QUANTITIES:

@@ -1,4 +1,4 @@
-#include "cli/ground_tool.h"
+#include "cli/tool_output.h"
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/section_outline.h"
@@ -17,11 +17,8 @@ namespace {
 
 using namespace units;
 
-constexpr int kVolumeSections = 12;
 constexpr std::size_t kOutlineRings = 32;
 constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth together
-constexpr double kMinGouge = 1e-6;            ///< below that it is the averaging of positions [m]
-constexpr double kBadGouge = 10e-6;           ///< above that it is not the following error alone [m]
 
 /// A tooth in a section, with what is measured for a report alone.
 struct Place : FigurePlace {
@@ -260,18 +257,6 @@ Json gouges(const GroundTool& tool) {
   return gouges;
 }
 
-/// The deepest, if it is worth a reason.
-std::optional<Reason> reasonOf(const std::vector<Gouge>& gouges) {
-  const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
-  const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
-  if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
-  return otherReason(
-      format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
-             "%.3f mm; allowed: up to %.3f mm",
-             deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
-             deepest->x / kMillimetre, kBadGouge / kMillimetre));
-}
-
 Json number(Value value) { return value ? Json(*value) : Json(nullptr); }
 
 /// The figures of the section, or of the tooth.
@@ -320,33 +305,6 @@ Json toJson(const GroundTool& tool, const MeasuredSection& section) {
 }
 
 }  // namespace
-
-std::vector<double> evenSections(const GrindJob& job, int count) {
-  std::vector<double> at;
-  for (int i = 0; i < count; ++i) at.push_back(job.cutter.flute_length * i / (count - 1));
-  return at;
-}
-
-GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
-  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
-  tool.check = checkGroundCutter(job, tool.cutter);
-  for (const double x : at) {
-    const GroundSection section = tool.cutter.section(x);
-    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
-  }
-  tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
-  return tool;
-}
-
-GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
-  GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
-  tool.of_run = true;
-  tool.on_planned = strokes.isOnPlanned();
-  tool.strokes = strokes.strokes();
-  tool.gouges = gougesOf(strokes, kMinGouge);
-  if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
-  return tool;
-}
 
 void printText(const GroundTool& tool) {
   std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),

@@ -134,11 +134,17 @@ bool agree(const flute_grinder::GrinderState& state, const flute_grinder::WorkOf
   return true;
 }
 
+/// Waits for a state that has the work offsets of now. @return the exit status.
+int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const OffsetWatch& offsets) {
+  if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
+  if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
+  return 0;
+}
+
 int show(ros::NodeHandle& nh, bool json) {
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
-  if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
-  if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
+  if (const int status = awaitAgreement(nh, watch, offsets)) return status;
   if (json) {
     print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
   } else {
@@ -254,7 +260,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job, {}, options.operation);
     const StateWatch watch(nh);
-    if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
+    const OffsetWatch offsets(nh);
+    if (const int status = awaitAgreement(nh, watch, offsets)) return status;
     const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);
     if (!refused.empty()) return fail(refused);
     request.position = touchY(job, request.position);

@@ -19,30 +19,16 @@ void require(bool done, const std::string& path) {
   if (!done) throw std::system_error(errno, std::generic_category(), path);
 }
 
-void write(int descriptor, const std::string& text, const std::string& path) {
+/// Puts the text there in one step.
+void fill(FileReplacement& fresh, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
-    const ssize_t count = ::write(descriptor, text.data() + done, text.size() - done);
+    const ssize_t count = ::write(fresh.descriptor(), text.data() + done, text.size() - done);
     if (count < 0 && errno == EINTR) continue;
-    require(count >= 0, path);
+    require(count >= 0, fresh.file());
     done += static_cast<std::size_t>(count);
   }
+  fresh.commit();
 }
-
-/// A descriptor, which is closed at the end of its scope.
-class Descriptor {
- public:
-  Descriptor(int number, const std::string& path) : number_(number), path_(path) { require(number >= 0, path); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() { ::close(number_); }
-
-  void sync() const { require(::fsync(number_) == 0, path_); }
-  void write(const std::string& text) const { grinder::write(number_, text, path_); }
-
- private:
-  int number_;
-  const std::string& path_;
-};
 
 /// Where links lead, to the name of a file that there may not be.
 std::string behindLinks(const std::string& path) {
@@ -84,6 +70,13 @@ FileReplacement::FileReplacement(const std::string& path) : file_(behindLinks(pa
   require(descriptor_ >= 0, file_);
 }
 
+FileReplacement::FileReplacement(const std::string& path, const std::string& fresh)
+    : file_(path), fresh_(fresh), is_new_(true) {
+  // A FIFO must not block.
+  descriptor_ = ::open(fresh_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, 0644);
+  require(descriptor_ >= 0, fresh_);
+}
+
 FileReplacement::~FileReplacement() {
   ::close(descriptor_);
   if (!fresh_.empty()) ::unlink(fresh_.c_str());
@@ -106,29 +99,24 @@ void FileReplacement::commit() {
 
 void replaceFile(const std::string& path, const std::string& text) {
   FileReplacement fresh(path);
-  write(fresh.descriptor(), text, fresh.file());
-  fresh.commit();
+  fill(fresh, text);
   settleFile(fresh.file());
 }
 
 void writeFile(const std::string& path, const std::string& text) {
-  const std::string fresh = path + ".new";
-  // A FIFO must not block.
-  const int flags = O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC;
-  const Descriptor descriptor(::open(fresh.c_str(), flags, 0644), fresh);
-  try {
-    descriptor.write(text);
-    descriptor.sync();
-    require(::rename(fresh.c_str(), path.c_str()) == 0, path);
-  } catch (const std::system_error&) {
-    ::unlink(fresh.c_str());
-    throw;
-  }
+  FileReplacement fresh(path, path + ".new");
+  fill(fresh, text);
 }
 
 void settleFile(const std::string& path) {
   const std::string folder = folderOf(path);
-  Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC), folder).sync();
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  require(descriptor >= 0, folder);
+  const bool done = ::fsync(descriptor) == 0;
+  const int error = errno;
+  ::close(descriptor);
+  errno = error;
+  require(done, folder);
 }
 
 }  // namespace grinder

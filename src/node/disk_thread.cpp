@@ -19,36 +19,31 @@ struct DiskThread::Work {
   void run();
 
   std::mutex mutex;  ///< guards everything below; never held during a task
-  std::condition_variable changed;
-  std::deque<std::function<void()>> tasks;
-  bool closing = false, closed = false;
+  std::condition_variable posted;
+  std::deque<std::function<void()>> tasks;  ///< an empty one ends the thread
 };
 
 void DiskThread::Work::run() {
-  std::unique_lock<std::mutex> lock(mutex);
   while (true) {
-    changed.wait(lock, [&] { return !tasks.empty() || closing; });
-    if (tasks.empty()) break;
-    std::function<void()> task = std::move(tasks.front());
+    std::unique_lock<std::mutex> lock(mutex);
+    posted.wait(lock, [&] { return !tasks.empty(); });
+    const std::function<void()> task = std::move(tasks.front());
     tasks.pop_front();
     lock.unlock();
+    if (!task) return;
     task();
-    task = nullptr;
-    lock.lock();
   }
-  closed = true;
-  changed.notify_all();
 }
 
-DiskThread::DiskThread() : work_(std::make_shared<Work>()), thread_([work = work_] { work->run(); }) {}
+DiskThread::DiskThread() : work_(std::make_shared<Work>()) {
+  std::packaged_task<void()> run([work = work_] { work->run(); });
+  ended_ = run.get_future();
+  thread_ = std::thread(std::move(run));
+}
 
 DiskThread::~DiskThread() {
-  std::unique_lock<std::mutex> lock(work_->mutex);
-  work_->closing = true;
-  work_->changed.notify_all();
-  const bool closed = work_->changed.wait_for(lock, kCloseTimeout, [&] { return work_->closed; });
-  lock.unlock();
-  if (closed) {
+  post(nullptr);
+  if (ended_.wait_for(kCloseTimeout) == std::future_status::ready) {
     thread_.join();
   } else {
     thread_.detach();
@@ -58,7 +53,7 @@ DiskThread::~DiskThread() {
 void DiskThread::post(std::function<void()> task) {
   const std::lock_guard<std::mutex> lock(work_->mutex);
   work_->tasks.push_back(std::move(task));
-  work_->changed.notify_all();
+  work_->posted.notify_one();
 }
 
 }  // namespace grinder

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <thread>
 
@@ -24,6 +25,7 @@ class DiskThread {
   struct Work;
 
   std::shared_ptr<Work> work_;  ///< shared with the thread, which outlives this object if the disk is dead
+  std::future<void> ended_;
   std::thread thread_;
 };
 

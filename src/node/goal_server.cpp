@@ -65,7 +65,7 @@ Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& 
 }  // namespace
 
 GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops,
-                       Planner& planner, Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets)
+                       Planner& planner, Telemetry& telemetry, Journal& journal, OffsetServer& offsets)
     : loop_(loop),
       gate_(gate),
       planner_(planner),

@@ -28,7 +28,7 @@ class GoalServer {
   /// @param private_nh the node's own namespace.
   /// @param the rest must outlive this object.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops, Planner& planner,
-             Telemetry& telemetry, JournalWriter& journal, OffsetServer& offsets);
+             Telemetry& telemetry, Journal& journal, OffsetServer& offsets);
   ~GoalServer();
 
   /// Whether there is a goal that has not ended. Thread safe.

@@ -88,11 +88,11 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   const std::string name = private_nh_.getNamespace();
   const NodeFiles files = readNodeFiles(parameters, name);
   const Tolerances tolerances = readTolerances(files.tolerances);
-  journal_ = std::make_unique<JournalWriter>(files.journal, name);
+  journal_ = std::make_unique<Journal>(files.journal, name);
   offsets_ = std::make_unique<OffsetStore>(files.offsets, name);
   const std::string unknown = offsets_->unknown();
   if (!unknown.empty()) ROS_ERROR_STREAM(unknown << "; until then no job starts");
-  const JournalWriter::Status journal = journal_->status();
+  const Journal::Status journal = journal_->status();
   if (!journal.error.empty()) {
     ROS_ERROR_STREAM(journal.error << "; the last job cannot be continued, and the wheel may be in the work");
   }

@@ -7,7 +7,7 @@
 #include "node/goal_server.h"
 #include "node/history.h"
 #include "node/job_gate.h"
-#include "node/journal_writer.h"
+#include "node/journal.h"
 #include "node/offset_server.h"
 #include "node/offset_store.h"
 #include "node/planner.h"
@@ -46,7 +46,7 @@ class GrinderNode {
   std::string hangingFunction() const;
 
   ros::NodeHandle nh_, private_nh_;
-  std::unique_ptr<JournalWriter> journal_;
+  std::unique_ptr<Journal> journal_;
   std::unique_ptr<OffsetStore> offsets_;
   std::unique_ptr<History> history_;
   ros::Publisher machine_;  ///< keeps the latched message

@@ -3,22 +3,13 @@
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/job/tooth_pass.h"
-#include "node/atomic_file.h"
+#include "node/state_file.h"
 
-#include <optional>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace grinder {
-
-/// A journal that cannot be read or written; what() names the file and the reason.
-using JournalError = AtomicFileError;
-
-/// A journal that was read, and is not complete, or no journal.
-using JournalDamaged = AtomicFileDamaged;
-
-/// A journal in use by another process; what() names its node and process.
-using JournalOwned = AtomicFileOwned;
 
 /// How far a job has come.
 struct Progress {
@@ -40,23 +31,16 @@ struct Progress {
   int tool_operation = 0;      ///< as OffsetBasis::operation
 };
 
-/// Keeps the progress of a job on disk, see AtomicFile. Not thread safe; blocks on the disk.
-class Journal {
- public:
-  /// @param path, owner as for AtomicFile.
-  /// @throw JournalOwned if another process owns it.
-  Journal(std::string path, std::string owner);
-
-  /// The last entry; nothing if there is no file.
-  /// @throw JournalDamaged if the file is not a complete journal. @throw JournalError if it cannot be read.
-  std::optional<Progress> read() const;
-
-  /// As AtomicFile::write() with AtomicFile::settle(): an entry that has been written survives a power failure.
-  /// @throw JournalError also if a value is not finite or out of range.
-  void write(const Progress& progress) const;
-
- private:
-  AtomicFile file_;
+template <>
+struct StateForm<Progress> {
+  static constexpr const char* kKind = "journal";
+  static constexpr const char* kComment =
+      "The grinder's progress; tooth and pass, from 0, are the first that is not finished.";
+  static constexpr bool kInBackground = true;
+  static void visit(StateFields& field, Progress& progress);
 };
+
+/// The progress of the last job on disk.
+using Journal = StateFile<Progress>;
 
 }  // namespace grinder

@@ -187,7 +187,7 @@ void OffsetServer::withoutJob(const std::function<std::string()>& act, Response&
 std::string OffsetServer::changed(const OffsetStore::Change& change, const std::string& done) {
   try {
     store_.change(change);
-  } catch (const AtomicFileError& error) {
+  } catch (const StateFileError& error) {
     return error.what();
   }
   ROS_INFO_STREAM(done);
@@ -209,7 +209,7 @@ void OffsetServer::saveNotes() {
   try {
     store_.change([](WorkOffsets&) {});
     unsaved_ = said_ = false;
-  } catch (const AtomicFileError& error) {
+  } catch (const StateFileError& error) {
     if (said_) return;
     said_ = true;
     ROS_ERROR_STREAM(error.what() << "; what happened to the tool in the collet is lost if the node ends before it can "

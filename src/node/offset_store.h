@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/motion/work_offsets.h"
-#include "node/atomic_file.h"
+#include "node/state_file.h"
 
 #include <functional>
 #include <mutex>
@@ -9,14 +9,23 @@
 
 namespace grinder {
 
-/// The work offsets and what they depend on, kept on disk as by AtomicFile. Without a file they were never set and are
+template <>
+struct StateForm<WorkOffsets> {
+  static constexpr const char* kKind = "file of work offsets";
+  static constexpr const char* kComment =
+      "The grinder's work offsets: machine position - work position; .nan is unknown.";
+  static constexpr bool kInBackground = false;
+  static void visit(StateFields& field, WorkOffsets& offsets);
+};
+
+/// The work offsets and what they depend on, kept on disk as by StateFile. Without a file they were never set and are
 /// 0. If the file cannot be read they are unknown, and each remains so until it is set.
 class OffsetStore {
  public:
   /// Reads the file. Blocks on the disk.
-  /// @param path, owner as for AtomicFile.
-  /// @throw AtomicFileOwned
-  OffsetStore(std::string path, std::string owner);
+  /// @param path, owner as for StateFile.
+  /// @throw StateFileOwned
+  OffsetStore(std::string path, const std::string& owner);
 
   /// Thread safe; never waits for the disk.
   WorkOffsets offsets() const;
@@ -31,17 +40,17 @@ class OffsetStore {
   /// Returns once the change is on the disk; if it throws, nothing has changed, or what() says that the file has. For
   /// one thread.
   /// @param change leaves offsets of at most kMaxOffset in size.
-  /// @throw AtomicFileError
+  /// @throw StateFileError
   void change(const Change& change);
 
   /// Changes what is in force without waiting for the disk, which has it with the next change(). Thread safe.
   void changeAtOnce(const Change& change);
 
  private:
-  const AtomicFile file_;     ///< used by the constructor and change() only
-  mutable std::mutex mutex_;  ///< guards the next two; held only to copy
+  StateFile<WorkOffsets> file_;
+  const std::string error_;   ///< why the file could not be read; empty if it could
+  mutable std::mutex mutex_;  ///< guards offsets_; held only to copy
   WorkOffsets offsets_;
-  std::string error_;  ///< why the file could not be read; empty if it could
 };
 
 }  // namespace grinder

@@ -27,11 +27,11 @@ std::string describe(const Progress& p) {
 
 }  // namespace
 
-ProgressTracker::ProgressTracker(JournalWriter& writer) : writer_(writer), progress_(writer.status().on_disk) {}
+ProgressTracker::ProgressTracker(Journal& journal) : journal_(journal), progress_(journal.status().on_disk) {}
 
 std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first, bool discard) const {
-  const JournalWriter::Status journal = writer_.status();
-  if (journal.unread) return journal.error;
+  const Journal::Status journal = journal_.status();
+  if (!journal.unread.empty()) return journal.error;
   const bool unfinished = !progress_.job_digest.empty() && !progress_.finished;
   if (unfinished && digest == progress_.job_digest && first == progress_.next) return "";
   if (!(first == ToothPass{})) {
@@ -132,8 +132,8 @@ void ProgressTracker::update(const LoopStatus& status) {
     write();
   }
   // Retry an entry that failed: the disk may have room again, or the journal that could not be read be gone.
-  const JournalWriter::Status journal = writer_.status();
-  const bool failed = journal.unread || (request_ > 0 && !journal.error.empty());
+  const Journal::Status journal = journal_.status();
+  const bool failed = !journal.unread.empty() || (request_ > 0 && !journal.error.empty());
   const bool due = changed_ || (failed && journal.number >= request_);
   if (due && ros::SteadyTime::now() - last_entry_ >= kPlaceInterval) write();
 }
@@ -158,7 +158,7 @@ void ProgressTracker::updatePlace(const LoopStatus& status) {
 }
 
 void ProgressTracker::write() {
-  request_ = writer_.write(progress_);
+  request_ = journal_.write(progress_);
   changed_ = false;
   last_entry_ = ros::SteadyTime::now();
 }

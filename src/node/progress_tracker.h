@@ -3,7 +3,7 @@
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
-#include "node/journal_writer.h"
+#include "node/journal.h"
 
 #include <ros/steady_timer.h>
 
@@ -18,8 +18,8 @@ namespace grinder {
 /// disk.
 class ProgressTracker {
  public:
-  /// @param writer must outlive this object.
-  explicit ProgressTracker(JournalWriter& writer);
+  /// @param journal must outlive this object.
+  explicit ProgressTracker(Journal& journal);
 
   /// Why a job must not overwrite the journal: it holds another, unfinished one, is damaged, could not be read, or does
   /// not have the passes that the job would leave out as ground. Empty if it may.
@@ -49,16 +49,16 @@ class ProgressTracker {
   /// The last entry.
   const Progress& progress() const { return progress_; }
   /// Whether every entry has been written to disk, or has failed to be.
-  bool upToDate() const { return writer_.status().number >= request_; }
+  bool upToDate() const { return journal_.status().number >= request_; }
   /// Why the last entry is not on disk; empty if it is.
-  std::string error() const { return writer_.status().error; }
+  std::string error() const { return journal_.status().error; }
 
  private:
   std::string offsetChanges(const WorkOffsets& offsets) const;
   void write();
   void updatePlace(const LoopStatus& status);
 
-  JournalWriter& writer_;
+  Journal& journal_;
   Progress progress_;            ///< last entry
   Progress before_;              ///< last entry of the previous job
   std::vector<Move> moves_;      ///< of the job's program

@@ -75,9 +75,9 @@ const char* powerInWords(LoopWatchdog::Finding finding) {
 }  // namespace
 
 Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-                     const JournalWriter& journal, const OffsetStore& offsets, History& history,
-                     const Tolerances& tolerances, const MachineInfo& machine, const DiagnosticThresholds& thresholds,
-                     const MachineModel& model, const FirstView& first_view)
+                     const Journal& journal, const OffsetStore& offsets, History& history, const Tolerances& tolerances,
+                     const MachineInfo& machine, const DiagnosticThresholds& thresholds, const MachineModel& model,
+                     const FirstView& first_view)
     : loop_(loop),
       journal_(journal),
       offsets_(offsets),
@@ -386,7 +386,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.fault_reason = grinder::toMessage(fault);
   message.hold_reason = toString(sample_.interlock);
   if (finding_ != LoopWatchdog::Finding::kRuns) replaceByHang(message);
-  const JournalWriter::Status journal = journal_.status();
+  const Journal::Status journal = journal_.status();
   message.progress = toMessage(journal.on_disk);
   message.journal_error = journal.error;
   message.journal_damaged = static_cast<std::uint8_t>(!journal.damage.empty());

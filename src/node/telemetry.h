@@ -9,7 +9,7 @@
 #include "node/diagnostics.h"
 #include "node/frames.h"
 #include "node/job_recorder.h"
-#include "node/journal_writer.h"
+#include "node/journal.h"
 #include "node/offset_store.h"
 #include "node/recorder_watch.h"
 #include "node/robot_status.h"
@@ -37,10 +37,9 @@ class Telemetry {
   /// @param nh the node's namespace, for joint_states.
   /// @param private_nh the node's private namespace, for everything else.
   /// @param loop,journal,offsets,history must outlive this object.
-  Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop,
-            const JournalWriter& journal, const OffsetStore& offsets, History& history, const Tolerances& tolerances,
-            const MachineInfo& machine, const DiagnosticThresholds& thresholds, const MachineModel& model,
-            const FirstView& first_view);
+  Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, ControlLoop& loop, const Journal& journal,
+            const OffsetStore& offsets, History& history, const Tolerances& tolerances, const MachineInfo& machine,
+            const DiagnosticThresholds& thresholds, const MachineModel& model, const FirstView& first_view);
   ~Telemetry();
 
   /// Starts publishing. @param watchdog must outlive this object.
@@ -111,7 +110,7 @@ class Telemetry {
   std::uint64_t cycle() const { return samples_read_ + sample_.samples_lost; }  ///< of the loop, since it started
 
   ControlLoop& loop_;
-  const JournalWriter& journal_;
+  const Journal& journal_;
   const OffsetStore& offsets_;
   const History& history_;
   Diagnostics diagnostics_;

@@ -1,11 +1,12 @@
 #include "node/offset_store.h"
 
-#include "journal_fixture.h"
+#include "state_file_fixture.h"
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
-// The work offsets on disk. How the file is owned and replaced is the journal's, see test_journal.cpp.
+// The work offsets on disk. How their file is kept is in test_state_file.cpp, how its fields are in test_journal.cpp.
 namespace grinder {
 namespace test_offset_store {
 
@@ -25,7 +26,7 @@ const OffsetBasis kBasis{OffsetMethod::kProbe,
 const WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
 const WorkOffset kOther{-1000, "", 0};
 
-class OffsetStoreTest : public JournalTest {
+class OffsetStoreTest : public StateFileTest {
  protected:
   static void set(OffsetStore& store, int axis, const WorkOffset& offset) {
     store.change([&](WorkOffsets& offsets) { offsets.axes[static_cast<std::size_t>(axis)] = offset; });
@@ -61,53 +62,32 @@ TEST_F(OffsetStoreTest, WithoutAFileTheyWereNeverSet) {
   EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
-TEST_F(OffsetStoreTest, KeepsWhatWasSet) {
+TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
   written();
-  const OffsetStore next(path_, "/grinder");
-  EXPECT_EQ(next.unknown(), "");
-  const WorkOffsets offsets = next.offsets();
-  EXPECT_EQ(offsets.axes[kY].value, kSome.value);
-  EXPECT_EQ(offsets.axes[kY].set_by, kSome.set_by);
-  EXPECT_EQ(offsets.axes[kY].set_at, kSome.set_at);
-  const OffsetBasis& basis = offsets.axes[kY].basis;
-  EXPECT_EQ(basis.method, OffsetMethod::kProbe);
-  EXPECT_EQ(basis.job_name, kBasis.job_name);
-  EXPECT_EQ(basis.wheel_name, kBasis.wheel_name);
-  EXPECT_EQ(basis.wheel_digest, kBasis.wheel_digest);
-  EXPECT_EQ(basis.end_diameter, 0.006);
-  EXPECT_EQ(basis.wheel_diameter, 0.1);
-  EXPECT_EQ(basis.wheel_width, 0.003);
-  EXPECT_EQ(basis.swivel, 1.0 / 3);
-  EXPECT_EQ(basis.height, -0.0015);
-  EXPECT_EQ(basis.tool_digest, kBasis.tool_digest);
-  EXPECT_EQ(basis.operation, 2);
-  EXPECT_EQ(offsets.axes[kA].basis.method, OffsetMethod::kUnknown);
-  EXPECT_FALSE(offsets.axes[kA].basis.hasJob());
-  EXPECT_EQ(offsets.axes[kA].value, -1000);
-  EXPECT_EQ(offsets.axes[kX].value, 0);
-  EXPECT_EQ(offsets.axes[kX].set_by, "");
-  EXPECT_TRUE((offsets.values() == Axes(0, 0.1 + 0.2, 0, -1000)).all());
-}
-
-TEST_F(OffsetStoreTest, KeepsWheelAndTool) {
   {
     OffsetStore store(path_, "/grinder");
     store.change([](WorkOffsets& offsets) {
       offsets.axes[kY].mounting = 4;
       offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 5};
-      offsets.tool = {std::string(64, 'e'), "my job.yaml", 0b101, TeethUnknown::kNeverGround, 7};
+      offsets.tool = {std::string(64, 'd'), "my job.yaml", 0b101, TeethUnknown::kHomed, 7};
     });
   }
-  const WorkOffsets kept = OffsetStore(path_, "/grinder").offsets();
+  const OffsetStore next(path_, "/grinder");
+  EXPECT_EQ(next.unknown(), "");
+  const WorkOffsets kept = next.offsets();
+  EXPECT_TRUE((kept.values() == Axes(0, 0.1 + 0.2, 0, -1000)).all());
+  const auto all = [](const WorkOffset& o) {
+    const OffsetBasis& b = o.basis;
+    return std::tie(o.value, o.set_by, o.set_at, b.method, b.job_name, b.wheel_name, b.wheel_digest, b.end_diameter,
+                    b.wheel_diameter, b.wheel_width, b.swivel, b.height, b.tool_digest, b.operation);
+  };
+  EXPECT_TRUE(all(kept.axes[kY]) == all(kSome));
+  EXPECT_TRUE(all(kept.axes[kA]) == all(kOther));
   EXPECT_EQ(kept.axes[kY].mounting, 4U);
-  EXPECT_EQ(kept.wheel.name, "a: b.yaml");
-  EXPECT_EQ(kept.wheel.digest, std::string(64, 'f'));
-  EXPECT_EQ(kept.wheel.diameter, 0.1);
-  EXPECT_EQ(kept.wheel.mounting, 5U);
-  EXPECT_EQ(kept.tool.digest, std::string(64, 'e'));
-  EXPECT_EQ(kept.tool.job_name, "my job.yaml");
-  EXPECT_EQ(kept.tool.ground, 0b101U);
-  EXPECT_EQ(kept.tool.clamping, 7U);
+  EXPECT_TRUE(std::tie(kept.wheel.name, kept.wheel.digest, kept.wheel.diameter, kept.wheel.mounting) ==
+              std::make_tuple("a: b.yaml", std::string(64, 'f'), 0.1, 5U));
+  EXPECT_TRUE(std::tie(kept.tool.digest, kept.tool.job_name, kept.tool.ground, kept.tool.unknown, kept.tool.clamping) ==
+              std::make_tuple(std::string(64, 'd'), "my job.yaml", 0b101U, TeethUnknown::kHomed, 7U));
 }
 
 TEST_F(OffsetStoreTest, WhatIsInForceAtOnceIsOnTheDiskWithTheNextChange) {
@@ -134,12 +114,11 @@ TEST_F(OffsetStoreTest, WrongFiguresUnderARightChecksumMakeThemUnknown) {
   } lines[]{
       {"axis_y_m", "axis_y_m: 1000.1\n", "axis_y_m = 1000.1; allowed: -1000 to 1000"},
       {"axis_a_rad", "axis_a_rad: -.inf\n", "axis_a_rad = -inf; allowed: -1000 to 1000"},
-      {"axis_x_set_at", "axis_x_set_at: -1\n", "axis_x_set_at = -1; allowed: 0 to 4e9"},
-      {"axis_x_set_at", "axis_x_set_at: .nan\n", "axis_x_set_at = nan; allowed: 0 to 4e9"},
+      {"axis_x_set_at", "axis_x_set_at: -1\n", "axis_x_set_at = -1; allowed: 0 to 4000000000"},
+      {"axis_x_set_at", "axis_x_set_at: .nan\n", "axis_x_set_at = nan; allowed: 0 to 4000000000"},
       {"axis_y_method", "axis_y_method: guessed\n",
        "axis_y_method = guessed; allowed: unknown, touch_off, probe, by_hand"},
       {"axis_y_height_m", "axis_y_height_m: .nan\n", "axis_y_height_m = nan; allowed: a finite number"},
-      {"axis_y_job", "", "axis_y_job is missing"},
       {"wheel_diameter_m", "wheel_diameter_m: .inf\n", "wheel_diameter_m = inf; allowed: a finite number"},
       {"tool_unknown", "tool_unknown: lost\n", "tool_unknown = lost; allowed: never_ground, clamped, homed, set"},
   };
@@ -173,7 +152,7 @@ TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsReported) {
   std::filesystem::create_directory(path_);
   OffsetStore store(path_, "/grinder");
   EXPECT_NE(store.unknown(), "");
-  EXPECT_THROW(set(store, kX, kSome), AtomicFileError);
+  EXPECT_THROW(set(store, kX, kSome), StateFileError);
   EXPECT_TRUE(store.offsets().values().isNaN().all());
   std::filesystem::remove(path_);
   set(store, kX, kSome);
@@ -183,17 +162,23 @@ TEST_F(OffsetStoreTest, AFileThatCannotBeUsedMakesThemUnknownAndIsReported) {
 TEST_F(OffsetStoreTest, WhatIsNotKeptIsNotSet) {
   const std::string good = written();
   OffsetStore store(path_, "/grinder");
-  EXPECT_THROW(set(store, kY, {1000.1, "", 0}), AtomicFileError);
-  EXPECT_THROW(set(store, kY, {0, std::string(1 << 16, 'n'), 0}), AtomicFileError);
+  EXPECT_THROW(set(store, kY, {1000.1, "", 0}), StateFileError);
+  EXPECT_THROW(set(store, kY, {0, std::string(1 << 16, 'n'), 0}), StateFileError);
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(readFile(path_), good);
   {
     // Written to, but not opened to be synchronized.
     const Forbidden folder(folder_, std::filesystem::perms{0333});
-    EXPECT_THROW(set(store, kY, kOther), AtomicFileError);
+    EXPECT_THROW(set(store, kY, kOther), StateFileError);
   }
   EXPECT_EQ(store.offsets().axes[kY].value, kSome.value);
   EXPECT_EQ(readFile(path_), good) << "a restart would set it";
+  {
+    OffsetStore first(folder_ + "/first", "/grinder");
+    const Forbidden folder(folder_, std::filesystem::perms{0333});
+    EXPECT_THROW(set(first, kY, kOther), StateFileError);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_ + "/first"));
 }
 
 }  // namespace test_offset_store

@@ -77,7 +77,7 @@ class ProgressTrackerTest : public ::testing::Test {
 
   const GrindProgram two_ = program(2);
   const test_support::TempFolder folder_;
-  JournalWriter writer_{folder_.path() / "journal", "/test"};
+  Journal writer_{folder_.path() / "journal", "/test"};
   ProgressTracker tracker_{writer_};
   LoopStatus status_;
   WorkOffsets now_;  ///< with wheel and tool
@@ -173,7 +173,7 @@ TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) 
 TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   const std::string path = folder_.path() / "damaged";
   std::ofstream(path) << "nothing of a journal";
-  JournalWriter writer(path, "/test");
+  Journal writer(path, "/test");
   ProgressTracker tracker(writer);
   EXPECT_EQ(
       tracker.refusal("job", kFirst),
@@ -192,7 +192,7 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
 TEST_F(ProgressTrackerTest, AJournalThatCannotBeReadIsInTheWayEvenIfDiscardedUntilItIsGone) {
   const std::filesystem::path folder = folder_.path() / "folder";
   std::ofstream(folder) << "a file";
-  JournalWriter writer(folder / "journal", "/test");
+  Journal writer(folder / "journal", "/test");
   ProgressTracker tracker(writer);
   EXPECT_EQ(tracker.refusal("job", kFirst, true).rfind("journal " + folder.string(), 0), 0U);
   std::filesystem::remove(folder);

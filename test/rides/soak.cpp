@@ -158,7 +158,7 @@ class Soak {
   std::unique_ptr<ControlLoop> loop_;
   History history_;
   JobRecorder recorder_;
-  JournalWriter journal_;
+  Journal journal_;
   ProgressTracker tracker_;
   CycleSample sample_;
   ros::Time now_{kStart};

@@ -13,6 +13,9 @@ namespace grinder {
 class FileReplacement {
  public:
   explicit FileReplacement(const std::string& path);
+  /// For one writer at a time: mode and owner are a new file's, and a symbolic link is replaced itself.
+  /// @param fresh until commit() the contents have this name; what has it, as after a crash, is overwritten.
+  FileReplacement(const std::string& path, const std::string& fresh);
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
   ~FileReplacement();
@@ -38,10 +41,8 @@ class FileReplacement {
 ///        synchronized.
 void replaceFile(const std::string& path, const std::string& text);
 
-/// Writes a file in one step in the same way, whether there is one or not; a symbolic link is replaced itself. Returns
-/// once the text is on the disk; after a power failure the new file is certain only once settleFile() has returned. One
-/// writer at a time: until then the text is in a file of this name and the suffix `.new`, and one that a crash has left
-/// is overwritten.
+/// The same for one writer at a time, see FileReplacement, whose text is in a file of this name and the suffix `.new`
+/// until it is on the disk; after a power failure the new file is certain only once settleFile() has returned.
 /// @throw std::system_error if that cannot be done; the file is then as it was.
 void writeFile(const std::string& path, const std::string& text);
 

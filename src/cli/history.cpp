@@ -2,10 +2,10 @@
 
 #include "cli/csv.h"
 #include "cli/machine_file.h"
-#include "cli/recorded_run.h"
 #include "cli/time_text.h"
 #include "flute_grinder/geometry/on_all_cores.h"
 #include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
@@ -14,6 +14,7 @@
 #include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
+#include "flute_grinder/report/tool_records.h"
 
 #include <ros/names.h>
 
@@ -299,8 +300,8 @@ struct Read {
 std::optional<GroundTool> toolOf(const Record& record, const std::string& path) {
   if (record.head.outcome != "done" || isToolMeasured(record)) return std::nullopt;
   try {
-    const ValidJob job = jobOf(record, path);
-    return measure("", strokesOf(record, job), evenSections(*job, kJudgedSections));
+    const ValidJob job = withLaws(ValidJob(parseJob(record.body.at("job_file").dump(), path)));
+    return measure("", groundStrokes(job, {record}), evenSections(*job, kJudgedSections));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }

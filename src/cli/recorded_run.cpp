@@ -1,10 +1,7 @@
 #include "cli/recorded_run.h"
 
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/record/ground_strokes.h"
 
-#include <stdexcept>
 #include <utility>
 
 namespace grinder {
@@ -32,16 +29,6 @@ std::string recordedBeforeText(const BagRun& run) {
     for (const int number : parts) numbers += (numbers.empty() ? "" : ", ") + std::to_string(number);
   }
   return ", what is ahead of it by job " + numbers;
-}
-
-ValidJob jobOf(const Record& record, const std::string& path) {
-  return withLaws(ValidJob(parseJob(record.body.at("job_file").dump(), path)));
-}
-
-RunStrokes strokesOf(const Record& record, const ValidJob& job) {
-  const auto& reason = record.body.at("not_ground").get_ref<const std::string&>();
-  if (!reason.empty()) throw std::invalid_argument(reason);
-  return {job, runStrokesFrom(record.body.at("ground"))};
 }
 
 }  // namespace grinder

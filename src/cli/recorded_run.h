@@ -1,14 +1,11 @@
 #pragma once
 
 #include "flute_grinder/geometry/run_strokes.h"
-#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/report/bag_run.h"
 
 #include <optional>
 #include <string>
 
-/// @file
-/// The strokes of jobs that bags and records have.
 namespace grinder {
 
 /// The cutter as the operations ahead of a relief in a bag ground it, by their runs in the same bag.
@@ -19,12 +16,5 @@ std::optional<GroundCutter> recordedBefore(const std::string& path, const BagRun
 
 /// Where that comes from, for the reader, to be put behind the run's place; empty for flutes.
 std::string recordedBeforeText(const BagRun& run);
-
-/// The job of a record, with its laws. @param path of the record, for messages. @throw JobFileError, ReasonError
-ValidJob jobOf(const Record& record, const std::string& path);
-
-/// Where the wheel was in the job of a record. @param job of the record, with its laws. @throw std::exception if the
-/// record does not have it, with the reason.
-RunStrokes strokesOf(const Record& record, const ValidJob& job);
 
 }  // namespace grinder

@@ -65,6 +65,11 @@ std::string reasonWhyNot(const Action& action) {
   }
 }
 
+/// What a person waits for: a report takes some ten seconds.
+void say(const char* what) {
+  if (::isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "%s ...\n", what);
+}
+
 /// Measures the tool of a run.
 void measureTool(const RunStrokes& strokes, const std::string& place, ReportContext& context) {
   context.tool.emplace(measure(context.file + place, strokes, evenSections(*strokes.job(), kJudgedSections)));
@@ -91,6 +96,7 @@ void surveyRun(const std::string& path, const BagRun& run, const std::optional<V
 
 /// What a report says of a job in a bag, with the points of its pictures if they are wanted.
 Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& context) {
+  say("reading the bag");
   const BagRun run(path, job);
   std::optional<ValidJob> asked;
   if (run.job()) {
@@ -98,6 +104,7 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
   } else {
     context.no_tool = "the bag does not have the goal of " + run.place();
   }
+  say("computing the ground tool");
   Survey survey(run, asked, draws);
   surveyRun(path, run, asked, survey, context);
   Json document = survey.findings(context);
@@ -106,10 +113,11 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
 }
 
 Json documentOfRecord(const std::string& path, ReportContext& context) {
-  Record record = readRecord(path);
-  context.no_tool = reasonWhyNot([&] { measureTool(strokesOf(record, jobOf(record, path)), "", context); });
-  judgeAgain(record, context.tool ? &*context.tool : nullptr, context.tolerances);
-  return findingsOfRecord(record, context);
+  say("reading the records of the tool");
+  const ToolRecords tool(path);
+  say("computing the ground tool");
+  context.no_tool = reasonWhyNot([&] { measureTool(tool.strokes(), "", context); });
+  return findingsOfTool(tool, context);
 }
 
 Json documentOf(const std::string& path, const ReportOptions& options, bool draws, ReportContext& context) {
@@ -125,6 +133,7 @@ Json documentOf(const std::string& path, const ReportOptions& options, bool draw
 int drawBy(std::vector<std::string> words, const std::string& document) {
   // By a file, so that nothing waits for the other end of a pipe.
   const auto input = temporaryFile(document);
+  say("drawing");
   words.insert(words.begin(), PYTHON_EXECUTABLE);
   const std::vector<char*> argv = pointersTo(words);
   posix_spawn_file_actions_t actions;

@@ -13,6 +13,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/report/bag_run.h"
+#include "flute_grinder/report/tool_records.h"
 
 #include <cerrno>
 #include <cmath>
@@ -75,7 +76,7 @@ struct Source {
   std::string name;  ///< for the reader
   std::string file;
   std::optional<BagRun> bag;
-  std::optional<Record> record;
+  std::optional<ToolRecords> records;
 };
 
 /// @throw FileError, JobFileError
@@ -96,14 +97,14 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
   const std::string name = std::filesystem::path(file).filename();
   if (isBag(file)) return sourceOfBag(options, name);
   if (!isRecord(file)) return {ValidJob(readJobFile(file, {}, options.operation)), name, file, {}, {}};
-  Record record = readRecord(file);
-  const ValidJob job = jobOf(record, file);
-  return {job, name, file, {}, std::move(record)};
+  ToolRecords records(file);
+  const ValidJob job = *records.last().job;
+  return {job, name, file, {}, std::move(records)};
 }
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
-  if (source.record) return measure(source.name, strokesOf(*source.record, source.job), at);
+  if (source.records) return measure(source.name, source.records->strokes(), at);
   const ValidJob job = withLaws(source.job);
   if (!source.bag) return measure(job, source.name, groundCutterOf(job), at);
   RunStrokes strokes(job, recordedBefore(source.file, *source.bag));

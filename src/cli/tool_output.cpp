@@ -43,6 +43,7 @@ struct Figure {
   std::function<Value(const Place&)> value;
   std::function<Value(const Place&)> asked{};  ///< none if no job asks for it
   bool of_section = false;                     ///< the same for all teeth
+  std::optional<ToolFigure> row{};             ///< if it is one of the table of figures
 };
 
 /// One of the table of figures.
@@ -55,7 +56,8 @@ Figure askedFigure(ToolFigure figure) {
           shopScale(row.unit),
           [figure](const Place& p) { return measured(figure, p); },
           [figure](const Place& p) { return asked(figure, p); },
-          figure == ToolFigure::kCoreDiameter};
+          figure == ToolFigure::kCoreDiameter,
+          figure};
 }
 
 Value askedNormalRake(const Place& p) {
@@ -67,28 +69,34 @@ Value ofRelief(const Place& p, Value ReliefSection::*member) {
 }
 
 std::vector<Figure> figuresOfFlutes() {
-  return {
-      {"edge_deg", "", "", kDegree, [](const Place& p) { return p.tooth().edge; }},
-      askedFigure(ToolFigure::kRake),
-      askedFigure(ToolFigure::kChordalRake),
-      {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree,
-       [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); }, askedNormalRake},
-      askedFigure(ToolFigure::kCoreDiameter),
-      {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, [](const Place& p) { return p.tooth().depth; },
-       [](const Place& p) { return askedDepth(*p.job, p.section.x); }},
-      {"flute_deg", "flute, deg", "flute deg", kDegree, [](const Place& p) { return p.tooth().flute; }},
-      {"flute_mm", "flute, mm", "flute mm", kMillimetre,
-       [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }},
-      {"land_deg", "land, deg", "land deg", kDegree, [](const Place& p) { return p.tooth().land; }},
-      {"land_mm", "land, mm", "land mm", kMillimetre, [](const Place& p) { return onOuterCircle(p, p.tooth().land); }},
-      askedFigure(ToolFigure::kSpiral),
-      {"area_removed_mm2",
-       "area removed, mm^2",
-       "area mm^2",
-       kMillimetre * kMillimetre,
-       [](const Place& p) { return p.area_removed; },
-       {},
-       true}};
+  return {{"edge_deg", "", "", kDegree, [](const Place& p) { return p.tooth().edge; }},
+          askedFigure(ToolFigure::kRake),
+          askedFigure(ToolFigure::kChordalRake),
+          {"normal_rake_deg", "normal rake, deg", "normal deg", kDegree,
+           [](const Place& p) { return p.tooth().complete ? p.tooth().normal_rake : Value(); }, askedNormalRake},
+          askedFigure(ToolFigure::kCoreDiameter),
+          {"depth_mm", "flute depth, mm", "depth mm", kMillimetre, [](const Place& p) { return p.tooth().depth; },
+           [](const Place& p) { return askedDepth(*p.job, p.section.x); }},
+          {"flute_deg", "flute, deg", "flute deg", kDegree, [](const Place& p) { return p.tooth().flute; }},
+          {"flute_mm", "flute, mm", "flute mm", kMillimetre,
+           [](const Place& p) { return onOuterCircle(p, p.tooth().flute); }},
+          {"land_deg", "land, deg", "land deg", kDegree, [](const Place& p) { return p.tooth().land; }},
+          {"land_mm",
+           "land, mm",
+           "land mm",
+           kMillimetre,
+           [](const Place& p) { return onOuterCircle(p, p.tooth().land); },
+           {},
+           false,
+           ToolFigure::kLand},
+          askedFigure(ToolFigure::kSpiral),
+          {"area_removed_mm2",
+           "area removed, mm^2",
+           "area mm^2",
+           kMillimetre * kMillimetre,
+           [](const Place& p) { return p.area_removed; },
+           {},
+           true}};
 }
 
 std::vector<Figure> figuresOf(const ValidJob& job) {
@@ -268,6 +276,23 @@ void append(Json& json, const Place& place, bool of_section) {
   }
 }
 
+/// Which figures are drawn over X. Of a relieved land, its width on the blank says nothing.
+Json curves(const GroundTool& tool) {
+  Json curves = Json::array();
+  const Place first{tool.job, tool.sections.front(), 0};
+  for (const Figure& figure : figuresOf(tool.job)) {
+    if (!figure.row || (*figure.row == ToolFigure::kLand && tool.job.relief(0) != nullptr)) continue;
+    const ToolFigureRow& row = rowOf(*figure.row);
+    const bool is_asked = asked(row.value, first).has_value();
+    curves.push_back({{"key", figure.key},
+                      {"words", row.words},
+                      {"unit", row.unit == Unit::kRadian ? "deg" : "mm"},
+                      {"of_section", figure.of_section},
+                      {"tolerance", is_asked ? Json(tolerance(row.value, first) / figure.unit) : Json(nullptr)}});
+  }
+  return curves;
+}
+
 /// Null where the core is cut through.
 Json outline(const GroundTool& tool, double x) {
   const std::size_t teeth = tool.cutter.teeth().size();
@@ -346,10 +371,10 @@ Json toJson(const GroundTool& tool) {
           {"volume_mm3", tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre)},
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
-          {"rake_tolerance_deg", tool.job->cutter.rake_tolerance / kDegree},
           {"on_planned", tool.on_planned},
           {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
           {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},
+          {"curves", curves(tool)},
           {"sections", sections}};
 }
 

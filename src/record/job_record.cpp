@@ -102,6 +102,7 @@ RecordHead JobRecord::head() const {
   head.digest = digest_;
   head.operation = job.operationText();
   head.tool = toolText(job.cutter, job.tooth_angles.size());
+  head.continues = program_->run().first != ToothPass{};
   head.ends_tool = job.operations.empty() || job.operation + 1 == static_cast<int>(job.operations.size());
   head.wheel = names_.wheel;
   head.dressed = names_.wheel_dressed;
@@ -130,7 +131,9 @@ Record JobRecord::record(const std::string& grinder, const MachineInfo& machine,
   const std::vector<Criterion> criteria = judge(tolerances);
   RecordHead head = this->head();
   head.grinder = grinder;
-  Verdict verdict = verdictOn(criteria, head.outcome, lost_);
+  std::vector<std::string> unknown;
+  if (offsets_said_right_) unknown.emplace_back(kNoOffsetCheck);
+  Verdict verdict = verdictOn(criteria, head.outcome, lost_, std::move(unknown));
   head.verdict = std::move(verdict.verdict);
   head.because = std::move(verdict.because);
   const ToothPass& first = program_->run().first;

@@ -48,6 +48,7 @@ void visitHead(AnyHead& head, const Visit& visit) {
   visit("digest", head.digest);
   visit("operation", head.operation);
   visit("tool", head.tool);
+  visit("continues", head.continues);
   visit("ends_tool", head.ends_tool);
   visit("wheel", head.wheel);
   visit("dressed", head.dressed);
@@ -217,7 +218,9 @@ bool judgeAgain(Record& record, const GroundTool* tool, const Tolerances& tolera
   }
   judgeAgain(criteria, tolerances);
   judged = toJson(criteria);
-  const Verdict verdict = verdictOn(criteria, record.head.outcome, record.head.lost);
+  std::vector<std::string> unknown;
+  if (record.body.at("zero_points").at("said_right").get<bool>()) unknown.emplace_back(kNoOffsetCheck);
+  const Verdict verdict = verdictOn(criteria, record.head.outcome, record.head.lost, std::move(unknown));
   record.head.verdict = verdict.verdict;
   record.head.because = verdict.because;
   return judged != before;

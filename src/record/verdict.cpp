@@ -91,7 +91,7 @@ Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tole
 }
 
 bool isJudged(const ToolFigureRow& row, const FigurePlace& p) {
-  if (row.of_relief && p.job.relief(0) == nullptr) return false;
+  if (row.of_relief && p.job->process.kind == OperationKind::kFlute) return false;
   return row.value == ToolFigure::kLand || asked(row.value, p).has_value();
 }
 
@@ -277,8 +277,9 @@ void judgeAgain(std::vector<Criterion>& criteria, const Tolerances& tolerances) 
   for (Criterion& criterion : criteria) setTolerance(criterion, tolerances);
 }
 
-Verdict verdictOn(const std::vector<Criterion>& criteria, const std::string& outcome, std::uint64_t lost) {
-  std::vector<std::string> failed, unknown;
+Verdict verdictOn(const std::vector<Criterion>& criteria, const std::string& outcome, std::uint64_t lost,
+                  std::vector<std::string> unknown) {
+  std::vector<std::string> failed;
   if (outcome.empty()) unknown.emplace_back("the end of the job is not in the file");
   if (!outcome.empty() && outcome != "done") failed.push_back("the job ended as " + outcome);
   for (const Criterion& criterion : criteria) {

@@ -1,6 +1,7 @@
 #include "flute_grinder/report/findings.h"
 
 #include "flute_grinder/curve/units.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
@@ -171,21 +172,89 @@ Json Survey::loopJson() const {
           {"diagnostics", diagnostics}};
 }
 
-Json findingsOfRecord(const Record& record, const ReportContext& context) {
-  Json data = headOf("record", "the grinder's own record", context);
-  const RecordHead& head = record.head;
-  const Json heads = toJson(head);
-  for (const char* key : {"grinder", "started", "ended", "duration_s", "outcome", "reason"}) data[key] = heads[key];
+namespace {
+
+/// A record in the keys of a bag's findings.
+Json documentOf(const Record& record) {
+  Json data = toJson(record.head);
   data.update(record.body);
-  data["job"] = {{"name", head.job}, {"digest", head.digest}, {"file", record.body.at("job_file")}};
-  data["setpoints"] = {{"written", head.setpoints}, {"lost", head.lost}};
+  data["setpoints"] = {{"written", record.head.setpoints}, {"lost", record.head.lost}};
+  for (const char* key : {"criteria", "ground", "not_ground"}) data.erase(key);
+  return data;
+}
+
+Json documentOf(const ToolRecords::Operation& operation) {
+  Json runs = Json::array(), missing = Json::array();
+  for (const Record& record : operation.records) runs.push_back(documentOf(record));
+  for (const ToothPass& place : operation.missing()) {
+    missing.push_back({{"tooth", place.tooth + 1}, {"pass", place.pass + 1}});
+  }
+  return {{"operation", operation.name()},
+          {"process", toJson(operation.asked)["process"]},
+          {"files", operation.files},
+          {"runs", runs},
+          {"missing", missing}};
+}
+
+/// The criteria of the runs, each with its operation if there are several.
+void addRuns(std::vector<Criterion>& criteria, const ToolRecords& tool, const Tolerances& tolerances) {
+  for (const ToolRecords::Operation& operation : tool.operations()) {
+    for (const Record& record : operation.records) {
+      std::vector<Criterion> own = criteriaFrom(record.body.at("criteria"));
+      judgeAgain(own, tolerances);
+      for (Criterion& criterion : own) {
+        if (criterion.of_tool) continue;
+        if (!record.head.operation.empty()) criterion.name += ", " + record.head.operation;
+        criteria.push_back(std::move(criterion));
+      }
+    }
+  }
+}
+
+Verdict verdictOn(const std::vector<Criterion>& criteria, const ToolRecords& tool) {
+  std::string outcome = "done";
+  std::uint64_t lost = 0;
+  std::vector<std::string> unknown;
+  std::string unchecked;
+  for (const ToolRecords::Operation& operation : tool.operations()) {
+    const std::string words = operation.name();
+    if (operation.records.empty()) {
+      unknown.push_back(words + ": not in the records");
+      continue;
+    }
+    if (outcome == "done") outcome = operation.records.back().head.outcome;
+    for (const Record& record : operation.records) lost += record.head.lost;
+    const auto is_unchecked = [](const Record& record) {
+      return record.body.at("zero_points").at("said_right").get<bool>();
+    };
+    if (std::any_of(operation.records.begin(), operation.records.end(), is_unchecked)) {
+      unchecked += (unchecked.empty() ? ": " : ", ") + words;
+    }
+    const std::size_t missing = operation.missing().size();
+    if (missing > 0) unknown.push_back(format("%s: %zu stroke(s) are not in the records", words.c_str(), missing));
+  }
+  if (!unchecked.empty()) unknown.push_back(kNoOffsetCheck + unchecked);
+  return verdictOn(criteria, outcome, lost, std::move(unknown));
+}
+
+}  // namespace
+
+Json findingsOfTool(const ToolRecords& tool, const ReportContext& context) {
+  const Record& last = tool.last().records.back();
+  Json data = headOf("record", "the grinder's own records", context);
+  data.update(documentOf(last));
+  data["job"] = {{"name", last.head.job}, {"digest", last.head.digest}, {"file", data["job_file"]}};
   data.erase("job_file");
-  data.erase("ground");
-  data.erase("not_ground");
+  data.erase("tool");
+  data["operations"] = Json::array();
+  for (const ToolRecords::Operation& operation : tool.operations()) data["operations"].push_back(documentOf(operation));
   data["left_out"] = {
       "Pictures of the axes: a record has each stroke's figures; a bag (bag:=true) has every setpoint."};
   addTool(data, context);
-  addVerdict(data, criteriaFrom(record.body.at("criteria")), {head.verdict, head.because});
+  std::vector<Criterion> criteria =
+      criteriaOfTool(*tool.last().job, context.tool ? &*context.tool : nullptr, context.tolerances);
+  addRuns(criteria, tool, context.tolerances);
+  addVerdict(data, criteria, verdictOn(criteria, tool));
   return data;
 }
 

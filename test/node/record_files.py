@@ -19,7 +19,7 @@ def head_of(path, started, ended, outcome='done', complete=1, passes=1, **fields
         cutter['rake_angle_deg'], teeth, 'tooth' if teeth == 1 else 'teeth')
     times = [datetime.datetime.fromisoformat(time.replace('Z', '+00:00')).timestamp() for time in (started, ended)]
     head = {'grinder': '/grinder', 'started': started, 'ended': ended, 'job': 'job', 'digest': '', 'operation': '', 'tool': tool,
-            'ends_tool': True, 'wheel': 'wheel.yaml', 'dressed': '', 'wear_mm': 0, 'outcome': outcome, 'reason': '',
+            'continues': False, 'ends_tool': True, 'wheel': 'wheel.yaml', 'dressed': '', 'wear_mm': 0, 'outcome': outcome, 'reason': '',
             'strokes': complete, 'passes': passes, 'duration_s': round(times[1] - times[0], 3), 'holds': 0, 'setpoints': 0,
             'lost': 0, 'verdict': 'incomplete' if outcome == 'done' else 'failed',
             'verdict_because': ['rake: not measured'] if outcome == 'done' else ['the job ended as ' + outcome]}

@@ -201,7 +201,7 @@ class TestCommand(Kept):
     def test_json(self):
         done = self.grind('--json')
         first, second = json.loads(done.stdout)
-        self.assertEqual(list(first), ['file', 'grinder', 'started', 'ended', 'job', 'digest', 'operation', 'tool', 'ends_tool', 'wheel', 'dressed',
+        self.assertEqual(list(first), ['file', 'grinder', 'started', 'ended', 'job', 'digest', 'operation', 'tool', 'continues', 'ends_tool', 'wheel', 'dressed',
                                        'wear_mm', 'outcome', 'reason', 'strokes', 'passes', 'duration_s', 'holds', 'setpoints', 'lost',
                                        'verdict', 'verdict_because'])
         self.assertEqual(first['file'], os.path.join(self.folder, self.first['file']))

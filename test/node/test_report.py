@@ -33,7 +33,7 @@ UNITS = [MM, MM, MM, DEG]
 
 # Pictures of each kind of file, in order.
 PATH = ['path', 'path-start', 'path-end', 'error']
-TOOL = ['tool', 'section-1', 'section-2', 'section-3', 'rake', 'chordal-rake', 'core-diameter', 'land', 'spiral']
+TOOL = ['tool', 'section-1', 'section-2', 'section-3', 'rake', 'chordal-rake', 'core-diameter', 'land', 'spiral-angle']
 COMMANDED = ['%s-%s' % (name, axis) for name in ('speed', 'acceleration') for axis in 'xyza']
 FOLLOWING = ['following-%s' % axis for axis in 'xyza']
 
@@ -387,9 +387,9 @@ class TestBag(ReportCase):
         machine = xml.parse(gc.package_file('urdf/grinder.urdf')).getroot().get('name')
         for row, reported in (('end diameter', '10 mm'), ('flute length', '30 mm'), ('cone', '5 deg'), ('rake', '8 ± 0.5 deg'),
                           ('spiral angle', '30 ± 4 deg'), ('core', '7.1 to 12.4 ± 0.1 mm'),
-                          ('shank', '16 mm'), ('set-up', 'swivel 31.769 deg, height 2.788 mm'), ('grinder', '/recorded'),
+                          ('shank', '16 mm'), ('set-up', 'swivel 31.769 deg, height 2.788 mm'), ('feed', '600 mm/min'),
                           ('wheel', 'straight, Ø 100 mm, 3 mm wide, corners 0 and 0 mm'),
-                          ('machine', machine), ('software', 'flute_grinder ' + package.findtext('version'))):
+                          ('machine', machine + ', /recorded'), ('software', 'flute_grinder ' + package.findtext('version'))):
             self.assertEqual(self.page.rows[row], [reported])
         self.assertEqual(self.page.headings[0], 'paper.yaml')
         for dimension in ('Ø 10', 'Ø 16', '30', 'cone 5°'):
@@ -573,8 +573,12 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assert_page(page, TOOL)
         self.assertEqual(page.headings[0], 'paper.yaml')
         self.assertEqual(page.rows['rake'], ['8 ± 0.5 deg'])
-        judged = {row[0]: row[4] for row in page.tables['Passed or failed']}
+        judged = {row[0]: row[4] for row in page.tables['The tool: asked and computed'] + page.tables['The run'] if row[0]}
         self.assertEqual((judged['rake'], judged['feed constancy']), ('passed', 'failed'))
+        # Nothing was touched off, and the check was ignored.
+        self.assertEqual(page.rows['flute'][:3], ['straight', '100', '0'])
+        self.assertIn(['flute', *['never set'] * 4, ''], page.tables['Operations'])
+        self.assertIn('Ground without the check of the zero points (--ignore-offset-check): flute.', page.text)
 
     def test_last_is_the_newest(self):
         done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder']})
@@ -626,7 +630,7 @@ class TestLayout(ReportCase):
 
     def test_every_sheet_says_whose_it_is(self):
         self.assertEqual((self.page.rows['operator'], self.page.rows['serial number']), (['Shift "B"'], ['4711-03']))
-        begun = self.page.rows['begun'][0][:len('2000-01-01 00:00')]
+        begun = self.page.rows['ground'][0][:len('2000-01-01 00:00')]
         for sheet in self.sheets:
             for text in ('paper.yaml · D 10 mm, cone 5 deg', 'No. 4711-03 · ' + begun, 'Shift "B"'):
                 self.assertIn(self.flat(text), self.flat(sheet))
@@ -668,7 +672,7 @@ class TestLayout(ReportCase):
             self.assertGreater(len(re.sub(r'\d+/\d+$', '', behind)), 20, heading)
 
     def test_first_sheet_has_the_verdict(self):
-        for text in ('paper.yaml', 'FAILED', 'path deviation', 'spiral angle', 'late cycles', 'Ø 10'):
+        for text in ('paper.yaml', 'FAILED', 'spiral angle', 'core diameter', 'own measurement decides', 'run-out', 'signature', 'Ø 10'):
             self.assertIn(self.flat(text), self.flat(self.sheets[0]))
 
     def test_without_a_browser(self):

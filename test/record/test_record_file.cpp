@@ -101,6 +101,7 @@ TEST_F(RecordFile, IsJudgedAgainByOtherTolerances) {
   Criterion land{"land", "mm", true, 3, 0.05, {}, 0.3, false, "tooth 1", ""};
   Criterion rake{"rake", "deg", true, 3, 8, 0.5, 8.4, false, "tooth 1", ""};
   kept.body["criteria"] = toJson({land, rake});
+  kept.body["zero_points"]["said_right"] = false;
   Tolerances tolerances;
   tolerances.land_mm = 0.3;
   EXPECT_TRUE(judgeAgain(kept, nullptr, tolerances));
@@ -111,6 +112,11 @@ TEST_F(RecordFile, IsJudgedAgainByOtherTolerances) {
   EXPECT_EQ(kept.head.verdict, "failed");
   EXPECT_EQ(kept.head.because, std::vector<std::string>{"land"});
   EXPECT_EQ(kept.body["criteria"][1]["result"], "passed");
+  tolerances.land_mm = 0;
+  kept.body["zero_points"]["said_right"] = true;
+  EXPECT_TRUE(judgeAgain(kept, nullptr, tolerances));
+  EXPECT_EQ(kept.head.verdict, "incomplete");
+  EXPECT_EQ(kept.head.because, std::vector<std::string>{kNoOffsetCheck});
 }
 
 }  // namespace test_record_file

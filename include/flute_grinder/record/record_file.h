@@ -24,6 +24,7 @@ struct RecordHead {
   std::string digest;          ///< see jobDigest()
   std::string operation;       ///< as GrindJob::operationText()
   std::string tool;            ///< as toolText()
+  bool continues = false;      ///< an earlier run of the same job
   bool ends_tool = false;      ///< whether the operation is the last of its tool, or the only one
   std::string wheel;           ///< its name; may be empty
   std::string dressed;         ///< when the wheel was; empty if that is not known

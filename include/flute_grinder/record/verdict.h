@@ -65,9 +65,13 @@ struct Verdict {
   std::vector<std::string> because;  ///< which criteria failed, or what is not known
 };
 
-/// @param outcome of the job; empty if it is not known.
-/// @param lost setpoints that are not in the record.
-Verdict verdictOn(const std::vector<Criterion>& criteria, const std::string& outcome, std::uint64_t lost);
+/// @param outcome of the job; empty if it is not known. @param lost setpoints that are not in the record.
+/// @param unknown what else keeps the tool from passing, in words.
+Verdict verdictOn(const std::vector<Criterion>& criteria, const std::string& outcome, std::uint64_t lost,
+                  std::vector<std::string> unknown = {});
+
+/// Of `unknown`: a goal has said that the zero points are right.
+constexpr const char* kNoOffsetCheck = "ground without the check of the zero points";
 
 /// As records and reports have them, see docs/command-line.md.
 Json toJson(const std::vector<Criterion>& criteria);

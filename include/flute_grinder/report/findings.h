@@ -2,10 +2,10 @@
 
 #include "flute_grinder/geometry/ground_tool.h"
 #include "flute_grinder/messages/json.h"
-#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/stroke_log.h"
 #include "flute_grinder/record/verdict.h"
 #include "flute_grinder/report/bag_run.h"
+#include "flute_grinder/report/tool_records.h"
 
 #include <memory>
 #include <optional>
@@ -65,7 +65,7 @@ class Survey {
   std::uint64_t late_ = 0, count_ = 0;
 };
 
-/// What a report says of a record that the grinder has kept of a job.
-Json findingsOfRecord(const Record& record, const ReportContext& context);
+/// What a report says of a tool by the grinder's own records.
+Json findingsOfTool(const ToolRecords& tool, const ReportContext& context);
 
 }  // namespace grinder

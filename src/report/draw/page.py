@@ -5,7 +5,7 @@ import os
 import re
 from datetime import datetime
 
-from cutter import spiral_angles, tooth_angles
+from cutter import radius, spiral_angles, tooth_angles
 from figures import QUANTITIES
 
 PAGE = '''<!DOCTYPE html>
@@ -25,6 +25,8 @@ PAGE = '''<!DOCTYPE html>
 
 LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
 MOST_ROWS = 1000  # of a table; --json has all
+MOST_PLACES = 6  # of missing strokes
+ROUNDING = 1e-6  # below that a deviation [um] is rounding
 PROFILES = {'straight': 'straight', 'angled': 'angled', 'full_radius': 'full radius', 'cup': 'cup', 'points': 'by points'}
 
 
@@ -56,6 +58,9 @@ class Table:
                                                           '' if cell is None else text(cell)))
         self._rows.append('<tr>%s</tr>' % ''.join(row))
 
+    def __bool__(self):
+        return bool(self._rows)
+
     def html(self):
         head = ''.join('<th scope="col"%s>%s</th>' % (' class="number"' if column in self._numbers else '', text(name))
                        for column, name in enumerate(self._head))
@@ -70,7 +75,7 @@ def number(value, digits):
 
 def three_digits(value):
     """At least three digits, never with an exponent for large ones."""
-    return None if value is None else '%.3g' % value if abs(value) < 1000 else '%.0f' % value
+    return None if value is None else '0' if abs(value) < ROUNDING else '%.3g' % value if abs(value) < 1000 else '%.0f' % value
 
 
 def local(stamp):
@@ -120,39 +125,103 @@ def clearances(cutter):
     return '%s, %g mm wide, then %g deg' % (asked, cutter['land_mm'], cutter['second_clearance_deg'])
 
 
-def process_facts(job_file):
-    process, wheel = job_file['process'], job_file['process']['wheel']
+def wheel_text(wheel):
     corners = wheel.get('corner_radius_mm') or [0, 0]
+    return '%s, Ø %g mm, %g mm wide, corners %g and %g mm%s' % (
+        PROFILES.get(wheel['profile'], wheel['profile']), wheel['diameter_mm'], wheel['width_mm'], *corners,
+        ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')
+
+
+def process_facts(process):
     setup = process['setup']
-    return [('wheel', '%s, Ø %g mm, %g mm wide, corners %g and %g mm%s' % (
-                PROFILES.get(wheel['profile'], wheel['profile']), wheel['diameter_mm'], wheel['width_mm'], *corners,
-                ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')),
-            ('wear', '%g mm of the radius' % wheel['wear_mm']),
+    return [('wheel', wheel_text(process['wheel'])), ('wear', '%g mm of the radius' % process['wheel']['wear_mm']),
             ('set-up', 'swivel %g deg, height %g mm%s' % (
                 setup['swivel_deg'], setup['height_mm'], ', lead %g mm' % setup['lead_mm'] if setup.get('lead_mm') else '')),
             ('relief' if 'relief' in process else 'depth', '%s%s, infeed %g mm' % (
                 process.get('relief') or '%g mm' % process['depth_mm'],
                 ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', process['infeed_mm'])),
-            ('feed', '%g mm/min' % process['feed_mm_min']),
-            ('interpolation', job_file['interpolation']['even_step'].replace('_', ' '))]
+            ('feed', '%g mm/min' % process['feed_mm_min'])]
 
 
-def run_facts(data):
-    machine, offsets = data.get('machine', {}), data.get('work_offsets')
-    setpoints = data.get('setpoints', {})
-    return [('file', '%s (%s)' % (data['file'], data['type'])), ('job in the bag', data.get('in_bag')),
-            ('ground tool', data['tool']['source'] if 'operation' in data.get('tool', {}).get('job', {}) else None),
-            ('operator', data.get('operator')), ('serial number', data.get('serial')),
-            ('begun', local(data['started']) if 'started' in data else None),
-            ('ended', local(data['ended']) if 'ended' in data else None),
-            ('duration', clock(data['duration_s']) if data.get('duration_s') is not None else None),
-            ('outcome', outcome(data)),
-            ('grinder', data.get('grinder')), ('machine', machine.get('name')), ('drive', machine.get('drive')),
-            ('software', 'flute_grinder ' + machine['software'] if machine else None),
+def operations_of(data):
+    """Each with its runs: those of the records, or the only one of a bag."""
+    if 'operations' in data or not data.get('job'):
+        return data.get('operations', [])
+    file = data['job']['file']
+    return [{'operation': file.get('operation', 'flute'), 'process': file['process'], 'runs': [data], 'missing': []}]
+
+
+def who_and_when(data):
+    runs = [run for operation in operations_of(data) for run in operation['runs']] or [data]
+    times = ' to '.join(local(run[key]) for run, key in ((runs[0], 'started'), (runs[-1], 'ended')) if key in run)
+    return [('operator', data.get('operator')), ('serial number', data.get('serial')), ('ground', times or None),
+            ('machine', ', '.join(filter(None, (data.get('machine', {}).get('name'), data.get('grinder')))) or None),
+            ('outcome', outcome(data) if data.get('reason') or len(runs) == 1 else None)]
+
+
+def run_facts(run):
+    """What a run was like; for a developer."""
+    machine, offsets, setpoints = run.get('machine', {}), run.get('work_offsets'), run.get('setpoints', {})
+    return [('drive', machine.get('drive')), ('software', 'flute_grinder ' + machine['software'] if machine else None),
+            ('duration', clock(run['duration_s']) if run.get('duration_s') is not None else None),
             ('work offsets', ', '.join('%s %.4f %s' % (name[0].upper(), value, name[2:]) for name, value in offsets.items())
              if offsets else None),
             ('setpoints', setpoints.get('written')),
             ('missing', '%d setpoints are not in the file' % setpoints['lost'] if setpoints.get('lost') else None)]
+
+
+def sources(data):
+    """Of what the report is made."""
+    files = [name for operation in data.get('operations', []) for name in operation['files']] or [data['file']]
+    return [('file', '%s (%s)' % (', '.join(files), data['type'])), ('job in the bag', data.get('in_bag')),
+            ('ground tool', data['tool']['source'] if 'operation' in data.get('tool', {}).get('job', {}) else None)]
+
+
+def operation_table(data):
+    """What was ground, with which wheel, and whether to its end."""
+    table = Table(['operation', 'wheel', 'Ø mm', 'wear mm', 'dressed', 'ground', 'strokes', 'outcome'], (2, 3))
+    for operation in operations_of(data):
+        wheel, runs = operation['process']['wheel'], operation['runs']
+        first = runs[0] if runs else {}
+        table.add(operation['operation'], first.get('wheel') or wheel['profile'], '%g' % wheel['diameter_mm'], '%g' % wheel['wear_mm'],
+                  first.get('dressed'), local(first['started'])[:16] if 'started' in first else None, strokes_text(operation),
+                  '; '.join(run['outcome'] for run in runs if 'outcome' in run) if runs else 'not in the records',
+                  classes=None if runs else {7: 'not-measured'})
+    return table.html()
+
+
+def strokes_text(operation):
+    runs = operation['runs']
+    if not any('passes' in run for run in runs):
+        return None
+    done = '%d of %d' % (runs[0]['passes'] - len(operation['missing']), runs[0]['passes'])
+    places = ', '.join('tooth %d pass %d' % (place['tooth'], place['pass']) for place in operation['missing'][:MOST_PLACES])
+    more = ' and %d more' % (len(operation['missing']) - MOST_PLACES) if len(operation['missing']) > MOST_PLACES else ''
+    return done + ('; missing: %s%s' % (places, more) if places else '')
+
+
+def zero_points(data):
+    """When, by whom and how; of each run that has them."""
+    ignored, table = [], Table(['zero points', 'X', 'Y', 'Z', 'A', 'for'])
+    for operation in operations_of(data):
+        for run in operation['runs']:
+            points = dict(run.get('zero_points', {}))
+            if points.pop('said_right', False):
+                ignored.append(operation['operation'])
+            if not points:
+                continue
+            bases = dict.fromkeys(', '.join(filter(None, (point['set_for']['job'], point['set_for']['wheel'])))
+                                  for point in points.values() if point['set_at'])
+            table.add(operation['operation'], *map(zero_point, points.values()), '; '.join(filter(None, bases)),
+                      classes={i: 'not-measured' for i, point in enumerate(points.values(), 1) if not point['set_at']})
+    note = '<p class="failed">Ground without the check of the zero points (--ignore-offset-check): %s.</p>' % text(', '.join(ignored))
+    return ([note] if ignored else []) + ([table.html()] if table else [])
+
+
+def zero_point(point):
+    if not point['set_at']:
+        return 'never set'
+    return '%s, %s, %s' % (local(point['set_at'])[:16], point['set_by'], point['set_for']['method'].replace('_', ' '))
 
 
 def outcome(data):
@@ -177,13 +246,31 @@ def shown(value, criterion, sign=''):
     return '%s%s %s' % (sign, three_digits(value) if digits is None else '%.*f' % (digits, value), criterion['unit'])
 
 
-def criteria_table(data):
-    table = Table(['', 'asked', 'measured', 'tolerance', 'result', 'place'], (1, 2, 3))
+def criteria_table(data, of_tool):
+    table = Table(['', 'asked', 'computed' if of_tool else 'measured', 'tolerance', 'result', 'place'], (1, 2, 3))
     for c in data['criteria']:
+        if c['of_tool'] != of_tool:
+            continue
         table.add(c['name'], shown(c['asked'], c, '≥ ' if c['tolerance'] is None else ''),
                   c['remark'] or shown(c['measured'], c), shown(c['tolerance'], c, '± '), c['result'], c['place'],
                   classes={4: c['result'].replace(' ', '-')})
     return table.html()
+
+
+def by_hand(cutter):
+    """What only a measurement of the tool itself can tell, with room for it."""
+    table = Table(['', 'asked', 'measured', 'instrument'], (1,))
+    figures = [('diameter at the small end', '%g mm' % cutter['end_diameter_mm'])]
+    if cutter['cone_angle_deg']:
+        figures.append(('diameter at X = %g mm' % cutter['flute_length_mm'], '%.3f mm' % (2 * radius(cutter, cutter['flute_length_mm']))))
+    for name, asked in figures + [('run-out', None)]:
+        table.add(name, asked, '', '', classes={2: 'blank', 3: 'blank'})
+    return table.html()
+
+
+SIGNED = '<table class="signed"><tr>%s</tr></table>' % ''.join('<td>%s</td>' % what for what in ('operator', 'date', 'signature'))
+MODEL = ('Computed from the encoders of the axes through a model of the wheel: this shows the errors of the machine, and none of the '
+         "wheel's shape, its dressing or the clamping. The reader's own measurement decides.")
 
 
 def events_of(data, stroke):
@@ -277,31 +364,37 @@ def first_page(data, parts):
         body.append(verdict_line(data))
     if 'note' in data:
         body.append('<p><b>Note:</b> %s</p>' % text(data['note']))
-    columns = [facts(run_facts(data))]
+    columns = [facts(who_and_when(data))]
     if job:
-        columns = ['<div>%s%s</div>' % (pictures(parts, 'asked'), facts(tool_facts(job['file']['cutter']))),
-                   facts(process_facts(job['file']) + run_facts(data))]
+        columns = [pictures(parts, 'asked'), facts(tool_facts(job['file']['cutter']) + who_and_when(data))]
     body.append('<div class="columns">\n%s\n</div>' % '\n'.join(columns))
     if 'criteria' in data:
-        body += ['<h2>Passed or failed</h2>', criteria_table(data)]
+        body += ['<h2>The tool: asked and computed</h2>', criteria_table(data, True), '<p>%s</p>' % MODEL,
+                 '<div class="columns"><div><h2>Measured by hand or probe</h2>', by_hand(job['file']['cutter']),
+                 '</div><div>%s</div></div>' % SIGNED]
+    if operations_of(data):
+        body += ['<h2>Operations</h2>', operation_table(data), *zero_points(data)]
     return body
 
 
-def appendix(data, parts):
-    errors = facts([('maximum odd error', '%.4e rad' % data['odd_error_rad']),
-                    ('maximum even error', '%.4e rad' % data['even_error_rad'])])
-    return ['<details>\n<summary>The interpolation, in radians</summary>', errors, pictures(parts, 'curve'), '</details>']
+def runs(data):
+    """Of each operation, its set-up and strokes."""
+    body = ['<h2>The run</h2>', criteria_table(data, False)] if 'criteria' in data else []
+    for operation in operations_of(data) or [{'operation': '', 'process': None, 'runs': [data]}]:
+        for run in operation['runs']:
+            if run.get('strokes') or run.get('holds') or run.get('overrides'):
+                body.append('<h2>Teeth and passes%s</h2>' % text(': ' + operation['operation'] if operation['operation'] else ''))
+            if operation['process']:
+                body.append(facts(process_facts(operation['process']) + run_facts(run)))
+            elif 'setpoints' in run:
+                body.append(facts(run_facts(run)))
+            body += [stroke_table(run) if run.get('strokes') else '', events_between(run)]
+    return body
 
 
-def page(data, parts):
-    """@param data the document. @param parts of draw_all()."""
-    body = first_page(data, parts)
-    if data.get('strokes') or data.get('holds') or data.get('overrides'):
-        body += ['<h2>Teeth and passes</h2>', stroke_table(data) if data['strokes'] else '', events_between(data)]
-    if parts.get('tool'):
-        body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
-    if parts.get('feed'):
-        body += ['<h2>Feed</h2>', pictures(parts, 'feed')]
+def for_developers(data, parts):
+    """In a folded part: what nobody needs to judge the tool by."""
+    body = [facts(sources(data))]
     for name, title, *_ in QUANTITIES:
         if parts.get(name):
             body += ['<div class="keep"><h2>%s of the axes</h2>' % title, axis_table(data, name), '</div>', pictures(parts, name)]
@@ -312,7 +405,21 @@ def page(data, parts):
     if data.get('diagnostics'):
         body += ['<h2>Diagnostics</h2>', '<p>The worst status of each in the whole bag.</p>', diagnostics_table(data)]
     if parts.get('curve'):
-        body += appendix(data, parts)
+        body += ['<h2>The interpolation, in radians</h2>',
+                 facts([('maximum odd error', '%.4e rad' % data['odd_error_rad']),
+                        ('maximum even error', '%.4e rad' % data['even_error_rad'])]), pictures(parts, 'curve')]
+    return ['<details>\n<summary>Appendix: for developers</summary>', *body, '</details>']
+
+
+def page(data, parts):
+    """@param data the document. @param parts of draw_all()."""
+    body = first_page(data, parts)
+    if parts.get('tool'):
+        body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
+    body += runs(data)
+    if parts.get('feed'):
+        body += ['<h2>Feed</h2>', pictures(parts, 'feed')]
+    body += for_developers(data, parts)
     if data['left_out']:
         body += ['<h2>Left out</h2>', '<ul>%s</ul>' % ''.join('<li>%s</li>' % text(reason) for reason in data['left_out'])]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'page.css'), encoding='utf-8') as file:

@@ -10,27 +10,11 @@ from matplotlib.figure import Figure
 from document import Output, run
 from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
 
-# Key, asked key, title; of the section or of each tooth.
-CURVES = [('rake_deg', 'asked_rake_deg', 'radial rake [deg]'),
-          ('chordal_rake_deg', 'asked_rake_deg', 'chordal rake [deg]'),
-          ('core_diameter_mm', 'asked_core_diameter_mm', 'core diameter [mm]'),
-          ('land_mm', None, 'land [mm]'),
-          ('clearance_deg', 'asked_clearance_deg', 'clearance [deg]'),
-          ('primary_mm', None, 'primary relief [mm]'),
-          ('spiral_deg', 'asked_spiral_deg', 'spiral angle [deg]')]
 LEAST_SPAN = 0.002  # of a picture's figures; what is less is rounding
-SHADED = 'rake_deg', 'clearance_deg'  # with their tolerance
 
 
 def is_relieved(tool):
     return 'clearance_deg' in tool['sections'][0]['teeth'][0]
-
-
-def curves_of(tool):
-    """Those that it has. Of a relieved land, its width on the blank says nothing."""
-    section = tool['sections'][0]
-    return [curve for curve in CURVES if (curve[0] in section or curve[0] in section['teeth'][0]) and
-            not (curve[0] == 'land_mm' and is_relieved(tool))]
 
 
 def number(value):
@@ -131,21 +115,20 @@ def shown_sections(tool):
     return [sections[i] for i in sorted({0, len(sections) // 2, len(sections) - 1})]
 
 
-def draw_curve(axes, tool, key, asked, title):
-    sections = tool['sections']
+def draw_curve(axes, tool, curve):
+    """A figure over X, of each tooth or of the section; what is asked dashed, its tolerance shaded."""
+    sections, key, tolerance = tool['sections'], curve['key'], curve['tolerance']
     x = [section['x_mm'] for section in sections]
-    of_section = key in sections[0]
-    for i in range(1 if of_section else tool['teeth']):
-        rows = sections if of_section else [section['teeth'][i] for section in sections]
+    for i in range(1 if curve['of_section'] else tool['teeth']):
+        rows = sections if curve['of_section'] else [section['teeth'][i] for section in sections]
         style = {'color': TEETH[i % len(TEETH)], 'marker': '.', 'markersize': 4}
-        axes.plot(x, [number(row[key]) for row in rows], label=None if of_section else 'tooth %d' % (i + 1), **style)
-        if asked:
-            axes.plot(x, [row[asked] for row in rows], color=LIMIT, linestyle='--')
-    tolerance = tool['job']['cutter'].get(key.replace('_deg', '_tolerance_deg')) if key in SHADED else None
-    if tolerance is not None:
-        middle = sections[0]['teeth'][0][asked]
-        axes.axhspan(middle - tolerance, middle + tolerance, color=LIMIT, alpha=0.08)
-    axes.set_title(title, loc='left')
+        axes.plot(x, [number(row[key]) for row in rows], label=None if curve['of_section'] else 'tooth %d' % (i + 1), **style)
+        if tolerance is not None:
+            asked = np.array([row['asked_' + key] for row in rows])
+            axes.plot(x, asked, color=LIMIT, linestyle='--')
+            if i == 0:
+                axes.fill_between(x, asked - tolerance, asked + tolerance, color=LIMIT, alpha=0.08, linewidth=0)
+    axes.set_title('%s [%s]' % (curve['words'], curve['unit']), loc='left')
     axes.ticklabel_format(useOffset=False)
     low, high = axes.get_ylim()
     if high - low < LEAST_SPAN:
@@ -164,20 +147,19 @@ def tool_pictures(tool):
                                 'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the %s asked. The '
                                 '%s is dimensioned along the outer circle.' %
                                 (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
-    for key, asked, title in curves_of(tool):
+    for curve in tool['curves']:
         figure = new_figure(2.6)
         axes = figure.add_subplot(xlabel='X [mm]')
-        draw_curve(axes, tool, key, asked, title)
-        name = title.split(' [')[0]
-        pictures.append(picture(key.rsplit('_', 1)[0].replace('_', '-'), name[0].upper() + name[1:],
-                                'Over X in mm' + ('; dashed: as asked' if asked else '') +
-                                ('; shaded: the tolerance.' if key in SHADED else '.'), figure))
+        draw_curve(axes, tool, curve)
+        words = curve['words']
+        pictures.append(picture(words.replace(' ', '-'), words[0].upper() + words[1:], 'Over X in mm%s.' % (
+            '' if curve['tolerance'] is None else '; dashed: as asked; shaded: the tolerance'), figure))
     return pictures
 
 
 def draw_file(tool):
     """All in one picture."""
-    curves = curves_of(tool)
+    curves = tool['curves']
     heights = 4.1, 1.5 * len(curves)
     figure = Figure((9, sum(heights) + 0.1), constrained_layout=True, facecolor='white')
     above, below = figure.add_gridspec(2, 1, height_ratios=heights)
@@ -188,7 +170,7 @@ def draw_file(tool):
     panels = []
     for place, curve in zip(below.subgridspec(len(curves), 1), curves):
         panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))
-        draw_curve(panels[-1], tool, *curve)
+        draw_curve(panels[-1], tool, curve)
         panels[-1].label_outer()
     panels[-1].set_xlabel('X [mm]')
     return svg_of(figure)

@@ -1,0 +1,128 @@
+#include "flute_grinder/report/tool_records.h"
+
+#include "flute_grinder/curve/units.h"
+#include "flute_grinder/geometry/ground_tool.h"
+#include "flute_grinder/geometry/tool_figure.h"
+#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/plan/job_digest.h"
+#include "flute_grinder/record/ground_strokes.h"
+#include "temp_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+/// @file
+/// Which records of a folder are of one tool, and what they ground together.
+
+namespace grinder {
+namespace test_tool_records {
+
+using Files = std::vector<std::string>;
+
+class ToolRecordsTest : public ::testing::Test {
+ protected:
+  /// Keeps a record of an operation whose axes were on the path, with the strokes of some teeth. @return its path.
+  std::string keep(int operation, bool continues = false, int first_tooth = 0, int end_tooth = 4) {
+    const ValidJob job = withLaws(ValidJob(job_.ofOperation(operation)));
+    std::vector<RunStroke> ground;
+    Json strokes = Json::array();
+    for (int tooth = first_tooth; tooth < end_tooth; ++tooth) {
+      const GrindStroke stroke = strokeOf(job, tooth, job.deepest(), 0);
+      const int last = static_cast<int>(job.depths().size()) - 1;
+      ground.push_back({{tooth, last}, MoveKind::kStroke, {stroke.from, stroke.to}, {{}, {}}});
+      for (int pass = 0; pass <= last; ++pass) {
+        strokes.push_back({{"tooth", tooth + 1}, {"pass", pass + 1}, {"complete", true}});
+      }
+    }
+    Record record;
+    record.head.started = record.head.ended = "2026-11-22T17:04:13.123Z";
+    record.head.digest = jobDigest(*job);
+    record.head.continues = continues;
+    record.head.outcome = "done";
+    record.body = {{"job_file", toJson(*job)}, {"strokes", strokes}, {"ground", toJson(ground)}, {"not_ground", ""}};
+    const std::string path = folder_.path() / (format("%010d", ++count_) + "_20261122T170413.123Z.json");
+    std::ofstream(path) << text(record);
+    return path;
+  }
+
+  /// The numbers of the records of each operation.
+  static std::vector<Files> filesOf(const ToolRecords& tool) {
+    std::vector<Files> files;
+    for (const ToolRecords::Operation& operation : tool.operations()) {
+      Files& numbers = files.emplace_back();
+      for (const std::string& file : operation.files) numbers.push_back(file.substr(9, 1));
+    }
+    return files;
+  }
+
+  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1");
+  const test_support::TempFolder folder_;
+  int count_ = 0;
+};
+
+TEST_F(ToolRecordsTest, AreThoseOfAllOperationsWhicheverIsNamed) {
+  const Files paths{keep(0), keep(1), keep(2)};
+  for (const std::string& path : paths) {
+    const ToolRecords tool(path);
+    EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1"}, {"2"}, {"3"}}));
+    EXPECT_TRUE(tool.isWhole());
+    EXPECT_EQ(&tool.last(), &tool.operations()[2]);
+    for (const ToolRecords::Operation& operation : tool.operations()) EXPECT_TRUE(operation.missing().empty());
+  }
+}
+
+TEST_F(ToolRecordsTest, OfAnotherToolOfTheSameJobAreNotTaken) {
+  keep(0), keep(1), keep(2);
+  const std::string relief = keep(1);  // of a tool whose flutes are not in the records
+  EXPECT_EQ(filesOf(ToolRecords(relief)), (std::vector<Files>{{}, {"4"}, {}}));
+  const std::string flute = keep(0);
+  keep(0), keep(1);
+  EXPECT_EQ(filesOf(ToolRecords(flute)), (std::vector<Files>{{"5"}, {}, {}}));
+  EXPECT_FALSE(ToolRecords(flute).isWhole());
+}
+
+TEST_F(ToolRecordsTest, ThatContinueARunAreOneWithIt) {
+  keep(0, false, 0, 2);
+  const std::string rest = keep(0, true, 2, 3);
+  const ToolRecords tool(rest);
+  EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1", "2"}, {}, {}}));
+  const std::vector<ToothPass> missing = tool.last().missing();
+  EXPECT_EQ(missing.size(), ValidJob(job_).depths().size());
+  for (const ToothPass& place : missing) EXPECT_EQ(place.tooth, 3);
+}
+
+TEST_F(ToolRecordsTest, WithoutTheNameOfARecordStandForThemselves) {
+  const std::string path = keep(1), copy = folder_.path() / "copy.json";
+  keep(2);
+  std::filesystem::rename(path, copy);
+  EXPECT_EQ(filesOf(ToolRecords(copy)).at(2), Files());
+}
+
+/// Axes on their path grind the tool that the job asks for, by all operations together.
+TEST_F(ToolRecordsTest, AreMeasuredOnWhatWasGroundBefore) {
+  keep(0), keep(1);
+  const ToolRecords tool(keep(2));
+  const RunStrokes strokes = tool.strokes();
+  EXPECT_FALSE(strokes.isOnPlanned());
+  const ValidJob asked = withLaws(ValidJob(job_.ofOperation(2)));
+  const GroundTool ground = measure("", strokes, {0, 0.011}),
+                   planned = measure(asked, "", groundCutterOf(asked), {0, 0.011});
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const ToolFigureRow& row : kToolFigures) {
+      const FigureValue a = measured(row.value, {asked, ground.sections[i].ground, 2});
+      const FigureValue b = measured(row.value, {asked, planned.sections[i].ground, 2});
+      ASSERT_EQ(a.has_value(), b.has_value()) << row.name;
+      if (a) EXPECT_NEAR(*a, *b, 1e-6) << row.name;
+    }
+  }
+  keep(0);
+  EXPECT_TRUE(ToolRecords(keep(2)).strokes().isOnPlanned());
+}
+
+}  // namespace test_tool_records
+}  // namespace grinder

@@ -34,16 +34,16 @@ job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'
 # A job that names its wheel by a file.
 rosrun flute_grinder grind table share/flute_grinder/jobs/unequal_d12_t4.yaml --step-length 1 >/dev/null
-rosrun flute_grinder grind table "$job" --step-length 0.2 --csv "$folder/table.csv" >/dev/null
 # A client in Python, which has the goal from the program beside it.
 /usr/bin/python3 -c 'import sys; from flute_grinder import job; print(job.goal(sys.argv[1]).job_name, job.__file__)' "$job" |
   grep -q "^paper.yaml $space/lib/"
 rosrun flute_grinder exporter --help | grep -q -e '--listen ADDRESS:PORT'
-rosrun flute_grinder grind report "$folder/table.csv" -o "$folder/table.html"
-grep -q '3\.9785e-05 rad' "$folder/table.html"
 await_grinder env
 rosrun flute_grinder grind enable
 rosrun flute_grinder grind run "$job" --dry-run
-rosrun flute_grinder grind status | grep -q '^state *ready'
+rosrun flute_grinder grind confirm-swivel 32.34
+rosrun flute_grinder grind run "$job" --ignore-offset-check
+rosrun flute_grinder grind report --last --from "$folder/journal.history/grinder" -o "$folder/report.html"
+grep -q 'own measurement decides' "$folder/report.html"
 # It does not start without parameters.
 { ! rosrun flute_grinder grinder __name:=second 2>&1; } | grep -q 'parameter /second/'

@@ -24,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'test/node'))
 
 import grinder_client as gc  # noqa: E402
+import record_files  # noqa: E402
 from grind_command import Command  # noqa: E402
 
 PORT = 9840
@@ -53,7 +54,8 @@ class Computer:
         self.folder.mkdir()
         with (self.folder / 'parameters.yaml').open('w') as file:
             yaml.safe_dump({'robot_description': (ROOT / 'urdf/grinder.urdf').read_text(), 'grinder': dict(gc.machine(), **{
-                kept: str(self.folder / kept) for kept in ('journal', 'offsets', 'history')})}, file)
+                kept: str(self.folder / kept) for kept in ('journal', 'offsets', 'history')},
+                tolerances=gc.package_file('config/tolerances.yaml'))}, file)
 
     def start(self, name, *command):
         with (self.folder / 'log').open('a') as log:

@@ -24,7 +24,7 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
   Json json{{"swivel_deg", p.setup_swivel / kDegree},
             {"height_mm", p.setup_height / kMillimetre},
-            {"lead_mm", p.setup_lead / kMillimetre},
+            {"x_shift_mm", p.setup_x_shift / kMillimetre},
             {"depth_mm", p.depth / kMillimetre},
             {"depth_end_mm", p.depthEnd() / kMillimetre},
             {"overtravel_mm", {setup.overtravel[0] / kMillimetre, setup.overtravel[1] / kMillimetre}},
@@ -40,7 +40,8 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
             {"limit", toString(setup.limit)},
             {"margin", setup.margin}};
   if (!setup.relief) return json;
-  for (const char* key : {"lead_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"}) json.erase(key);
+  for (const char* key : {"x_shift_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"})
+    json.erase(key);
   json["rim_mm"] = setup.relief->rim / kMillimetre;
   json["next_edge_deg"] = setup.relief->next_edge / kDegree;
   const auto& end = setup.relief->land_end_clearance;

@@ -110,9 +110,9 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
     refuse("setup.height", wheel.height / units::kMillimetre, " mm", range.str());
   }
   path_cutter_ = withRake(cutter.geometry(), start.radius_part * std::sin(phi_));
-  lead_ = wheel_radius_ * normal_x_ + contact_ * sin_;
+  x_shift_ = wheel_radius_ * normal_x_ + contact_ * sin_;
   taper_ = tan_cone_ * (start.radius_part * std::cos(phi_) - 1);
-  const double p_y = start.radius_part * std::cos(phi_) * (radius_ - lead_ * tan_cone_);
+  const double p_y = start.radius_part * std::cos(phi_) * (radius_ - x_shift_ * tan_cone_);
   y_ = p_y + wheel_radius_ * normal_y_ - radius_ - wheel.nominal_radius;
   a_ = hand * (start.behind - phi_);
   const double length = cutter.geometry().flute_length;

@@ -30,7 +30,7 @@ constexpr double kNoGain = 1e-2;                 ///< of a step, of the errors, 
 /// [rad], of the taper, and of the small end's radius: large enough that the places of extrema, known to 1e-8, are no
 /// noise in a difference.
 constexpr double kFigureStep = 1e-4;
-constexpr double kMinSpiral = 1e-3;  ///< below whose tangent a lead has no effect
+constexpr double kMinSpiral = 1e-3;  ///< below whose tangent a shift has no effect
 /// The first keeps a fit near its start along a valley of equally good set-ups.
 constexpr double kDamping = 1e-3, kMinDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
 
@@ -52,7 +52,7 @@ class DampedFit {
     if (request.keep != SetupFigure::kSwivel) figures_.push_back(&SetupPoint::swivel);
     if (request.keep != SetupFigure::kHeight && !is_height_tied_) figures_.push_back(&SetupPoint::height);
     if (findsDepth(trial, request)) figures_.push_back(&SetupPoint::depth);
-    if (hasLead(trial, request)) figures_.push_back(&SetupPoint::lead);
+    if (hasShift(trial, request)) figures_.push_back(&SetupPoint::x_shift);
     if (request.core_diameter_end && !trial.isCylinder()) figures_.push_back(&SetupPoint::taper);
   }
 
@@ -73,7 +73,7 @@ class DampedFit {
  private:
   Eigen::VectorXd at(const SetupPoint& p, const Errors& errors_of) const {
     const bool is_setup =
-        std::abs(p.lead) < trial_.wheel().maxRadius() && trial_.cutter().radius(-p.lead) > 0 && trial_.isSound(p);
+        std::abs(p.x_shift) < trial_.wheel().maxRadius() && trial_.cutter().radius(-p.x_shift) > 0 && trial_.isSound(p);
     return is_setup ? Eigen::VectorXd(errors_of(p)) : Eigen::VectorXd::Constant(1, std::nan(""));
   }
 
@@ -148,7 +148,7 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
                                double rake) {
   const auto errors_of = [&](const SetupPoint& point) {
     const SetupErrors e = setupErrors(trial, request, point, 1);
-    const Eigen::ArrayXd turn = hasLead(trial, request) ? e.turn : Eigen::ArrayXd();
+    const Eigen::ArrayXd turn = hasShift(trial, request) ? e.turn : Eigen::ArrayXd();
     Eigen::ArrayXd all(e.rake.size() + turn.size() + e.core.size());
     all << e.rake + request.rake - rake, turn, e.core;
     return all;
@@ -181,7 +181,7 @@ double SetupErrors::worst(const SetupRequest& request) const {
                    maxOf(core) / allowed(c.core_tolerance / c.end_diameter)});
 }
 
-bool hasLead(const SetupTrial& trial, const SetupRequest& request) {
+bool hasShift(const SetupTrial& trial, const SetupRequest& request) {
   return request.asks_spiral && !trial.isCylinder() && std::abs(std::tan(request.cutter.spiral_angle)) > kMinSpiral;
 }
 

@@ -28,8 +28,8 @@ struct SetupErrors {
 ///        edge turns as asked in any set-up, has one section.
 SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps);
 
-/// Whether a lead is looked for: it has no effect on a cylinder, nor on straight flutes.
-bool hasLead(const SetupTrial& trial, const SetupRequest& request);
+/// Whether a shift is looked for: it has no effect on a cylinder, nor on straight flutes.
+bool hasShift(const SetupTrial& trial, const SetupRequest& request);
 
 /// Whether the height follows the swivel, so that the wheel's face passes the axis at the height R sin r: on a cylinder
 /// of which neither another figure is kept nor all are asked.

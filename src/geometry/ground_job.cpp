@@ -49,12 +49,12 @@ std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, doubl
 /// The edge of a tooth, in the sections that have one.
 GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
   const StrokeLaw& law = job.strokeLaw(static_cast<int>(tooth));
-  const LogCurve curve(ConicalCutter(law.cutter), law.lead);
+  const LogCurve curve(ConicalCutter(law.cutter), law.x_shift);
   std::vector<GroundEdge::Place> places;
   for (const GroundSection& section : sections) {
     const ToothSection& at = section.teeth[tooth];
     if (!at.edge) continue;
-    double wheel_x = job.relief(0) != nullptr ? section.x + law.lead : at.edge_wheel_x;
+    double wheel_x = job.relief(0) != nullptr ? section.x + law.x_shift : at.edge_wheel_x;
     // Where the stroke's end forms several sections, their extrema are no more exact than that.
     if (!places.empty()) wheel_x = std::max(wheel_x, places.back().wheel_x);
     places.push_back({section.x, wheel_x, *at.edge - law.a - curve.a(wheel_x)});
@@ -251,7 +251,7 @@ WheelProfile wheelOf(const GrindJob& job) {
 }
 
 WheelSetup setupOf(const ValidJob& job, int tooth) {
-  return {job->process.setup_swivel, job->process.setup_height, job.strokeLaw(tooth).lead};
+  return {job->process.setup_swivel, job->process.setup_height, job.strokeLaw(tooth).x_shift};
 }
 
 GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear) {

@@ -188,8 +188,8 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   if (p.depth_end > 0 || solved.depth_end != solved.depth) {
     take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
   }
-  if (solved.setup.lead != p.setup_lead) {
-    take("process.setup_lead", p.setup_lead, solved.setup.lead, units::kMillimetre, kLengthDecimals);
+  if (solved.setup.x_shift != p.setup_x_shift) {
+    take("process.setup_x_shift", p.setup_x_shift, solved.setup.x_shift, units::kMillimetre, kLengthDecimals);
   }
   setup.overtravel = solved.overtravel;
   setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};

@@ -119,7 +119,7 @@ std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const Whe
     GrindStroke right_stroke = stroke;
     right_stroke.a *= -1;
     auto result = correctRake(ConicalCutter(right), wheel.mirrored(), nominal_radius,
-                              {-setup.swivel, -setup.height, setup.lead}, right_stroke, rake, watch);
+                              {-setup.swivel, -setup.height, setup.x_shift}, right_stroke, rake, watch);
     if (result) {
       for (double& c : result->z.coefficients) c = -c;
     }

@@ -152,7 +152,7 @@ void RunStrokes::endStroke() {
 
 RunStrokes::Path::Path(const ValidJob& job, int tooth, double wear)
     : cutter(job.strokeLaw(tooth).cutter),
-      curve(cutter, job.strokeLaw(tooth).lead),
+      curve(cutter, job.strokeLaw(tooth).x_shift),
       stroke(grinder::strokeOf(job, tooth, job.deepest(), wear)),
       angle(job.strokeLaw(tooth).a) {}
 

@@ -67,7 +67,7 @@ Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPo
   SolvedSetup& s = judged.solved;
   judged.point = point;
   judged.away = std::abs(point.swivel - request.cutter.spiral_angle) + point.depth / trial.cutter().radius(0);
-  s.setup = {point.swivel, point.height, point.lead};
+  s.setup = {point.swivel, point.height, point.x_shift};
   s.depth = point.depth;
   s.depth_end = point.depth - (request.y_per_x + point.taper) * request.cutter.flute_length;
   s.min_rake = s.land = std::numeric_limits<double>::infinity();

@@ -38,15 +38,15 @@ std::string overtravelText(const JobSetup& setup) {
   return text;
 }
 
-std::string leadText(const GrindProcess& p) {
-  if (p.setup_lead == 0) return "0 mm: A by the published motion";
-  return format("%.3f mm: A follows the curve at X - lead, so that the ground edge is the asked helix",
-                mm(p.setup_lead));
+std::string shiftText(const GrindProcess& p) {
+  if (p.setup_x_shift == 0) return "0 mm: A by the published motion";
+  return format("%.3f mm: A follows the curve at X - shift, so that the ground edge is the asked helix",
+                mm(p.setup_x_shift));
 }
 
 std::string lawOfFlute(const JobSetup& setup) {
   const GrindProcess& p = setup.job.process;
-  return line("lead", leadText(p)) +
+  return line("shift in X", shiftText(p)) +
          line("depth", format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(p.depth), mm(p.depthEnd()))) +
          line("overtravel", overtravelText(setup));
 }

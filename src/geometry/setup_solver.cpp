@@ -72,7 +72,7 @@ void check(const SetupRequest& r) {
 }
 
 SolvedSetup mirrored(SolvedSetup solved) {
-  solved.setup = {-solved.setup.swivel, -solved.setup.height, solved.setup.lead};
+  solved.setup = {-solved.setup.swivel, -solved.setup.height, solved.setup.x_shift};
   return solved;
 }
 
@@ -92,17 +92,17 @@ SetupRequest mirrored(SetupRequest r) {
 /// Whether two fits came to the same. @param difference up to which they are [rad], of the taper and of the radius.
 bool isSame(const SetupPoint& a, const SetupPoint& b, double difference, double radius) {
   return std::abs(a.swivel - b.swivel) < difference && std::abs(a.taper - b.taper) < difference &&
-         std::max({std::abs(a.height - b.height), std::abs(a.depth - b.depth), std::abs(a.lead - b.lead)}) <
+         std::max({std::abs(a.height - b.height), std::abs(a.depth - b.depth), std::abs(a.x_shift - b.x_shift)}) <
              difference * radius;
 }
 
-/// With a lead by which the wheel's centre is ahead of where it forms the edge amid the flute.
-std::optional<SetupPoint> withLead(const SetupTrial& trial, SetupPoint point) {
+/// With a shift by which the wheel's centre is ahead of where it forms the edge amid the flute.
+std::optional<SetupPoint> withShift(const SetupTrial& trial, SetupPoint point) {
   const double x = trial.cutter().geometry().flute_length / 2;
   const auto wall = trial.sweep(point).wall(x, trial.cutter().radius(x), true);
   if (!wall) return std::nullopt;
-  point.lead = wall->axis_x - x;
-  return trial.cutter().radius(-point.lead) > 0 ? std::optional(point) : std::nullopt;
+  point.x_shift = wall->axis_x - x;
+  return trial.cutter().radius(-point.x_shift) > 0 ? std::optional(point) : std::nullopt;
 }
 
 /// The depths from which fits start with a wheel at a swivel and a height.
@@ -121,7 +121,7 @@ double highestOf(const SetupTrial& trial, const SetupRequest& request, double sw
   return radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(swivel));
 }
 
-/// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a lead.
+/// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a shift.
 /// @param swivels less the spiral angle [rad]. @param most heights, on either side of the axis.
 std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request,
                                  const std::vector<double>& swivels, int most) {
@@ -141,7 +141,7 @@ std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& re
         if (!std::isfinite(start_depth)) continue;
         p.depth = start_depth;
         starts.push_back(p);
-        const auto ahead = hasLead(trial, request) ? withLead(trial, p) : std::nullopt;
+        const auto ahead = hasShift(trial, request) ? withShift(trial, p) : std::nullopt;
         if (ahead) starts.push_back(*ahead);
       }
     }

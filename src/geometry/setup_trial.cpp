@@ -44,9 +44,10 @@ bool SetupTrial::isSound(const SetupPoint& p) const noexcept {
 }
 
 WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
-  // A stroke ends before the cutter's apex, and before that of the stroke's curve, which is moved by the lead.
+  // A stroke ends before the cutter's apex, and before that of the stroke's curve, which is moved by the shift.
   const bool opens = cutter_.tanCone() >= 0;
-  const double apex = -cutter_.radius(0) / cutter_.tanCone() + (opens ? std::max(0.0, p.lead) : std::min(0.0, p.lead));
+  const double apex =
+      -cutter_.radius(0) / cutter_.tanCone() + (opens ? std::max(0.0, p.x_shift) : std::min(0.0, p.x_shift));
   std::array<double, 2> ends{-far_, far_};
   if (cutter_.tanCone() > 0) ends[0] = std::max(-far_, kOfApex * apex);
   if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
@@ -62,7 +63,7 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p, const std::array<double, 2>& e
   return {cutter_,
           wheel_,
           nominal_radius_,
-          {p.swivel, p.height, p.lead},
+          {p.swivel, p.height, p.x_shift},
           {ends[0], ends[1], -p.depth, y_per_x_ + p.taper, 0}};
 }
 

@@ -8,11 +8,11 @@ namespace grinder {
 
 /// The figures of a set-up that make the tool.
 struct SetupPoint {
-  double swivel = 0;  ///< [rad]
-  double height = 0;  ///< of the wheel's centre above the axis at Z = 0 [m]
-  double depth = 0;   ///< Y = -depth at X = 0 [m]
-  double lead = 0;    ///< of the wheel's centre in X, see LogCurve [m]
-  double taper = 0;   ///< added to dY/dX, beside the trial's own
+  double swivel = 0;   ///< [rad]
+  double height = 0;   ///< of the wheel's centre above the axis at Z = 0 [m]
+  double depth = 0;    ///< Y = -depth at X = 0 [m]
+  double x_shift = 0;  ///< of the wheel's centre in X, see LogCurve [m]
+  double taper = 0;    ///< added to dY/dX, beside the trial's own
 };
 
 /// What a right-hand cutter becomes in a set-up, with a stroke as long as the cone allows.

@@ -56,7 +56,7 @@ PathDeviation deviationAt(const std::vector<PathDeviation>& all, const Range& ra
 
 WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
                        const WheelSetup& setup, const GrindStroke& stroke)
-    : curve_(cutter, setup.lead),
+    : curve_(cutter, setup.x_shift),
       wheel_(wheel),
       stroke_(stroke),
       height_(setup.height),
@@ -73,8 +73,8 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
     throw std::invalid_argument(text.str());
   }
   requireFinite("setup.height", setup.height);
-  if (!(cutter.radius(-setup.lead) > 0)) {
-    throw std::invalid_argument(format("setup.lead = %g m; allowed: less than the way to the apex", setup.lead));
+  if (!(cutter.radius(-setup.x_shift) > 0)) {
+    throw std::invalid_argument(format("setup.x_shift = %g m; allowed: less than the way to the apex", setup.x_shift));
   }
   for (const double value : {stroke.from, stroke.to, stroke.y, stroke.y_per_x, stroke.a})
     requireFinite("stroke", value);

@@ -186,17 +186,17 @@ void checkTogether(Checker& checker, const GrindJob& job) {
     checker.below("cutter.flute_length", c.flute_length, apex, "where the cone closes");
     if (!checker.good()) return;  // the other errors would follow from this one
     const double room = apex - c.flute_length;
-    if (!(p.setup_lead > -room)) {
-      checker.refuse(ReasonKind::kOutOfRange, "process.setup_lead", {p.setup_lead, Unit::kMetre}, "",
+    if (!(p.setup_x_shift > -room)) {
+      checker.refuse(ReasonKind::kOutOfRange, "process.setup_x_shift", {p.setup_x_shift, Unit::kMetre}, "",
                      100 * units::kMillimetre, -room);
       return;
     }
-    checker.below("process.overtravel_shank", p.overtravel_shank, room + std::min(0.0, p.setup_lead),
+    checker.below("process.overtravel_shank", p.overtravel_shank, room + std::min(0.0, p.setup_x_shift),
                   "where the cone closes");
   } else if (growth > 0) {
-    checker.below("process.setup_lead", p.setup_lead, -apex, "where the cone closes");
+    checker.below("process.setup_x_shift", p.setup_x_shift, -apex, "where the cone closes");
     if (!checker.good()) return;
-    checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_lead),
+    checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_x_shift),
                   "where the cone closes");
   }
   if (isRelief(p.kind)) {

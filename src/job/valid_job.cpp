@@ -58,15 +58,15 @@ std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeome
   Range x{-p.overtravel_end, length + p.overtravel_shank};
   for (std::size_t i = 0; i < reliefs.size(); ++i) {
     const Range own = startOf(reliefs[i], length);
-    const double from = own.from + reliefs[i].lead(), to = own.to + reliefs[i].lead();
+    const double from = own.from + reliefs[i].xShift(), to = own.to + reliefs[i].xShift();
     x = i == 0 ? Range{from, to} : Range{std::min(x.from, from), std::max(x.to, to)};
   }
   if (p.direction == StrokeDirection::kToEnd) std::swap(x.from, x.to);
   for (std::size_t i = 0; i < cutters.size(); ++i) {
-    laws.push_back({cutters[i], x.from, x.to, p.setup_lead, job.tooth_angles[i]});
+    laws.push_back({cutters[i], x.from, x.to, p.setup_x_shift, job.tooth_angles[i]});
     if (reliefs.empty()) continue;
     laws[i].cutter = reliefs[i].cutter().geometry();
-    laws[i].lead = reliefs[i].lead();
+    laws[i].x_shift = reliefs[i].xShift();
     laws[i].a += reliefs[i].a() + edges[i].ahead;
   }
   return laws;

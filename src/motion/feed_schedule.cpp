@@ -34,7 +34,7 @@ FeedSchedule::FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, co
     : y_per_x_(std::max(std::abs(cutter.tanCone()), std::abs(cutter.tanCone() + stroke.taper))),
       from_(stroke.from),
       to_(stroke.to) {
-  const LogCurve curve(cutter, stroke.lead);
+  const LogCurve curve(cutter, stroke.x_shift);
   const double z_per_x = cutter.tanCone() * cutter.zPerY();
   const ZCorrection::Bounds correction = stroke.z_correction.bounds();
   z_per_x_ = std::max(std::abs(z_per_x + correction.min_first), std::abs(z_per_x + correction.max_first));
@@ -74,7 +74,7 @@ FeedSchedule::ForX FeedSchedule::jerkForX(const AxisLimits& limits, double speed
 }
 
 void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine) {
-  const LogCurve curve(cutter, stroke.lead);
+  const LogCurve curve(cutter, stroke.x_shift);
   const AxisLimits& limits = machine.limits;
   const double b = std::abs(curve.b());
   const double k = std::abs(curve.k());
@@ -92,7 +92,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
 
   Bound even;  // on the speed of X, everywhere on the stroke
   // The odd points' deviation is largest at the thin end. The next-order term reduces the leading-order step.
-  const double a_error = stroke.tolerance / FormedEdge{cutter, stroke.lead}.deviation(thin_x, 1);
+  const double a_error = stroke.tolerance / FormedEdge{cutter, stroke.x_shift}.deviation(thin_x, 1);
   const double step = OddEvenInterpolator::maxStepLength(curve, 1, thin_x, a_error);
   if (std::isfinite(step)) {
     const double dx = step * u_thin / std::hypot(u_thin, curve.k());

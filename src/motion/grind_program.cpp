@@ -83,11 +83,11 @@ std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, c
     const StrokeLaw& law = job.strokeLaw(tooth);
     if (indexOf(helices, law.cutter.spiral_angle) < helices.size()) continue;
     const ConicalCutter cutter(law.cutter);
-    stroke.lead = law.lead;
+    stroke.x_shift = law.x_shift;
     stroke.taper = job.depthLaw(tooth, job.deepest(), job->process.wheel_wear).taper;
     stroke.z_correction = job.zCorrectionOf(tooth);
-    helices.push_back({{cutter, stroke.lead},
-                       LogCurve(cutter, stroke.lead),
+    helices.push_back({{cutter, stroke.x_shift},
+                       LogCurve(cutter, stroke.x_shift),
                        stroke.z_correction,
                        FeedSchedule(cutter, stroke, machine)});
   }

@@ -24,8 +24,8 @@ Json followingJson(const Axes& error) {
 
 StrokeLog::StrokeLog(const ValidJob& job) {
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    edges_.push_back({ConicalCutter(job.strokeLaw(tooth).cutter), job.strokeLaw(tooth).lead});
-    starts_.push_back(job.relief(tooth) == nullptr ? 0 : job.strokeLaw(tooth).lead);
+    edges_.push_back({ConicalCutter(job.strokeLaw(tooth).cutter), job.strokeLaw(tooth).x_shift});
+    starts_.push_back(job.relief(tooth) == nullptr ? 0 : job.strokeLaw(tooth).x_shift);
   }
   for (const double depth : job.depths()) depths_.push_back(job.depthAtEnd(depth));
 }

@@ -177,7 +177,7 @@ void ExecutedPath::append(MarkerArray& array) const {
 }
 
 PathErrorMarkers::PathErrorMarkers(const ValidJob& job, std::vector<GroundEdge> edges)
-    : formed_{ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).lead},
+    : formed_{ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).x_shift},
       edges_(std::move(edges)),
       tolerance_(job->interpolation.tolerance) {}
 

@@ -55,7 +55,7 @@ class TestFigures(TestSetup):
         sheet, found = self.grind(0, 'setup', PAPER_JOB).stdout, self.setup(PAPER_JOB)
         swivel, height = found['swivel_deg'] * DEG, found['height_mm']
         lines = [r"swivel +%.3f deg; the machine's range is -60 to 60 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
-                 'lead +%.3f mm' % found['lead_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
+                 'shift in X +%.3f mm' % found['x_shift_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
                  r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
                  r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),
                  r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete +X 0\.000 to 30\.000 mm',

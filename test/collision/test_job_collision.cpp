@@ -67,14 +67,14 @@ TEST(JobCollision, ATenthOfAMillimetreDecides) {
   }
 }
 
-TEST(JobCollision, ALeadTurnsTheCutterAndMovesNothingElse) {
+TEST(JobCollision, AShiftTurnsTheCutterAndMovesNothingElse) {
   GrindJob job = paperJob();
   const ClosestPlace without = *checked(job).closest;
-  for (const double lead : {-15e-3, 11.847e-3}) {
-    job.process.setup_lead = lead;
+  for (const double x_shift : {-15e-3, 11.847e-3}) {
+    job.process.setup_x_shift = x_shift;
     const ClosestPlace with = *checked(job).closest;
-    EXPECT_EQ(with.distance, without.distance) << lead;
-    EXPECT_EQ(with.first + with.second, without.first + without.second) << lead;
+    EXPECT_EQ(with.distance, without.distance) << x_shift;
+    EXPECT_EQ(with.first + with.second, without.first + without.second) << x_shift;
   }
 }
 

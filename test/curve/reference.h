@@ -11,19 +11,19 @@ namespace grinder::test_support {
 
 using Real = long double;
 
-/// A(X) = (k/b) ln(1 + b (X - lead)).
+/// A(X) = (k/b) ln(1 + b (X - shift)).
 struct ReferenceCurve {
-  Real b, k, lead = 0;
+  Real b, k, x_shift = 0;
 
   ReferenceCurve(Real b_, Real k_) : b(b_), k(k_) {}
-  explicit ReferenceCurve(const CutterGeometry& g, Real lead_ = 0)
+  explicit ReferenceCurve(const CutterGeometry& g, Real x_shift_ = 0)
       : b(2 * std::tan(Real(g.cone_angle)) / Real(g.end_diameter)),
         k(2 * std::tan(Real(g.spiral_angle)) / Real(g.end_diameter)),
-        lead(lead_) {}
+        x_shift(x_shift_) {}
 
-  Real u(Real x) const { return 1 + b * (x - lead); }
+  Real u(Real x) const { return 1 + b * (x - x_shift); }
   Real slope(Real x) const { return k / u(x); }
-  Real a(Real x) const { return b == 0 ? k * (x - lead) : k / b * std::log1p(b * (x - lead)); }
+  Real a(Real x) const { return b == 0 ? k * (x - x_shift) : k / b * std::log1p(b * (x - x_shift)); }
   /// A(x + dx) - A(x)
   Real delta(Real x, Real dx) const { return b == 0 ? k * dx : k / b * std::log1p(b * dx / u(x)); }
 };

@@ -29,18 +29,18 @@ struct Curves {
   }
 };
 
-// Closed form, with the curve's own constants: A(X - lead).
-TEST(LogCurve, WithALeadItIsTheCurveThere) {
+// Closed form, with the curve's own constants: A(X - shift).
+TEST(LogCurve, WithAShiftItIsTheCurveThere) {
   CutterGeometry back = test_support::paperCutter(), cylinder = back;
   back.cone_angle = -3 * units::kDegree;
   cylinder.cone_angle = 0;
   for (const CutterGeometry& geometry : {test_support::paperCutter(), back, cylinder}) {
     const LogCurve curve{ConicalCutter(geometry)};
-    for (const double lead : {-8e-3, 0.0, 11.847e-3}) {
-      const LogCurve ahead(ConicalCutter(geometry), lead);
+    for (const double x_shift : {-8e-3, 0.0, 11.847e-3}) {
+      const LogCurve ahead(ConicalCutter(geometry), x_shift);
       for (const double x : {-5e-3, 0.0, 12e-3, 30e-3}) {
-        EXPECT_NEAR(ahead.a(x), curve.a(x - lead), 4e-15) << lead << ' ' << x;
-        EXPECT_NEAR(ahead.slope(x), curve.slope(x - lead), 1e-12) << lead << ' ' << x;
+        EXPECT_NEAR(ahead.a(x), curve.a(x - x_shift), 4e-15) << x_shift << ' ' << x;
+        EXPECT_NEAR(ahead.slope(x), curve.slope(x - x_shift), 1e-12) << x_shift << ' ' << x;
       }
     }
   }

@@ -50,7 +50,7 @@ struct BruteForce {
     const double c_y = cutter.geometry().end_diameter / 2 + wheel.nominal_radius + path.y() + lowered +
                        axis_x * (cutter.tanCone() + path.taper());
     const double c_z = wheel.height + axis_x * cutter.tanCone() * path.cutter().zPerY();
-    const double a = LogCurve(cutter, path.lead()).a(axis_x) + path.a();
+    const double a = LogCurve(cutter, path.xShift()).a(axis_x) + path.a();
     const double psi = edge(x) + hand() * behind - a;
     // |p - c|^2 - (w (p - c))^2 = radius^2, with p = (x, r cos psi, r sin psi).
     const double d_x = x - axis_x, e_y = std::cos(psi), e_z = std::sin(psi);
@@ -66,7 +66,7 @@ struct BruteForce {
 
   double radius(double x, double behind) const {
     constexpr int kPoses = 2000;
-    const double middle = x + path.lead(), reach = 2 * wheel.width, step = 2 * reach / kPoses;
+    const double middle = x + path.xShift(), reach = 2 * wheel.width, step = 2 * reach / kPoses;
     int best = 0;
     const auto at = [&](double i) { return ray(x, behind, middle - reach + i * step); };
     for (int i = 1; i <= kPoses; ++i) {
@@ -233,7 +233,7 @@ RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
   const double w_x = -std::sin(c.wheel.swivel), w_z = std::cos(c.wheel.swivel), radius = c.wheel.nominal_radius;
   double highest = -1;
   for (const double s : {-path.beyondEnd(), c.cutter.geometry().flute_length + path.beyondShank()}) {
-    const double axis_x = s + path.lead();
+    const double axis_x = s + path.xShift();
     const double c_y =
         c.cutter.geometry().end_diameter / 2 + radius + path.y() + axis_x * (c.cutter.tanCone() + path.taper());
     const double c_z = c.wheel.height + axis_x * c.cutter.tanCone() * path.cutter().zPerY();

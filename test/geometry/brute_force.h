@@ -39,7 +39,7 @@ struct Bench {
   double swivel, height, depth;
   int poses = 120, places = 24;
   ZCorrection z_correction{};
-  double lead = 0, taper = 0;  ///< of the wheel's centre, and beside the request's y_per_x
+  double x_shift = 0, taper = 0;  ///< of the wheel's centre, and beside the request's y_per_x
 
   /// dZ/dY
   static double zPerY(const SetupRequest& request) {
@@ -89,7 +89,7 @@ struct Bench {
         }
       }
       inside(in);
-      return {side * (std::asin(sine) + turned(s - lead)), in};
+      return {side * (std::asin(sine) + turned(s - x_shift)), in};
     }
     return {};
   }
@@ -101,8 +101,8 @@ struct Bench {
                          (request.wheel.upperFace() - request.wheel.lowerFace());
     double from = x - 1.5 * reach, to = x + 1.5 * reach;
     const double apex = -request.cutter.end_diameter / 2 / std::tan(request.cutter.cone_angle);
-    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, lead)));
-    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, lead)));
+    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
+    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));

@@ -119,13 +119,13 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
 }
 
 // Of either hand, with a wheel whose other corner, away from the rake face, is rounded.
-TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
-  for (const auto& [hand, lead] : {std::pair{1, -1e-3}, {1, 1e-3}, {-1, -1e-3}, {-1, 1e-3}}) {
-    SCOPED_TRACE(testing::Message() << hand << ' ' << lead);
+TEST(ConstantRake, WithAShiftTheRakeIsTheSameOverTheWholeFlute) {
+  for (const auto& [hand, x_shift] : {std::pair{1, -1e-3}, {1, 1e-3}, {-1, -1e-3}, {-1, 1e-3}}) {
+    SCOPED_TRACE(testing::Message() << hand << ' ' << x_shift);
     Shop shop = kSteep;
     if (hand < 0) shop.spiral = -shop.spiral, shop.cut = CutDirection::kLeftHand;
     GrindJob job = jobFor(shop).value();
-    job.process.setup_lead = lead;
+    job.process.setup_x_shift = x_shift;
     (hand < 0 ? job.process.wheel_corner_radius_upper : job.process.wheel_corner_radius_lower) = 0.3 * kMillimetre;
     SetupRequest request = requestFor(shop);
     request.wheel = wheelOf(job);
@@ -138,7 +138,7 @@ TEST(ConstantRake, WithALeadTheRakeIsTheSameOverTheWholeFlute) {
                              800,
                              100,
                              with_law.zCorrectionOf(0),
-                             lead};
+                             x_shift};
     for (const double part : {0.1, 0.9}) {
       EXPECT_NEAR(bench.rake(part * job.cutter.flute_length) / kDegree, kSteep.rake, 0.005) << part;
     }

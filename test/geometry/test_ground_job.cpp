@@ -312,7 +312,7 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
   request.wheel = wheelOf(job);
   request.nominal_radius = job.process.wheel_diameter / 2;
   brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 200, 100};
-  bench.lead = job.process.setup_lead;
+  bench.x_shift = job.process.setup_x_shift;
   bench.taper = (job.process.depth - job.process.depthEnd()) / job.cutter.flute_length;
   double min = 1e9, max = -1e9;
   for (int i = 0; i <= 8; ++i) {

@@ -100,7 +100,7 @@ TEST(JobSetup, TheEditsSayTheJobsFigures) {
   const auto number = [&](const char* key) { return std::stod(editOf(setup, key)->value); };
   EXPECT_EQ(number("process.setup.swivel_deg") * kDegree, p.setup_swivel);
   EXPECT_EQ(number("process.setup.height_mm") * kMillimetre, p.setup_height);
-  EXPECT_EQ(number("process.setup.lead_mm") * kMillimetre, p.setup_lead);
+  EXPECT_EQ(number("process.setup.x_shift_mm") * kMillimetre, p.setup_x_shift);
   EXPECT_EQ(number("process.depth_mm") * kMillimetre, p.depth);
   EXPECT_EQ(number("process.depth_end_mm") * kMillimetre, p.depth_end);
   EXPECT_EQ(number("process.overtravel_mm[1]") * kMillimetre, p.overtravel_shank);

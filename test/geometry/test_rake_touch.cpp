@@ -132,7 +132,7 @@ class Groove {
     const CutterGeometry& c = job_->cutter;
     const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
     const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
-    const double along = s - p.setup_lead;
+    const double along = s - p.setup_x_shift;
     const double turned = std::abs(tan_cone) < 1e-9
                               ? std::tan(c.spiral_angle) * along / r0
                               : std::tan(c.spiral_angle) / tan_cone * std::log(radius(along) / r0);
@@ -175,7 +175,7 @@ class RandomJobs {
     GrindProcess& p = job.process;
     p.depth = between(0.1, 0.25) * job.cutter.end_diameter;
     if (flag()) p.depth_end = between(0.9, 1.1) * p.depth;
-    if (flag()) p.setup_lead = between(-1, 0) * kMillimetre;
+    if (flag()) p.setup_x_shift = between(-1, 0) * kMillimetre;
     p.overtravel_end = p.overtravel_shank = 10 * kMillimetre;
     p.wheel_profile = flag() ? WheelShape::kStraight : WheelShape::kFullRadius;
     p.wheel_diameter = between(60, 125) * kMillimetre;

@@ -85,22 +85,22 @@ Stroke strokeOf(const ValidJob& job, int tooth) {
           cutter.tanCone() + depth.taper,
           p.setup_height,
           cutter.tanCone() * cutter.zPerY(),
-          LogCurve(cutter, along.lead),
+          LogCurve(cutter, along.x_shift),
           along.a};
 }
 
 /// The stroke that grinds a relief at its full depth, as if the tooth were at angle 0. @param edge as of Tool.
 WheelSweep sweepOf(const ConicalCutter& cutter, const ReliefPath& path, const ReliefWheel& wheel, double edge) {
   GrindStroke stroke;
-  stroke.from = path.lead() - path.beyondEnd();
-  stroke.to = cutter.geometry().flute_length + path.lead() + path.beyondShank();
+  stroke.from = path.xShift() - path.beyondEnd();
+  stroke.to = cutter.geometry().flute_length + path.xShift() + path.beyondShank();
   stroke.y = path.y();
   stroke.y_per_x = path.taper();
   stroke.a = path.a() + edge;
   return {path.cutter(),
           WheelProfile::straight(2 * wheel.nominal_radius, wheel.width),
           wheel.nominal_radius,
-          {wheel.swivel, wheel.height, path.lead()},
+          {wheel.swivel, wheel.height, path.xShift()},
           stroke};
 }
 
@@ -139,8 +139,8 @@ struct Tool {
     return *cutter.section(x).teeth[0].edge - LogCurve(cone).a(x);
   }
   Stroke reliefStroke() const {
-    return {path.lead() - path.beyondEnd(),
-            job.cutter.flute_length + path.lead() + path.beyondShank(),
+    return {path.xShift() - path.beyondEnd(),
+            job.cutter.flute_length + path.xShift() + path.beyondShank(),
             wheel.nominal_radius,
             wheel.width,
             wheel.swivel,
@@ -148,7 +148,7 @@ struct Tool {
             cone.tanCone() + path.taper(),
             wheel.height,
             cone.tanCone() * path.cutter().zPerY(),
-            LogCurve(cone, path.lead()),
+            LogCurve(cone, path.xShift()),
             path.a() + edge};
   }
   /// Of the tooth behind the first one.

@@ -143,7 +143,7 @@ TEST(ReliefSetup, OfASmallToolHasSmallMargins) {
   const double part = 0.2;
   const auto shrink = [&](GrindProcess& p) {
     for (double* figure : {&p.depth, &p.depth_end, &p.infeed, &p.finish_infeed, &p.overtravel_end, &p.overtravel_shank,
-                           &p.wheel_diameter, &p.wheel_width, &p.setup_height, &p.setup_lead}) {
+                           &p.wheel_diameter, &p.wheel_width, &p.setup_height, &p.setup_x_shift}) {
       *figure *= part;
     }
   };

@@ -72,7 +72,7 @@ TEST_F(SetupFile, WhatChangesIsSaid) {
   EXPECT_NE(changes.find("  process.setup.swivel_deg        31 in the file, 32.34"), std::string::npos) << changes;
   EXPECT_NE(changes.find(" solved: +1.34"), std::string::npos) << changes;
   std::string text = readFile(job_);
-  const std::string figures = "  setup: {swivel_deg: 31, height_mm: 5.882, lead_mm: 11.853}\n";
+  const std::string figures = "  setup: {swivel_deg: 31, height_mm: 5.882, x_shift_mm: 11.853}\n";
   text.erase(text.find(figures), figures.size());
   write(text);
   EXPECT_NE(changesText(job_, setup()).find("swivel_deg        not in the file, 32.3"), std::string::npos);

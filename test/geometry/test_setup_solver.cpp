@@ -102,7 +102,7 @@ struct ErrorsOverFlute {
 ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
   const double length = r.cutter.flute_length, wider = *r.core_diameter_end - *r.core_diameter;
   brute::Bench bench{r, s.setup.swivel, s.setup.height, s.depth, 200, 100};
-  bench.lead = s.setup.lead;
+  bench.x_shift = s.setup.x_shift;
   bench.taper = (s.depth - s.depth_end) / length - r.y_per_x;
   ErrorsOverFlute errors;
   for (int i = 0; i <= 8; ++i) {
@@ -115,8 +115,9 @@ ErrorsOverFlute errorsOf(const SetupRequest& r, const SolvedSetup& s) {
   return errors;
 }
 
-// Documented: swivel 32.350, height 5.880, depth 2.656 and 2.616, lead 11.847 mm give rake 8.000 at both ends and 7.954
-// amid, the core to 2 um, the edge within 0.053 deg. Here the rake's error is shared out between ends and middle.
+// Documented: swivel 32.350, height 5.880, depth 2.656 and 2.616, shift 11.847 mm give rake 8.000 at both ends
+// and 7.954 amid, the core to 2 um, the edge within 0.053 deg. Here the rake's error is shared out between ends and
+// middle.
 TEST(SetupSolver, ThePapersEdgeAndCoreAreSetAsDocumented) {
   const SetupRequest request = requestForAll({});
   const SolvedSetup s = solved(request);
@@ -124,7 +125,7 @@ TEST(SetupSolver, ThePapersEdgeAndCoreAreSetAsDocumented) {
   EXPECT_NEAR(s.setup.height / kMillimetre, 5.880, 0.005);
   EXPECT_NEAR(s.depth / kMillimetre, 2.656, 0.003);
   EXPECT_NEAR(s.depth_end / kMillimetre, 2.616, 0.003);
-  EXPECT_NEAR(s.setup.lead / kMillimetre, 11.847, 0.015);
+  EXPECT_NEAR(s.setup.x_shift / kMillimetre, 11.847, 0.015);
 }
 
 TEST(SetupSolver, ConesGetTheAskedEdgeAndCore) {
@@ -133,7 +134,7 @@ TEST(SetupSolver, ConesGetTheAskedEdgeAndCore) {
     const SetupRequest request = requestForAll(shop);
     const SolvedSetup s = solved(request);
     SCOPED_TRACE(testing::Message() << shop.cone << " deg");
-    EXPECT_NE(s.setup.lead, 0);
+    EXPECT_NE(s.setup.x_shift, 0);
     const ErrorsOverFlute errors = errorsOf(request, s);
     EXPECT_LT(errors.rake, shop.diameter == Shop{}.diameter ? 0.05 : 0.1);
     EXPECT_LT(errors.edge, 0.06);
@@ -243,7 +244,7 @@ SetupRequest requestAtHeight(double height, double depth, double width) {
 TEST(SetupSolver, ADepthThatIsFoundDoesNotDependOnTheJobs) {
   for (const double depth : {0.2, 0.5, 1.6}) {
     const SolvedSetup s = solved(requestAtHeight(2.8, depth, 3));
-    EXPECT_NEAR(s.setup.lead / kMillimetre, 6.68, 0.01) << depth;
+    EXPECT_NEAR(s.setup.x_shift / kMillimetre, 6.68, 0.01) << depth;
     EXPECT_NEAR(s.depth / kMillimetre, 1.073, 0.002) << depth;
   }
 }
@@ -254,7 +255,7 @@ TEST(SetupSolver, AnEdgeThatCannotBeHadIsNotDropped) {
   SetupRequest request = requestAtHeight(8.5, 0.02, 0.3);
   EXPECT_NEAR(solved(request).setup.swivel / kDegree, 33.797, 0.005);
   request.min_swivel = 34.3 * kDegree;
-  EXPECT_GT(solved(request).setup.lead / kMillimetre, 13);
+  EXPECT_GT(solved(request).setup.x_shift / kMillimetre, 13);
   request.min_swivel = 34.6 * kDegree;
   const SetupRefusal r = refused(request);
   EXPECT_EQ(r.problem, SetupProblem::kSwivel);
@@ -369,14 +370,14 @@ TEST(SetupSolver, ARakeThatIsJustTheMaxIsFound) {
   }
 }
 
-TEST(SetupSolver, AStraightFluteOnAConeTakesNoLeadAndANearlyStraightOneALimitedLead) {
+TEST(SetupSolver, AStraightFluteOnAConeTakesNoShiftAndANearlyStraightOneALimitedShift) {
   for (const double spiral : {0.0, 0.02, -0.02}) {
     const SetupRequest request = requestWithin({12, 6, spiral, 5, 20, 2, 8.2, 12.404, 100, 4, 0, 0});
     const SolvedSetup s = solved(request);
     if (spiral == 0) {
-      EXPECT_EQ(s.setup.lead, 0);
+      EXPECT_EQ(s.setup.x_shift, 0);
     }
-    EXPECT_LT(std::abs(s.setup.lead), 50 * kMillimetre);
+    EXPECT_LT(std::abs(s.setup.x_shift), 50 * kMillimetre);
     const ErrorsOverFlute errors = errorsOf(request, s);
     EXPECT_LT(errors.rake, 0.5) << spiral;
     EXPECT_LT(errors.edge, 0.5) << spiral;

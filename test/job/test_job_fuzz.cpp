@@ -149,8 +149,8 @@ GrindJob allowedJob(Dice& dice) {
   g.flute_length = dice.scaled(0.1e-3, 3e-3);
   p.overtravel_shank = dice.within(0, 1e-3);
   p.overtravel_end = dice.within(0, 1e-3);
-  p.setup_lead = dice.once(2) ? std::min(std::abs(apex), 5e-3) * dice.within(-0.5, 0.5) : 0;
-  const double closes = apex + (apex < 0 ? std::max(0.0, p.setup_lead) : std::min(0.0, p.setup_lead));
+  p.setup_x_shift = dice.once(2) ? std::min(std::abs(apex), 5e-3) * dice.within(-0.5, 0.5) : 0;
+  const double closes = apex + (apex < 0 ? std::max(0.0, p.setup_x_shift) : std::min(0.0, p.setup_x_shift));
   if (apex < 0) p.overtravel_end = std::min(-closes * close, 5e-3);
   if (apex > 0) p.overtravel_shank = std::max(0.0, std::min(closes * close - g.flute_length, 5e-3));
   p.depth = dice.scaled(1e-6, g.end_diameter / 4);

@@ -166,7 +166,7 @@ const Row kRows[]{
      "change process.setup.swivel_deg or process.setup.height_mm"},
     {Kind::kSpiral, Unit::kRadian, 0.25 * kPi, kPi / 6, ofThirdTooth(kPi / 360),
      "cutter.spiral_angle_deg = 30 deg: the edge of tooth 3 is ground with 45 deg at X = 12.3 mm; allowed: within 0.5 "
-     "deg of it; change process.setup.lead_mm"},
+     "deg of it; change process.setup.x_shift_mm"},
     {Kind::kChordalRake, Unit::kRadian, 0.25 * kPi, kPi / 18, ofThirdTooth(kPi / 36),
      "cutter.rake_angle_deg = 10 deg: tooth 3 has a chordal rake of 45 deg at X = 12.3 mm; allowed: within 5 deg of "
      "it; change process.wheel.diameter_mm or process.wheel.width_mm"},

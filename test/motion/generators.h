@@ -33,7 +33,7 @@ inline rc::Gen<Machine> machine() {
 }
 
 /// Now and then none; the edge stays where the radius is at least a fifth of that at X = 0. [m]
-inline rc::Gen<double> lead(const GrindJob& j) {
+inline rc::Gen<double> x_shift(const GrindJob& j) {
   const double shank = j.cutter.flute_length + j.process.overtravel_shank, longest = 3 * j.cutter.end_diameter;
   const auto room = [&](int side, double reached) { return openLength(j.cutter, side, reached + longest) - reached; };
   return rc::gen::weightedOneOf<double>(
@@ -66,7 +66,7 @@ inline rc::Gen<GrindJob> job() {
         *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
     j.interpolation.tolerance = *logUniform(0.1e-6, 100e-6);
     j.interpolation.rotary_scale = *logUniform(0.1e-3, 10e-3);
-    j.process.setup_lead = *lead(j);
+    j.process.setup_x_shift = *x_shift(j);
     return j;
   });
 }
@@ -192,10 +192,10 @@ inline std::ostream& operator<<(std::ostream& out, const Machine& m) {
 inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
   return out << j.cutter << ", " << toString(j.interpolation.even_step) << ", " << toString(j.process.direction)
              << ", feed " << j.process.feed << " m/s, overtravel " << j.process.overtravel_end << " "
-             << j.process.overtravel_shank << " m, lead " << j.process.setup_lead << " m, depth " << j.process.depth
-             << " m, clearance " << j.process.clearance << " m, tolerance " << j.interpolation.tolerance << " m, scale "
-             << j.interpolation.rotary_scale << " m/rad, spark out " << j.process.spark_out << ", "
-             << j.tooth_angles.size() << " teeth, " << toString(j.process.order);
+             << j.process.overtravel_shank << " m, shift in X " << j.process.setup_x_shift << " m, depth "
+             << j.process.depth << " m, clearance " << j.process.clearance << " m, tolerance "
+             << j.interpolation.tolerance << " m, scale " << j.interpolation.rotary_scale << " m/rad, spark out "
+             << j.process.spark_out << ", " << j.tooth_angles.size() << " teeth, " << toString(j.process.order);
 }
 
 namespace test_support {

@@ -55,7 +55,7 @@ RC_GTEST_PROP(FluteShape, EveryStrokeIsOnItsToothsHelixAtItsDepth, ()) {
     const double wear = static_cast<double>(order) * job.process.wheel_wear_per_pass;
     y_off = std::max(y_off, std::abs(p.position[kY] - (x * growth - depth - wear)));
     const double k = 2 * std::tan(job.spiral_angles[p.tooth]) / job.cutter.end_diameter;
-    const double edge_x = x - job.process.setup_lead;
+    const double edge_x = x - job.process.setup_x_shift;
     const double a = job.tooth_angles[p.tooth] + (b == 0 ? k * edge_x : k / b * std::log1p(b * edge_x));
     if (p.step != StepKind::kNone) {
       const double radius = job.cutter.end_diameter / 2 + edge_x * growth;

@@ -198,9 +198,9 @@ TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
   }
 }
 
-// A cylinder's A takes all of its jerk limit. With a lead, its positions are small between turns that are not, from
+// A cylinder's A takes all of its jerk limit. With a shift, its positions are small between turns that are not, from
 // which they are computed: their rounding is that of the turns.
-TEST(JobPlan, LetsTheRoundingPassOfALead) {
+TEST(JobPlan, LetsTheRoundingPassOfAShift) {
   GrindJob job = paperJob();
   job.cutter.end_diameter = job.cutter.shank_diameter = 0.3e-3;
   job.cutter.cone_angle = 0;
@@ -219,7 +219,7 @@ TEST(JobPlan, LetsTheRoundingPassOfALead) {
   machine.limits.max_jerk << 5, 5, 5, 300;
   machine.park << 0.2e-3, 0.2e-3, 0, 0;
   for (int i = 0; i < 20; ++i) {
-    job.process.setup_lead = (0.38 + i * 1e-3) * 1e-3;
+    job.process.setup_x_shift = (0.38 + i * 1e-3) * 1e-3;
     machine.period = (0.78 + i * 1e-3) * 1e-3;
     const JobPlan plan = planOf(job, machine);
     EXPECT_TRUE(plan.good()) << i << ": " << textOf(plan);

@@ -76,7 +76,7 @@ TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
     GrindJob job = paperJob();
     job.cutter.spiral_angle *= way;
     Setpoint end;
-    end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process.setup_lead).a(0.031) + 1;
+    end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process.setup_x_shift).a(0.031) + 1;
     const double room = job.interpolation.tolerance / Deviation(job).of(end);
     Machine machine = plainMachine();
     double& limit = (way > 0 ? machine.limits.max_position : machine.limits.min_position)[kA];
@@ -117,7 +117,7 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
 
 /// Every statistic once more, from the setpoints that the visitor saw.
 PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
-  const ReferenceCurve curve(job.cutter, job.process.setup_lead);
+  const ReferenceCurve curve(job.cutter, job.process.setup_x_shift);
   PathStatistics s;
   s.setpoints = setpoints.size();
   s.max_deviation = maxDeviation(setpoints, job);
@@ -183,9 +183,9 @@ void expectSame(const GrindJob& job, const Machine& machine) {
 TEST(JobPlan, ReportsTheStatisticsOfItsSetpoints) {
   GrindJob behind = paperJob();  // the edge is behind the wheel, or ahead of it
   behind.cutter.cone_angle = 9.6 * units::kDegree;
-  behind.process.setup_lead = -15e-3;
+  behind.process.setup_x_shift = -15e-3;
   GrindJob ahead = behind;
-  ahead.process.setup_lead = 11.847e-3;
+  ahead.process.setup_x_shift = 11.847e-3;
   GrindJob many = steepJob();  // teeth and passes
   many.interpolation.even_step = EvenStepRule::kThirdOrder;
   many.interpolation.tolerance = 10e-6;

@@ -48,7 +48,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathO
   const double step = work.program().schedule().feedSpeed() * work.machine.period;
   const auto setpoints = all(work);
   const double rounding = 2 * roundingOf(setpoints)[kX];
-  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_lead);
+  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_x_shift);
   for (const SeenPair& s : pairsOf(setpoints)) {
     if (!s.odd.at_feed) continue;
     // 2 |kappa| dl tan theta = 2 sin^2 theta |b| dX / u

@@ -10,14 +10,14 @@ EPSILON = 2.0 ** -52
 
 
 class Helix:
-    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 (X - lead) tan C / D1), k (X - lead) for a cylinder."""
+    """The cutter's theory: A(X) = (tan S / tan C) ln(1 + 2 (X - shift) tan C / D1), k (X - shift) for a cylinder."""
 
     def __init__(self, job):
         self.diameter = job['cutter.end_diameter']
         self.tan_cone = math.tan(job['cutter.cone_angle'])
         self.tan_spiral = math.tan(job['cutter.spiral_angle'])
         self.z_per_y = math.sin(job['cutter.rake_angle']) * (-1 if job['cutter.cut'] == Cutter.LEFT_HAND else 1)
-        self.lead = job.get('process.setup_lead', 0)
+        self.x_shift = job.get('process.setup_x_shift', 0)
         self.b = 2 * self.tan_cone / self.diameter
         self.k = 2 * self.tan_spiral / self.diameter
         # The part of a deviation around the axis that is normal to the helix.
@@ -27,7 +27,7 @@ class Helix:
         return self.diameter / 2 + x * self.tan_cone
 
     def a(self, x):
-        x -= self.lead
+        x -= self.x_shift
         return self.k * x if self.b == 0 else self.k / self.b * math.log1p(self.b * x)
 
     def y(self, x):

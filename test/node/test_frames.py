@@ -16,11 +16,11 @@ import path_checks as checks
 from grinder_client import A, DEG, MM, MM_MIN, STROKE, UM, X, Y, Z, grinder
 
 OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
-SWIVEL, HEIGHT, LEAD = 20 * DEG, 3 * MM, -15 * MM
+SWIVEL, HEIGHT, X_SHIFT = 20 * DEG, 3 * MM, -15 * MM
 TEETH = [0.0, 100 * DEG]
 # Its stroke takes some seconds.
 JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=5 * MM, clearance=1 * MM, tooth_angles=TEETH,
-               setup_swivel=SWIVEL, setup_height=HEIGHT, setup_lead=LEAD)
+               setup_swivel=SWIVEL, setup_height=HEIGHT, setup_x_shift=X_SHIFT)
 HELIX = checks.Helix(JOB)
 # Of a cutter of 12 mm and a wheel of 100 mm.
 BETWEEN_AXES = 56 * MM

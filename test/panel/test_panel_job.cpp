@@ -63,7 +63,7 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 const QString kJob = kPackage + "/jobs/paper.yaml";
-const QByteArray kSetup = "  setup: {swivel_deg: 32.34, height_mm: 5.882, lead_mm: 11.853}";
+const QByteArray kSetup = "  setup: {swivel_deg: 32.34, height_mm: 5.882, x_shift_mm: 11.853}";
 
 class SetupSheet : public ::testing::Test {
  protected:

@@ -90,7 +90,7 @@ TEST(Operations, TakeWhatTheReferenceSaysFromTheOneAhead) {
   EXPECT_EQ(primary.process.spark_out, flute.process.spark_out);
   EXPECT_NE(primary.process.feed, flute.process.feed);
   EXPECT_EQ(primary.process.depth, 0);
-  EXPECT_EQ(primary.process.setup_lead, 0);
+  EXPECT_EQ(primary.process.setup_x_shift, 0);
 }
 
 TEST(Operations, EachHasItsDigestAndKnowsWhatWasGroundBefore) {
@@ -148,7 +148,7 @@ TEST(Operations, AReliefsStrokesAreTheClosedForm) {
     const JobPlan plan = planJob(job, machine, machine.park, [&](const Setpoint& p) {
       if (p.move != MoveKind::kStroke) return;
       const auto tooth = static_cast<std::size_t>(p.tooth);
-      const double s = p.position[kX] - path.lead(), depth = job.depths()[p.pass];
+      const double s = p.position[kX] - path.xShift(), depth = job.depths()[p.pass];
       ++strokes[p.tooth];
       ASSERT_NEAR(p.position[kA] + p.path_error,
                   job->tooth_angles[tooth] + job.edges()[tooth].ahead + edge.a(s) + path.a(), 1e-9);
@@ -199,13 +199,13 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_THROW(checkOf(round), InvalidJob);
 }
 
-// With another lead the flutes leave an edge that is up to 1 deg off the asked helix, along which a relief would take
+// With another shift the flutes leave an edge that is up to 1 deg off the asked helix, along which a relief would take
 // more off it than is allowed.
 TEST(Operations, AReliefFollowsTheEdgeAsItIsGround) {
   for (const char* name : {"primary", "secondary"}) {
     GrindJob job = reamer(name);
     job.cutter.spiral_tolerance = 1 * kDegree;
-    job.operations[0].process.setup_lead += 3e-3;
+    job.operations[0].process.setup_x_shift += 3e-3;
     const CutterCheck check = checkOf(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     EXPECT_GT(find(check.figures, ToolFigure::kOffHelix)->largest.value, 0.9 * kDegree) << name;

@@ -42,7 +42,7 @@ GrindJob shortJob() {
   job.process.feed = 0.05;
   job.process.depth = 1e-3;
   job.process.depth_end = 0.8e-3;
-  job.process.setup_lead = -15e-3;
+  job.process.setup_x_shift = -15e-3;
   job.process.infeed = 0.6e-3;
   job.tooth_angles = {0, 3.1};
   job.spiral_angles = {job.cutter.spiral_angle, job.cutter.spiral_angle * 0.9};

@@ -60,7 +60,7 @@ GrindProcess randomProcess(Random& random, const CutterGeometry& cutter) {
   p.wheel_width = 8e-3;
   p.wheel_wear = flip(random, 0.5) ? 0 : between(random, 0, 1e-3);
   p.wheel_wear_per_pass = flip(random, 0.5) ? 0 : between(random, 0, 2e-6);
-  p.setup_lead = flip(random, 0.5) ? 0 : between(random, -1e-3, 1e-3);
+  p.setup_x_shift = flip(random, 0.5) ? 0 : between(random, -1e-3, 1e-3);
   return p;
 }
 
@@ -98,7 +98,7 @@ ValidJob withRelief(Random& random, GrindJob job) {
   for (int i = 0; i < (secondary ? 2 : 1); ++i) {
     GrindProcess relief = job.process;
     relief.kind = i == 0 ? OperationKind::kPrimaryRelief : OperationKind::kSecondaryRelief;
-    relief.depth = relief.depth_end = relief.overtravel_end = relief.overtravel_shank = relief.setup_lead = 0;
+    relief.depth = relief.depth_end = relief.overtravel_end = relief.overtravel_shank = relief.setup_x_shift = 0;
     relief.z_law = ZLaw::kPublished;
     relief.finish_infeed = 0;
     relief.infeed = between(random, 0.1e-3, 0.5e-3);
@@ -152,7 +152,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
     tooth.growth = std::tan(Real(c.cone_angle));
     tooth.b = 2 * tooth.growth / Real(c.end_diameter);
     tooth.k = 2 * std::tan(Real(c.spiral_angle)) / Real(c.end_diameter);
-    tooth.lead = law.lead;
+    tooth.x_shift = law.x_shift;
     tooth.a = law.a;
     tooth.z_per_y = (c.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(Real(c.rake_angle));
     const ZCorrection& z = job.zCorrectionOf(i);

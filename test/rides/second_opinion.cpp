@@ -39,7 +39,7 @@ Watch::Watch(Asked asked) : asked_(std::move(asked)), progress_{0, asked_.from, 
   for (const Tooth& t : asked_.teeth) {
     // A is a difference of turns, and X in it is rounded.
     for (const Real x : {Real(0), asked_.from, asked_.to}) {
-      const Real slope = t.k / (1 + t.b * (x - t.lead));
+      const Real slope = t.k / (1 + t.b * (x - t.x_shift));
       turn_ = std::max({turn_, std::abs(t.a), std::abs(curve(t, x) - t.a), std::abs(slope * x)});
     }
   }
@@ -51,7 +51,7 @@ Real Watch::noiseOf(int axis) const {
 }
 
 Real Watch::curve(const Tooth& t, Real x) const {
-  const Real way = x - t.lead;
+  const Real way = x - t.x_shift;
   return t.a + (t.b == 0 ? t.k * way : t.k / t.b * std::log1p(t.b * way));
 }
 
@@ -61,7 +61,7 @@ Real Watch::edge(const Tooth& t) const {
 }
 
 Real Watch::deviation(const Tooth& t, Real x, Real a) const {
-  return (a - curve(t, x)) * (asked_.radius + (x - t.lead) * t.growth) / edge(t);
+  return (a - curve(t, x)) * (asked_.radius + (x - t.x_shift) * t.growth) / edge(t);
 }
 
 Real Watch::z(const Tooth& t, Real x) const {

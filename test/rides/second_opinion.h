@@ -15,8 +15,8 @@ using Point = std::array<double, 4>;  ///< X, Y, Z [m], A [rad]
 
 /// The path of a tooth's strokes.
 struct Tooth {
-  Real b = 0, k = 0, lead = 0, a = 0;  ///< A = a + k/b ln(1 + b (X - lead))
-  Real growth = 0;                     ///< of the surface, dY/dX
+  Real b = 0, k = 0, x_shift = 0, a = 0;  ///< A = a + k/b ln(1 + b (X - shift))
+  Real growth = 0;                        ///< of the surface, dY/dX
   Real z_per_y = 0;
   /// B-spline of degree 5 added to Z, with knots every `piece` from `from`; empty for none.
   Real from = 0, piece = 1;
@@ -36,7 +36,7 @@ struct Asked {
   Real clearance = 0;     ///< above the surface, at which only strokes go across
   Real offset_y = 0;      ///< of the machine's Y from the work's [m]
   Real deviation = 0;     ///< of A at the surface, across the helix [m]
-  Real radius = 0;        ///< of the surface at X = lead
+  Real radius = 0;        ///< of the surface at X = shift
   Real feed = 0;          ///< the fastest along the edge [m/s]
   Real period = 0;        ///< [s]
   Point low{}, high{};    ///< of the machine's axes

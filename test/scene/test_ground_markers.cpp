@@ -291,7 +291,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
       job.cutter.end_diameter = 0.2 * kMillimetre;
       job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
       job.process.depth = 0.04 * kMillimetre;
-      job.process.depth_end = job.process.setup_lead = 0;
+      job.process.depth_end = job.process.setup_x_shift = 0;
       job.cutter.shank_diameter = shank * kMillimetre;
       job.cutter.neck_length = neck * kMillimetre;
       for (const bool ground : {false, true}) {

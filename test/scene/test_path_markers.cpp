@@ -236,7 +236,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
       flutes.add(p, off);
       if (p.step == StepKind::kNone) continue;
       const double error = std::abs(of_job.helix(0).curve.a(p.position[kX]) - off[kA]);
-      max = std::max(max, error * cutter.cutter().radius(p.position[kX] - job.process.setup_lead) * normal);
+      max = std::max(max, error * cutter.cutter().radius(p.position[kX] - job.process.setup_x_shift) * normal);
     }
     EXPECT_NEAR(flutes.maxMeasured(), max, 1e-15);
     const MarkerArray arrows = errors.markers();

@@ -12,17 +12,17 @@ class LogCurve {
   /// Takes b = 2 tan C / D1 and k = 2 tan S / D1 from a cutter.
   explicit LogCurve(const ConicalCutter& cutter) noexcept : LogCurve(cutter, 0) {}
 
-  /// The cutter's curve shifted along X, A(X - lead), so that the edge that a wheel grinds is the asked helix. That is
-  /// the curve of the cone moved by `lead`, which begins at another A. See FormedEdge.
-  /// @param lead finite; the cone must be open at X = -lead [m].
-  LogCurve(const ConicalCutter& cutter, double lead) noexcept
+  /// The cutter's curve shifted along X, A(X - shift), so that the edge that a wheel grinds is the asked helix. That is
+  /// the curve of the cone moved by `x_shift`, which begins at another A. See FormedEdge.
+  /// @param x_shift finite; the cone must be open at X = -shift [m].
+  LogCurve(const ConicalCutter& cutter, double x_shift) noexcept
       : LogCurve(2 * cutter.tanCone() / cutter.geometry().end_diameter,
                  2 * cutter.tanSpiral() / cutter.geometry().end_diameter) {
-    if (lead == 0) return;
-    a0_ = a(-lead);
-    const double at_lead = u(-lead);
-    b_ /= at_lead;
-    k_ /= at_lead;
+    if (x_shift == 0) return;
+    a0_ = a(-x_shift);
+    const double at_shift = u(-x_shift);
+    b_ /= at_shift;
+    k_ /= at_shift;
   }
 
   /// @param b relative growth of the radius per unit of length [1/m].

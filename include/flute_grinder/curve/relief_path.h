@@ -30,7 +30,7 @@ struct ReliefWheel {
 ///     P(s) + R_w N - q w,    P(s) = (s, rho R(s) cos phi, rho R(s) sin phi),    A = A_edge(s) + behind - phi
 ///
 /// with the wheel's axis w and the place q on its width. Everything but P is constant, so this is the published law of
-/// a flute with the sine of another rake angle, rho sin phi, a taper and a lead. N is normal to w and to the motion of
+/// a flute with the sine of another rake angle, rho sin phi, a taper and a shift. N is normal to w and to the motion of
 /// the relief's start, which leaves phi in closed form:
 ///
 ///     sin(clearance + phi) = -tan(swivel) (rho tan C cos(clearance) + rho tan S sin(clearance))
@@ -61,11 +61,11 @@ class ReliefPath {
   /// The cutter by whose law Z follows: its rake angle alone is the path's.
   const ConicalCutter& cutter() const noexcept { return path_cutter_; }
 
-  double lead() const noexcept { return lead_; }    ///< of X against the section where the relief begins [m]
-  double y() const noexcept { return y_; }          ///< Y at X = 0 of the last stroke [m]
-  double taper() const noexcept { return taper_; }  ///< added to the cone's dY/dX
-  double a() const noexcept { return a_; }          ///< added to the edge's A(X - lead) [rad]
-  double phi() const noexcept { return phi_; }      ///< where the relief begins, see the class [rad]
+  double xShift() const noexcept { return x_shift_; }  ///< of X against the section where the relief begins [m]
+  double y() const noexcept { return y_; }             ///< Y at X = 0 of the last stroke [m]
+  double taper() const noexcept { return taper_; }     ///< added to the cone's dY/dX
+  double a() const noexcept { return a_; }             ///< added to the edge's A(X - shift) [rad]
+  double phi() const noexcept { return phi_; }         ///< where the relief begins, see the class [rad]
 
   /// Where on the rim the relief begins, from the middle of the wheel's width along its axis [m].
   double contact() const noexcept { return contact_; }
@@ -113,7 +113,7 @@ class ReliefPath {
   double normal_x_ = 0, normal_y_ = 0, normal_z_ = 0;
   double contact_ = 0;
   ConicalCutter path_cutter_;
-  double lead_ = 0, y_ = 0, taper_ = 0, a_ = 0, beyond_end_ = 0, beyond_shank_ = 0;
+  double x_shift_ = 0, y_ = 0, taper_ = 0, a_ = 0, beyond_end_ = 0, beyond_shank_ = 0;
 };
 
 }  // namespace grinder

@@ -35,7 +35,7 @@ struct SetupRequest {
   double y_per_x = 0;                                       ///< of a core taper, added to the cone's
   std::optional<double> core_diameter;                      ///< at X = 0, in place of the depth [m]
   std::optional<double> core_diameter_end;                  ///< at the flute's end, in place of y_per_x [m]
-  bool asks_spiral = false;                                 ///< the edge's angle between the ends, by a lead
+  bool asks_spiral = false;                                 ///< the edge's angle between the ends, by a shift
   bool incomplete_ok = false;                               ///< the flute may end before its ends
   double min_swivel = 0, max_swivel = 0;                    ///< that the machine allows [rad]
   /// Without it the depth is kept unless a core is asked; on a cylinder, where one unknown is free, the rake face then

@@ -12,9 +12,9 @@ namespace grinder {
 
 /// How the machine is set for a wheel.
 struct WheelSetup {
-  double swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
-  double height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
-  double lead = 0;    ///< shift of A's curve along X, see LogCurve [m]
+  double swivel = 0;   ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
+  double height = 0;   ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
+  double x_shift = 0;  ///< shift of A's curve along X, see LogCurve [m]
 };
 
 /// How far the axes are off the job's path at an X.

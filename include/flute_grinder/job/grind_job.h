@@ -49,7 +49,7 @@ constexpr auto& rowsOf(OperationKind) noexcept { return kOperationKinds; }
 constexpr bool isRelief(OperationKind kind) noexcept { return kind != OperationKind::kFlute; }
 
 /// How the flutes, or a relief behind the edge of every tooth, are ground. Of a relief, `depth`, `depth_end`, the
-/// overtravels, `setup_lead` and the law of Z follow from the rest, and are 0 here.
+/// overtravels, `setup_x_shift` and the law of Z follow from the rest, and are 0 here.
 struct GrindProcess {
   OperationKind kind = OperationKind::kFlute;
   double feed = 0;              ///< along the cutting edge, and during infeed [m/s]
@@ -77,7 +77,8 @@ struct GrindProcess {
   double setup_swivel = 0;  ///< of the wheel's plane against the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< of the wheel's centre above the cutter's axis at Z = 0 [m]
   double behind = 0;        ///< of a primary relief: how far behind the edge it begins at the small end [m]
-  double setup_lead = 0;    ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
+  double setup_x_shift =
+      0;  ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< at the flute's end [m]
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< where the flute is deepest [m]

@@ -68,7 +68,7 @@ void visitJobFields(const Visit& visit) {
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return j.process.wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return j.process.setup_swivel; });
   visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return j.process.setup_height; });
-  visit(F{"process.setup_lead", "process.setup.lead_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.setup_lead; });
+  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.setup_x_shift; });
   visit(F{"process.behind", "process.behind_mm", mm, 0, 50, true, F::Of::kRelief}, [](auto& j) -> auto& { return j.process.behind; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000}, [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000}, [](auto& j) -> auto& { return j.interpolation.rotary_scale; });

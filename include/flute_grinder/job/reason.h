@@ -115,7 +115,7 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kUnevenRake, "uneven_rake"}},
     {{ReasonKind::kSpiral, "spiral"},
      "{cutter.spiral_angle} = {limit}: the edge of tooth {tooth} is ground with {value} at X = {x}; allowed: within "
-     "{low} of it; change {process.setup_lead}"},
+     "{low} of it; change {process.setup_x_shift}"},
     {{ReasonKind::kCoreSize, "core_size"}},
     {{ReasonKind::kChordalRake, "chordal_rake"},
      "{cutter.rake_angle} = {limit}: tooth {tooth} has a chordal rake of {value} at X = {x}; allowed: within {low} of "

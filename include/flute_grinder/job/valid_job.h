@@ -37,7 +37,7 @@ struct DepthLaw {
 struct StrokeLaw {
   CutterGeometry cutter;    ///< whose helix A, and whose rake Z follows
   double from = 0, to = 0;  ///< X of the ends, in the direction of the strokes [m]
-  double lead = 0;          ///< of A's curve [m]
+  double x_shift = 0;       ///< of A's curve [m]
   double a = 0;             ///< added to A [rad]
 };
 

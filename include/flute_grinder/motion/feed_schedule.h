@@ -52,7 +52,7 @@ class FeedSchedule {
     double tolerance = 0;     ///< maximum allowed deviation at the cutter's surface [m]
     double taper = 0;         ///< maximum value, by magnitude, that passes add to the cone's dY/dX; they may add less
     ZCorrection z_correction{};  ///< added to Z
-    double lead = 0;             ///< shift of A's curve along X, see LogCurve [m]
+    double x_shift = 0;          ///< shift of A's curve along X, see LogCurve [m]
   };
 
   /// @param cutter the cutter; its curve must exist over the whole stroke.

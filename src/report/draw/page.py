@@ -136,7 +136,7 @@ def process_facts(process):
     setup = process['setup']
     return [('wheel', wheel_text(process['wheel'])), ('wear', '%g mm of the radius' % process['wheel']['wear_mm']),
             ('set-up', 'swivel %g deg, height %g mm%s' % (
-                setup['swivel_deg'], setup['height_mm'], ', lead %g mm' % setup['lead_mm'] if setup.get('lead_mm') else '')),
+                setup['swivel_deg'], setup['height_mm'], ', shift in X %g mm' % setup['x_shift_mm'] if setup.get('x_shift_mm') else '')),
             ('relief' if 'relief' in process else 'depth', '%s%s, infeed %g mm' % (
                 process.get('relief') or '%g mm' % process['depth_mm'],
                 ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', process['infeed_mm'])),

@@ -260,10 +260,9 @@ std::size_t operationNamed(const std::string& named, const std::vector<GrindOper
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
-/// One operation, with the rest of the file.
-GrindJob readOperation(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
+/// One operation, with the rest of the file. @param file of which nothing was taken.
+GrindJob readOperation(FlatFile file, const std::string& name, const std::vector<std::string>& unsolved,
                        const std::string& section, const GrindProcess* before) {
-  FlatFile file(text, name, kKind, kContent);
   const ProcessKeys keys(section);
   if (!keys.single()) {
     for (std::size_t i = 0; i < kMaxOperations; ++i) {
@@ -284,21 +283,22 @@ GrindJob readOperation(const std::string& text, const std::string& name, const s
 
 GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
                   const std::string& operation) {
-  FlatFile file(text, name, kKind, kContent);
-  const std::size_t count = operationsIn(file);
+  const FlatFile whole(text, name, kKind, kContent);
+  const std::size_t count = operationsIn(whole);
   if (count == 0) {
     if (!operation.empty() && operation != "1" && operation != toString(OperationKind::kFlute)) {
       throw JobFileError(name + ": operation = " + operation + "; allowed: 1 or flute, its only one");
     }
-    return readOperation(text, name, unsolved, kProcess, nullptr);
+    return readOperation(whole, name, unsolved, kProcess, nullptr);
   }
   GrindJob job;
   std::vector<GrindOperation> all;
   for (std::size_t i = 0; i < count; ++i) {
-    job = readOperation(text, name, unsolved, sectionOf(i), i == 0 ? nullptr : &all.back().process);
+    job = readOperation(whole, name, unsolved, sectionOf(i), i == 0 ? nullptr : &all.back().process);
     all.push_back({job.process, job.wheel_points});
   }
   job.operations = std::move(all);
+  FlatFile file = whole;
   for (std::size_t i = 0; i < count; ++i) {
     failInvalid(file, ProcessKeys(sectionOf(i)), job.ofOperation(static_cast<int>(i)));
   }
@@ -307,7 +307,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   const std::size_t index = operationNamed(named, job.operations, name);
   // What is ahead of an operation must be solved for it to be solved.
   for (std::size_t i = 0; i < index && !unsolved.empty(); ++i) {
-    readOperation(text, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
+    readOperation(whole, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
   }
   return job.ofOperation(static_cast<int>(index));
 }

@@ -7,6 +7,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
+#include "flute_grinder/record/ground_strokes.h"
 #include "flute_grinder/record/record_file.h"
 #include "node/job_recorder.h"
 #include "temp_folder.h"
@@ -308,6 +309,47 @@ TEST_F(JobRecordTest, ReportsJobMachineAndPlan) {
   EXPECT_EQ(record["started"], utcText(cycles_.front().sample.time));
   EXPECT_EQ(record["ended"], utcText(cycles_.back().sample.time));
   EXPECT_EQ(record["omitted"], 0);
+}
+
+TEST_F(JobRecordTest, WithoutTheCheckOfTheZeroPointsItHasNotPassed) {
+  makeCycles();
+  const auto because = [&](bool said_right) {
+    JobRecord record(plan_, {}, {}, said_right);
+    for (const Cycle& c : cycles_) record.addCycle(c.sample);
+    record.conclude({"done", "", 5});
+    Tolerances tolerances = kTolerances;
+    tolerances.late_cycles_percent = 100;
+    const std::vector<std::string> reasons = record.record("/grinder", kMachine, tolerances).head.because;
+    return std::count(reasons.begin(), reasons.end(), kNoOffsetCheck);
+  };
+  EXPECT_EQ(because(false), 0);
+  EXPECT_EQ(because(true), 1);
+}
+
+/// Axes that are off by the same everywhere, on a machine with work offsets.
+TEST_F(JobRecordTest, KeepsWhereTheWheelWas) {
+  const Axes offset(0.01, -0.02, 0.03, 0.4), off(0, 3e-6, -2e-6, 1e-5);
+  plan_.program = std::make_shared<const GrindProgram>(ValidJob(job_), config_.machine,
+                                                       RunStart(config_.machine.park + offset, {}, offset));
+  command_ = config_.machine.park;
+  makeCycles();
+  Axes reached = config_.machine.park;
+  for (Cycle& c : cycles_) {
+    c.sample.position = reached + offset + off;
+    if (c.has_setpoint) reached = c.setpoint.position;
+  }
+  const std::vector<RunStroke> strokes = runStrokesFrom(recorded()["ground"]);
+  std::size_t count = 0;
+  for (const RunStroke& stroke : strokes) {
+    if (stroke.move != MoveKind::kStroke || stroke.place.pass != 1) continue;
+    ++count;
+    for (const PathDeviation& deviation : stroke.deviations) {
+      EXPECT_NEAR(deviation.y, off[kY], 2e-9);
+      EXPECT_NEAR(deviation.z, off[kZ], 2e-9);
+      EXPECT_NEAR(deviation.a, off[kA], 5e-7);
+    }
+  }
+  EXPECT_EQ(count, 2U);
 }
 
 TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {

@@ -39,6 +39,8 @@ class ToolRecordsTest : public ::testing::Test {
         strokes.push_back({{"tooth", tooth + 1}, {"pass", pass + 1}, {"complete", true}});
       }
     }
+    // One more was begun.
+    if (end_tooth < 4) strokes.push_back({{"tooth", end_tooth + 1}, {"pass", 1}, {"complete", false}});
     Record record;
     record.head.started = record.head.ended = "2026-11-22T17:04:13.123Z";
     record.head.digest = jobDigest(*job);

@@ -352,6 +352,21 @@ TEST_F(JobRecordTest, KeepsWhereTheWheelWas) {
   EXPECT_EQ(count, 2U);
 }
 
+TEST_F(JobRecordTest, HeadSaysWhichPartOfItsToolItIs) {
+  const auto head = [&](const GrindJob& job, const ToothPass& first) {
+    plan_.program =
+        std::make_shared<const GrindProgram>(ValidJob(job), config_.machine, RunStart(config_.machine.park, first));
+    return JobRecord(plan_, {}, {}, false).record("/grinder", kMachine, kTolerances).head;
+  };
+  const RecordHead alone = head(job_, {}), flute = head(readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1"), {1, 0});
+  EXPECT_EQ(alone.operation, "");
+  EXPECT_TRUE(alone.ends_tool);
+  EXPECT_FALSE(alone.continues);
+  EXPECT_EQ(flute.operation, "flute");
+  EXPECT_FALSE(flute.ends_tool);
+  EXPECT_TRUE(flute.continues);
+}
+
 TEST_F(JobRecordTest, ReportsWhatItLeavesOut) {
   JobRecord record(plan_, {}, {}, false);
   for (int i = 0; i < 10004; ++i) {

@@ -5,7 +5,6 @@
 #include "cli/time_text.h"
 #include "flute_grinder/geometry/on_all_cores.h"
 #include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
@@ -300,8 +299,8 @@ struct Read {
 std::optional<GroundTool> toolOf(const Record& record, const std::string& path) {
   if (record.head.outcome != "done" || isToolMeasured(record)) return std::nullopt;
   try {
-    const ValidJob job = withLaws(ValidJob(parseJob(record.body.at("job_file").dump(), path)));
-    return measure("", groundStrokes(job, {record}), evenSections(*job, kJudgedSections));
+    const ToolRecords tool(path);
+    return measure("", tool.strokes(tool.own()), evenSections(tool.own().asked, kJudgedSections));
   } catch (const std::invalid_argument&) {
     return std::nullopt;
   }

@@ -116,7 +116,7 @@ Json documentOfRecord(const std::string& path, ReportContext& context) {
   say("reading the records of the tool");
   const ToolRecords tool(path);
   say("computing the ground tool");
-  context.no_tool = reasonWhyNot([&] { measureTool(tool.strokes(), "", context); });
+  context.no_tool = reasonWhyNot([&] { measureTool(tool.strokes(tool.last()), "", context); });
   return findingsOfTool(tool, context);
 }
 

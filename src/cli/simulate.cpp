@@ -104,7 +104,7 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
-  if (source.records) return measure(source.name, source.records->strokes(), at);
+  if (source.records) return measure(source.name, source.records->strokes(source.records->last()), at);
   const ValidJob job = withLaws(source.job);
   if (!source.bag) return measure(job, source.name, groundCutterOf(job), at);
   RunStrokes strokes(job, recordedBefore(source.file, *source.bag));

@@ -51,8 +51,7 @@ bool isSame(const std::string& a, const std::string& b) {
   return std::filesystem::equivalent(a, b, error);
 }
 
-}  // namespace
-
+/// Where the wheel was in a run of a job. @param job with its laws.
 RunStrokes groundStrokes(const ValidJob& job, const std::vector<Record>& records, std::optional<GroundCutter> before) {
   std::vector<RunStroke> strokes;
   for (const Record& record : records) {
@@ -62,6 +61,8 @@ RunStrokes groundStrokes(const ValidJob& job, const std::vector<Record>& records
   }
   return {job, std::move(strokes), std::move(before)};
 }
+
+}  // namespace
 
 ToolRecords::ToolRecords(const std::string& path) {
   const GrindJob job = parseJob(readRecord(path).body.at("job_file").dump(), path);
@@ -86,17 +87,13 @@ ToolRecords::ToolRecords(const std::string& path) {
     }
   };
   take(*own);
+  own_ = static_cast<std::size_t>(own->operation);
   for (auto run = own; run != runs.begin() && std::prev(run)->operation == run->operation - 1; --run) {
     take(*std::prev(run));
   }
   auto run = own;
   for (; std::next(run) != runs.end() && std::next(run)->operation == run->operation + 1; ++run) take(*std::next(run));
   last_ = static_cast<std::size_t>(run->operation);
-}
-
-bool ToolRecords::isWhole() const {
-  return std::none_of(operations_.begin(), operations_.end(),
-                      [](const Operation& operation) { return operation.records.empty(); });
 }
 
 std::vector<ToothPass> ToolRecords::Operation::missing() const {
@@ -113,13 +110,13 @@ std::vector<ToothPass> ToolRecords::Operation::missing() const {
   return places;
 }
 
-RunStrokes ToolRecords::strokes() const {
-  const auto is_known = [](const Operation& operation) { return !operation.records.empty(); };
+RunStrokes ToolRecords::strokes(const Operation& operation) const {
   std::optional<GroundCutter> ground;
-  const auto own = operations_.begin() + static_cast<std::ptrdiff_t>(last_);
+  const auto is_known = [](const Operation& ahead) { return !ahead.records.empty(); };
+  const auto own = operations_.begin() + (&operation - operations_.data());
   if (std::all_of(operations_.begin(), own, is_known)) {
-    for (auto operation = operations_.begin(); operation != own; ++operation) {
-      ground = groundStrokes(*operation->job, operation->records, std::exchange(ground, std::nullopt)).cutter();
+    for (auto ahead = operations_.begin(); ahead != own; ++ahead) {
+      ground = groundStrokes(*ahead->job, ahead->records, std::exchange(ground, std::nullopt)).cutter();
     }
   }
   return groundStrokes(*own->job, own->records, std::move(ground));

@@ -72,7 +72,6 @@ TEST_F(ToolRecordsTest, AreThoseOfAllOperationsWhicheverIsNamed) {
   for (const std::string& path : paths) {
     const ToolRecords tool(path);
     EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1"}, {"2"}, {"3"}}));
-    EXPECT_TRUE(tool.isWhole());
     EXPECT_EQ(&tool.last(), &tool.operations()[2]);
     for (const ToolRecords::Operation& operation : tool.operations()) EXPECT_TRUE(operation.missing().empty());
   }
@@ -85,7 +84,6 @@ TEST_F(ToolRecordsTest, OfAnotherToolOfTheSameJobAreNotTaken) {
   const std::string flute = keep(0);
   keep(0), keep(1);
   EXPECT_EQ(filesOf(ToolRecords(flute)), (std::vector<Files>{{"5"}, {}, {}}));
-  EXPECT_FALSE(ToolRecords(flute).isWhole());
 }
 
 TEST_F(ToolRecordsTest, ThatContinueARunAreOneWithIt) {
@@ -109,7 +107,7 @@ TEST_F(ToolRecordsTest, WithoutTheNameOfARecordStandForThemselves) {
 TEST_F(ToolRecordsTest, AreMeasuredOnWhatWasGroundBefore) {
   keep(0), keep(1);
   const ToolRecords tool(keep(2));
-  const RunStrokes strokes = tool.strokes();
+  const RunStrokes strokes = tool.strokes(tool.last());
   EXPECT_FALSE(strokes.isOnPlanned());
   const ValidJob asked = withLaws(ValidJob(job_.ofOperation(2)));
   const GroundTool ground = measure("", strokes, {0, 0.011}),
@@ -123,7 +121,11 @@ TEST_F(ToolRecordsTest, AreMeasuredOnWhatWasGroundBefore) {
     }
   }
   keep(0);
-  EXPECT_TRUE(ToolRecords(keep(2)).strokes().isOnPlanned());
+  const ToolRecords other(keep(2));
+  EXPECT_TRUE(other.strokes(other.own()).isOnPlanned());
+  const ToolRecords flute(folder_.path() / "0000000001_20261122T170413.123Z.json");
+  EXPECT_FALSE(flute.strokes(flute.own()).isOnPlanned());
+  EXPECT_EQ(&flute.own(), &flute.operations()[0]);
 }
 
 }  // namespace test_tool_records

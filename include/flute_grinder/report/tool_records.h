@@ -9,13 +9,6 @@
 
 namespace grinder {
 
-/// Where the wheel was in a run of a job: the record that began it, and those that continued it. @param job with its
-/// laws.
-/// @param before the cutter as the operations ahead of a relief ground it; nothing: as they are planned.
-/// @throw std::exception, with the reason, if a record does not have it.
-RunStrokes groundStrokes(const ValidJob& job, const std::vector<Record>& records,
-                         std::optional<GroundCutter> before = std::nullopt);
-
 /// The records of one tool, by the operations of its job.
 class ToolRecords {
  public:
@@ -42,16 +35,17 @@ class ToolRecords {
   const std::vector<Operation>& operations() const noexcept { return operations_; }
   /// The last one that the records have.
   const Operation& last() const { return operations_[last_]; }
-  /// Whether each operation is in the records.
-  bool isWhole() const;
+  /// Of the record that was named.
+  const Operation& own() const { return operations_[own_]; }
 
-  /// The strokes of the last operation, on the cutter as those ahead of it ground it; where one of these is not in the
-  /// records, they are taken as planned. @throw as groundStrokes().
-  RunStrokes strokes() const;
+  /// The strokes of an operation, on the cutter as those ahead of it ground it; where one of these is not in the
+  /// records, they are taken as planned. @param operation of operations(), in the records. @throw std::exception, with
+  /// the reason, if a record does not have its strokes.
+  RunStrokes strokes(const Operation& operation) const;
 
  private:
   std::vector<Operation> operations_;
-  std::size_t last_ = 0;
+  std::size_t own_ = 0, last_ = 0;
 };
 
 }  // namespace grinder

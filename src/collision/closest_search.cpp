@@ -8,14 +8,14 @@ namespace grinder {
 
 namespace {
 
-constexpr double kSearchAccuracy = 1e-6;  ///< of the search; that of gap() comes on top [m]
+constexpr double kSearchAccuracy = 1e-6;  ///< accuracy of the search, added to the error of gap() [m]
 
 }  // namespace
 
 ClosestSearch::ClosestSearch(const std::vector<Axes>& path, double height,
                              const std::function<bool(std::size_t leg)>& searched)
     : path_(path), height_(0, 0, height) {
-  // The strokes of all teeth are one, since A makes no difference.
+  // The strokes of all teeth coincide, since A makes no difference.
   std::map<std::array<double, 6>, bool> seen;
   for (std::size_t leg = 0; leg + 1 < std::max<std::size_t>(path.size(), 2); ++leg) {
     if (searched && !searched(leg)) continue;

@@ -7,13 +7,14 @@
 
 namespace grinder {
 
-/// The search for the closest place on a path, of one pair of bodies after another: a part of the path is left as soon
-/// as the planes that part the bodies in its middle show that it holds no place closer than the closest so far; if not,
-/// it is halved in space, so that strokes beside each other are treated as one.
+/// The search for the closest place on a path, for one pair of bodies after another. A part of the path is dropped as
+/// soon as the separating planes at its middle show that it holds no closer place than the closest so far; otherwise it
+/// is halved in space, so that strokes beside each other are treated as one.
 class ClosestSearch {
  public:
-  /// @param path points with straight legs. @param height added to Z [m]. @param searched whether a leg is; without
-  ///        it, every leg is.
+  /// @param path points with straight legs.
+  /// @param height height added to Z [m].
+  /// @param searched whether to search a leg; without it, every leg is searched.
   ClosestSearch(const std::vector<Axes>& path, double height,
                 const std::function<bool(std::size_t leg)>& searched = {});
 
@@ -22,7 +23,7 @@ class ClosestSearch {
   const ClosestPlace& best() const noexcept { return best_; }
 
  private:
-  /// A piece of a leg, as fractions of it.
+  /// A piece of a leg, as fractions of the leg.
   struct Piece {
     std::size_t leg;
     double from, to;

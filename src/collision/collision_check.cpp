@@ -11,9 +11,9 @@ namespace grinder {
 
 namespace {
 
-constexpr double kCentred = 1e-6;         ///< farther from the wheel's axis, a shape does not hold the wheel [m]
-constexpr double kContact = 1e-9;         ///< a distance below this is none, whatever is allowed [m]
-constexpr double kRunOutMargin = 20e-6;   ///< more than search and run-out err together [m]
+constexpr double kCentred = 1e-6;         ///< maximum offset from the wheel's axis of a shape that holds it [m]
+constexpr double kContact = 1e-9;         ///< distance that counts as a contact, whatever is allowed [m]
+constexpr double kRunOutMargin = 20e-6;   ///< margin above the errors of search and run-out together [m]
 constexpr double kRunOutAccuracy = 1e-7;  ///< [m]
 
 /// The frame of a body of revolution about a link's X.

@@ -11,10 +11,10 @@ namespace grinder {
 
 namespace {
 
-constexpr double kBow = 1e-6;      ///< between a bent stroke and its legs [m]
-constexpr double kWorkPart = 0.5;  ///< of the job's clearance, which a cone takes some of where it rises to the wheel
+constexpr double kBow = 1e-6;      ///< maximum distance between a curved stroke and its legs [m]
+constexpr double kWorkPart = 0.5;  ///< fraction of the job's clearance; a cone that rises to the wheel uses some of it
 
-/// Of the ends of infeeds and strokes, the one at the shank, and there the deepest.
+/// The end at the shank of infeeds and strokes, at the greatest depth.
 Axes strokeEndOf(const GrindProgram& program) {
   const Move* end = nullptr;
   for (const Move& move : program.moves()) {
@@ -37,15 +37,15 @@ double workRadiusNear(const GrindJob& job, const WheelProfile& wheel, double x) 
 
 bool isUp(MoveKind kind) { return kind == MoveKind::kLift || kind == MoveKind::kRetract; }
 
-/// Whether a move up leaves the work alone even if the wheel stands in it, as after a stroke: over the whole width of
-/// the wheel, whatever lies above its lower side lies within the wheel, because no work is higher than its spindle.
+/// Whether a move up leaves the work alone even if the wheel is in it, as after a stroke: over the whole width of the
+/// wheel, everything above its lower side is within the wheel, because no work is higher than its spindle.
 bool risesOut(const GrindProgram& program, const WheelProfile& wheel, const Axes& from) {
   const GrindJob& job = *program.job();
   const double spindle = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + from[kY];
   return spindle >= workRadiusNear(job, wheel, from[kX]);
 }
 
-/// Of every leg, whether the wheel has to keep off the work.
+/// Whether the wheel must keep off the work, for every leg.
 std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& path) {
   const WheelProfile wheel = wheelOf(*program.job());
   std::vector<bool> outside;
@@ -78,10 +78,10 @@ Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
   return reason;
 }
 
-/// For a wheel that comes too close to the work outside the cut.
+/// The reason for a wheel that comes too close to the work outside the cut.
 Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
   Reason reason = reasonOf(place, program);
-  if (isUp(reason.move)) return reason;  // another clearance would not change where it begins
+  if (isUp(reason.move)) return reason;  // another clearance would not change where the move begins
   reason.field = "process.clearance";
   reason.low = program.job()->process.clearance;
   reason.limit = workClearance(program);

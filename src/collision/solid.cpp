@@ -17,8 +17,8 @@ namespace grinder {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr int kProfilePoints = 64;       ///< over the width of a wheel, closer together toward its faces
-constexpr double kCoaxial = 1e-9;        ///< [m], and of a direction
+constexpr int kProfilePoints = 64;       ///< points over the width of a wheel, closer together toward its faces
+constexpr double kCoaxial = 1e-9;        ///< tolerance for coaxial bodies [m], and for a direction
 constexpr double kAccuracy = 1e-6;       ///< [m]
 constexpr double kGjkTolerance = 1e-11;  ///< largest last step of GJK [m]
 constexpr unsigned kGjkIterations = 500;
@@ -29,7 +29,7 @@ struct View {
   const Solid* solid;
   Eigen::Vector3d shift;
   Eigen::Matrix3d frame;
-  mutable Eigen::Vector3d asked = Eigen::Vector3d::Zero();  ///< the last direction, in the frame
+  mutable Eigen::Vector3d asked = Eigen::Vector3d::Zero();  ///< the last direction asked for, in the frame
 };
 
 void farthestOf(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* point) {
@@ -40,11 +40,12 @@ void farthestOf(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poi
   for (int i = 0; i < 3; ++i) point->v[i] = p[i];
 }
 
-/// From a body's nearest point to the other's, in the frame, by GJK. @return none if GJK finds no distance
+/// The vector from a body's nearest point to the other's, in the frame, by GJK.
+/// @return nothing if GJK finds no distance.
 std::optional<Eigen::Vector3d> wayBetween(View& first, View& second) {
   double distance = 0;
 #ifdef FLUTE_GRINDER_FCL_0_5
-  // Its nearest points are wrong; its distance is right, and it searches along the way at last.
+  // The nearest points of this GJK are wrong; its distance and its last search direction are right.
   if (!fcl::details::GJKDistance(&first, farthestOf, &second, farthestOf, kGjkIterations, kGjkTolerance, &distance,
                                  nullptr, nullptr)) {
     return std::nullopt;
@@ -122,7 +123,7 @@ Solid Solid::swept(const Eigen::Isometry3d& axis) const {
       solid.rings.push_back({own.translation().z() + direction * ring.w, ring.radius});
       continue;
     }
-    // The corners of a box about the body: their circles' hull holds the box at any angle.
+    // The corners of a box about the body: the hull of their circles contains the box at any angle.
     const Eigen::Vector3d side = half + Eigen::Vector3d(ring.radius, ring.radius, 0);
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);

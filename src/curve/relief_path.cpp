@@ -12,12 +12,12 @@ namespace grinder {
 
 namespace {
 
-constexpr int kHalvings = 60;          ///< of a search's range
-constexpr int kSteps = 30;             ///< to a section
-constexpr double kSamePlace = 1e-12;   ///< of the cutter's radius, in which a section is found
-constexpr double kNearby = 1e-4;       ///< of the cutter's radius, behind the edge
-constexpr double kFarthestSine = 0.9;  ///< along the rim, of where a blank is touched
-constexpr int kPlacesOfWidth = 32;     ///< of the rim, between which the one that first touches is looked for
+constexpr int kHalvings = 60;          ///< halvings of a search's range
+constexpr int kSteps = 30;             ///< maximum number of steps to find a section
+constexpr double kSamePlace = 1e-12;   ///< tolerance for finding a section, as a fraction of the cutter's radius
+constexpr double kNearby = 1e-4;       ///< distance behind the edge, as a fraction of the cutter's radius
+constexpr double kFarthestSine = 0.9;  ///< largest sine of the angle around the rim at which the blank is touched
+constexpr int kPlacesOfWidth = 32;     ///< intervals of the rim's width for finding the first contact
 
 double handOf(const ConicalCutter& cutter) { return cutter.geometry().cut == CutDirection::kLeftHand ? -1 : 1; }
 
@@ -27,7 +27,7 @@ double handOf(const ConicalCutter& cutter) { return cutter.geometry().cut == Cut
   throw std::invalid_argument(text.str());
 }
 
-/// The maximum of a function that rises to it and falls from it.
+/// The maximum of a function that rises to it and then falls.
 template <typename Function>
 double maximum(double from, double to, const Function& f) {
   constexpr double golden = 0.6180339887498949;
@@ -45,7 +45,7 @@ double maximum(double from, double to, const Function& f) {
   return std::max(at_low, at_high);
 }
 
-/// The machine's angle of the relief's start, and the rim's normal there.
+/// The machine angle of the relief's start, and the rim's normal there.
 struct Contact {
   double phi, x, y, z;
 };
@@ -64,7 +64,7 @@ Contact contactOf(const ReliefStart& start, double tan_cone, double tan_spiral, 
   return {phi, x / length, y / length, z / length};
 }
 
-/// Height and the place on the rim depend on each other linearly: height = at_middle - contact * per_contact.
+/// The linear relation of the height and the contact on the rim: height = at_middle - contact * per_contact.
 struct HeightLaw {
   double at_middle, per_contact;
 };
@@ -117,7 +117,7 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
   a_ = hand * (start.behind - phi_);
   const double length = cutter.geometry().flute_length;
   side_ = surfaceOf(0, kNearby * radius_).behind > start.behind ? 1 : -1;
-  // A place of the rim that forms no surface asks for no way.
+  // If the end of the rim forms no surface (NaN), no overtravel is needed.
   const double end = side_ * half_width_ - contact_;
   beyond_end_ = std::fmax(0.0, -formedAt(0, end));
   beyond_shank_ = std::fmax(0.0, formedAt(length, end) - length);
@@ -150,11 +150,12 @@ double ReliefPath::heightForReach(const ConicalCutter& cutter, const ReliefStart
 ReliefPath::Point ReliefPath::contactPoint(double s, double w) const noexcept {
   const double rho = start_.radius_part, radius = radius_ + s * tan_cone_;
   const double p_y = rho * radius * std::cos(phi_), p_z = rho * radius * std::sin(phi_);
-  // The point of the wheel's axis whose disc is looked at.
+  // The centre of the wheel's disc at w.
   const double x = s + wheel_radius_ * normal_x_ - w * sin_;
   const double y = p_y + wheel_radius_ * normal_y_, z = p_z + wheel_radius_ * normal_z_ + w * cos_;
-  // How that point of the wheel moves against the cutter, by s; square to it is the normal, n = cos y + sin v, with y
-  // and v = (cos swivel, 0, sin swivel) in the disc's plane. What the turn adds from there to the rim is square to n.
+  // The motion of that centre relative to the cutter, by s. The normal n = cos y + sin v is perpendicular to it, with y
+  // and v = (cos swivel, 0, sin swivel) in the disc's plane. The rotation's contribution from the centre to the rim is
+  // perpendicular to n.
   const double turn = tan_spiral_ / radius;
   const double v_y = rho * tan_cone_ * std::cos(phi_) - turn * z;
   const double v_z = rho * tan_cone_ * std::sin(phi_) + turn * y;
@@ -184,7 +185,7 @@ ReliefPath::Place ReliefPath::surfaceOf(double x, double w) const noexcept {
   const double s = formedAt(x, w);
   const Point p = contactPoint(s, w);
   const double angle = std::atan2(p.z, p.y);
-  // From the edge in this section: it turns on from s to x.
+  // The edge in this section, which turns on from s to x.
   const double t = (x - s) * tan_cone_ / (radius_ + s * tan_cone_);
   const double ratio = t == 0 ? 1 : std::log1p(t) / t;
   const double turned = tan_spiral_ * (x - s) / (radius_ + s * tan_cone_) * ratio;
@@ -211,14 +212,14 @@ double ReliefPath::touchDepth(double s) const noexcept {
   const double x = s + wheel_radius_ * normal_x_ + contact_ * sin_;
   const double y = rho * at * std::cos(phi_) + wheel_radius_ * normal_y_;
   const double z = rho * at * std::sin(phi_) + wheel_radius_ * normal_z_ - contact_ * cos_;
-  // By how much a point of the rim is below the blank, toward the axis.
+  // The depth of a point of the rim below the blank's surface.
   const auto below = [&](double w, double sine) {
     const double p_x = x - w * sin_ + wheel_radius_ * sine * cos_;
     const double p_z = z + w * cos_ + wheel_radius_ * sine * sin_;
     const double p_y = y - wheel_radius_ * std::sqrt(1 - sine * sine);
     const double blank = radius_ + p_x * tan_cone_;
     const double square = blank > 0 ? blank * blank - p_z * p_z : 0;
-    // Beside the blank, the nearer to it the better, so that the search finds it.
+    // Beside the blank, the value falls with the distance from it, to guide the search.
     return square > 0 ? std::sqrt(square) - p_y : -std::abs(p_z) - p_y;
   };
   const auto of_place = [&](double w) {

@@ -89,7 +89,7 @@ std::uint64_t SCurveProfile::skipCruise(double dt, double margin, std::uint64_t 
   const double end = segment_ + 1 < segment_count_ ? segments_[segment_ + 1].start_time : end_time_;
   std::uint64_t count = 0;
   for (; count + 2 <= at_most && time_ + 2 * dt < end - 2 * margin; count += 2) {
-    // One by one, to round as advance() does.
+    // Two separate additions, to round as advance() does.
     time_ += dt;
     time_ += dt;
   }
@@ -98,7 +98,7 @@ std::uint64_t SCurveProfile::skipCruise(double dt, double margin, std::uint64_t 
 }
 
 SCurveProfile::State SCurveProfile::after(const State& s, double jerk, double t) noexcept {
-  // At constant speed, which is most of the time: the same figures without a division.
+  // At constant speed, which is most of the time: the same result without a division.
   if (jerk == 0 && s.acceleration == 0) return {s.position + t * s.speed, s.speed, 0};
   return {s.position + t * (s.speed + t * (s.acceleration / 2 + t * jerk / 6)),
           s.speed + t * (s.acceleration + t * jerk / 2), s.acceleration + t * jerk};

@@ -6,7 +6,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kRounding = 1e-12;  ///< of the flute's length: a pair that ends so near to its end ends there
+constexpr double kRounding = 1e-12;  ///< relative distance from the flute's end that counts as its end
 
 void add(StepTable& table, const LogCurve& curve, const CurvePoint& point) {
   double& max = table.rows.size() % 2 == 1 ? table.max_odd_error : table.max_even_error;

@@ -16,7 +16,7 @@ namespace grinder {
 namespace {
 
 constexpr double kNoStep = 1e-9;           ///< [m]
-constexpr std::size_t kShankSections = 8;  ///< at once, until one is whole
+constexpr std::size_t kShankSections = 8;  ///< sections computed at once, until one is whole
 
 struct Layer {
   double x;
@@ -32,7 +32,7 @@ OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution
           !cutter.reliefs(0).empty()};
 }
 
-/// The sections of cone and shank, with the layers between them.
+/// The sections of cone and shank, and the layers between them.
 std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
                             const OutlineGrid& grid) {
   std::vector<Layer> layers;
@@ -69,7 +69,7 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
     const auto& outline = layers.back().outline;
     return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
   };
-  // Without a step there is no ring between cone and shank: it would be seen as a line of slivers.
+  // Without a step there must be no ring between cone and shank: it would appear as a line of slivers.
   const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
   const std::size_t first = is_step ? 0 : 1;
   const auto shank_x = [&](std::size_t i) {
@@ -88,12 +88,12 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
   return layers;
 }
 
-/// Corners of a part, by indices of vertices.
+/// Corners of a triangle or a tetrahedron, as indices of vertices.
 using Triangle = std::array<std::uint32_t, 3>;
 using Tetrahedron = std::array<std::uint32_t, 4>;
 
-/// A section divided into triangles. Each body between two flutes has rings and columns, since the axis is not to be
-/// seen from every point of an undercut wall. Besides the points of the outline there are those within it.
+/// A section divided into triangles. Each body between two flutes has rings and columns, since an undercut wall hides
+/// the axis from some of its points. There are points inside the outline, too.
 class SectionMesh {
  public:
   SectionMesh(const OutlineGrid& grid, CutDirection direction) : grid_(grid), centre_(index(grid.teeth, 0, 1)) {
@@ -109,11 +109,11 @@ class SectionMesh {
     }
   }
 
-  /// Counterclockwise as seen from the shank; those of the bodies one after another.
+  /// Triangles, counterclockwise as seen from the shank, body by body.
   const std::vector<Triangle>& triangles() const { return triangles_; }
   std::uint16_t toothOf(std::size_t triangle) const { return tooth_[triangle / (triangles_.size() / grid_.teeth)]; }
 
-  /// The points of a section: its outline, and those within it, the centre last.
+  /// The points of a section: its outline, then the points inside it, the centre last.
   std::vector<PolarPoint> points(const std::vector<PolarPoint>& outline) const {
     std::vector<PolarPoint> all = outline;
     for (std::size_t body = 0; body < grid_.teeth; ++body) {
@@ -134,7 +134,7 @@ class SectionMesh {
   std::uint32_t index(std::size_t body, std::size_t ring, std::size_t column) const {
     return static_cast<std::uint32_t>(grid_.size() + (body * grid_.rings + ring) * (grid_.columns - 1) + column - 1);
   }
-  /// A point of a body: ring 0 joins the floors of its two flutes, the last one is the land.
+  /// A point of a body: ring 0 joins the floors of its two flutes, and the last ring is the land.
   std::uint32_t at(std::size_t body, std::size_t ring, std::size_t column) const {
     if (ring == grid_.rings) return static_cast<std::uint32_t>(grid_.land(body, column));
     if (column == 0) return static_cast<std::uint32_t>(grid_.high(body, ring));
@@ -146,14 +146,14 @@ class SectionMesh {
   OutlineGrid grid_;
   std::uint32_t centre_;
   std::vector<Triangle> triangles_;
-  std::vector<std::uint16_t> tooth_;  ///< by bodies
+  std::vector<std::uint16_t> tooth_;  ///< tooth of each body
 };
 
-/// Joins layers to a solid.
+/// Joins layers into a solid.
 class Joiner {
  public:
   /// @param turns_on whether the outlines turn toward higher indices from layer to layer.
-  /// @param with_inside whether what lies within is divided into tetrahedra as well.
+  /// @param with_inside whether the inside is divided into tetrahedra, too.
   Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, bool with_inside)
       : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), with_inside_(with_inside) {}
 
@@ -166,15 +166,15 @@ class Joiner {
     }
   }
 
-  /// What is between the two layers added last.
-  /// @param is_step they are at the same X.
+  /// Joins the two layers added last.
+  /// @param is_step whether they are at the same X.
   void joinLayers(bool is_step) {
     const auto n = static_cast<std::uint32_t>(grid_.size());
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t next = (i + 1) % n;
       const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid_.kind(i, direction_);
       const auto tooth = static_cast<std::uint16_t>(grid_.tooth(i, direction_));
-      // The diagonal goes against the turn, as in the tetrahedra: the other one would make scales of a land.
+      // The diagonal runs against the turn, as in the tetrahedra: the other diagonal would roughen a land.
       const bool up = (i < next) != turns_on_;
       const std::uint32_t from = up ? i : next, to = up ? next : i;
       addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
@@ -184,7 +184,7 @@ class Joiner {
     for (const Triangle& t : mesh_.triangles()) addPrism(t);
   }
 
-  /// The face at the layer added last.
+  /// Closes the solid at the layer added last.
   void close(bool toward_shank) {
     for (std::size_t i = 0; i < mesh_.triangles().size(); ++i) {
       auto [a, b, c] = mesh_.triangles()[i];
@@ -213,8 +213,9 @@ class Joiner {
   }
 
  private:
-  /// What is between a triangle of the last layer but one and that of the last. The diagonals of its sides go from the
-  /// lower index to the higher, or all the other way, so that they fit those of its neighbours.
+  /// Adds the prism between a triangle of the last layer but one and the same triangle of the last layer. The diagonals
+  /// of its sides all run from the lower index to the higher, or all the other way, so that they match the neighbours'
+  /// diagonals.
   void addPrism(Triangle t) {
     const auto tetrahedron = [&, odd = isOdd(t) != turns_on_](std::uint32_t a, std::uint32_t b, std::uint32_t c,
                                                               std::uint32_t d) {
@@ -228,7 +229,7 @@ class Joiner {
     tetrahedron(begin_ + a, end_ + a, end_ + b, end_ + c);
   }
 
-  /// Whether sorting turns it over.
+  /// Whether sorting the corners turns the triangle over.
   static bool isOdd(const Triangle& t) { return (t[0] > t[1]) ^ (t[1] > t[2]) ^ (t[0] > t[2]); }
 
   static bool hasArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {

@@ -15,26 +15,26 @@ namespace grinder {
 
 namespace {
 
-constexpr double kExact = 1e-6;  ///< of the angles [rad], and of the cores by the asked ones
+constexpr double kExact = 1e-6;  ///< tolerance for exact angles [rad], and for cores relative to the asked ones
 constexpr double kEven = 0.001 * units::kDegree;
-constexpr int kShifts = 4;                       ///< of the rake at the ends
-constexpr double kNearEnough = 5;                ///< by the tolerances: an error that more weight may bring within them
-constexpr double kWellWithin = 0.9;              ///< of the tolerances, that such a fit aims at
-constexpr int kEveningPowers[] = {3, 5, 9, 15};  ///< odd, for the errors to keep their signs
-constexpr int kEvenings = 4;                     ///< with each of them, as long as they gain
-constexpr double kNoEvening = 1e-3;              ///< of the tolerances
-constexpr double kLandAsked = 0.01;              ///< of the diameter, where a land is looked for
-constexpr double kNoLack = 1e-3;                 ///< of it and of the tolerances, that is left lacking
-constexpr int kStepsBetweenSections = 4;         ///< where errors are weighed by their tolerances
-constexpr double kNoGain = 1e-2;                 ///< of a step, of the errors, that ends a fit
-/// [rad], of the taper, and of the small end's radius: large enough that the places of extrema, known to 1e-8, are no
-/// noise in a difference.
+constexpr int kShifts = 4;                       ///< number of shifts of the asked rake at the ends
+constexpr double kNearEnough = 5;                ///< error, per tolerance, that more weight may still reduce to 1
+constexpr double kWellWithin = 0.9;              ///< target of such a fit, as a fraction of the tolerances
+constexpr int kEveningPowers[] = {3, 5, 9, 15};  ///< odd powers, so that the errors keep their signs
+constexpr int kEvenings = 4;                     ///< maximum number of steps with each power, as long as they gain
+constexpr double kNoEvening = 1e-3;              ///< minimum gain, as a fraction of the tolerances
+constexpr double kLandAsked = 0.01;              ///< land that is looked for, as a fraction of the diameter
+constexpr double kNoLack = 1e-3;                 ///< negligible lack of land or tolerance, as a fraction of each
+constexpr int kStepsBetweenSections = 4;         ///< steps between the sections that are weighed by tolerance
+constexpr double kNoGain = 1e-2;                 ///< relative gain of a step below which a fit ends
+/// Step of a numerical derivative [rad], of the taper, and as a fraction of the small end's radius: large enough that
+/// the positions of extrema, known to 1e-8, cause no noise in a difference.
 constexpr double kFigureStep = 1e-4;
-constexpr double kMinSpiral = 1e-3;  ///< below whose tangent a shift has no effect
-/// The first keeps a fit near its start along a valley of equally good set-ups.
+constexpr double kMinSpiral = 1e-3;  ///< spiral angle below whose tangent a shift along X has no effect
+/// The initial damping keeps a fit near its start along a valley of equally good set-ups.
 constexpr double kDamping = 1e-3, kMinDamping = 1e-9, kMostDamping = 1e6, kDampingFactor = 8;
 
-/// What a figure may differ by: a tolerance of 0 asks for it exactly.
+/// The maximum allowed error; a tolerance of 0 asks for the exact value.
 double allowed(double tolerance) { return std::max(tolerance, kExact); }
 
 double maxOf(const Eigen::ArrayXd& errors) {
@@ -42,7 +42,7 @@ double maxOf(const Eigen::ArrayXd& errors) {
   return errors.allFinite() ? errors.abs().maxCoeff() : std::numeric_limits<double>::infinity();
 }
 
-/// A damped fit (Levenberg, Marquardt) of the figures of a set-up that are free.
+/// A damped fit (Levenberg, Marquardt) of the free figures of a set-up.
 class DampedFit {
  public:
   using Errors = std::function<Eigen::ArrayXd(const SetupPoint&)>;
@@ -56,7 +56,8 @@ class DampedFit {
     if (request.core_diameter_end && !trial.isCylinder()) figures_.push_back(&SetupPoint::taper);
   }
 
-  /// @param enough the maximum error at which the fit may end. @param most steps.
+  /// @param enough maximum error at which the fit may end.
+  /// @param most maximum number of steps.
   /// @return nothing if the start gives no tool.
   std::optional<SetupPoint> solve(SetupPoint point, const Errors& errors_of, double enough,
                                   int most = kFitSteps) const {
@@ -96,7 +97,7 @@ class DampedFit {
     return squares.ldlt().solve(-by_figure.transpose() * errors);
   }
 
-  /// At the end of the machine's range the other figures make the best of it.
+  /// The damped step; if it reaches the limit of the swivel, the other figures are fitted for the swivel at the limit.
   Eigen::VectorXd stepWithin(const SetupPoint& point, const Eigen::MatrixXd& by_figure, const Eigen::VectorXd& errors,
                              double damping) const {
     Eigen::VectorXd step = dampedStep(by_figure, errors, damping);
@@ -110,7 +111,8 @@ class DampedFit {
     return step;
   }
 
-  /// Goes a step that makes the errors smaller. @return false if there is none.
+  /// Takes a step that reduces the errors.
+  /// @return false if there is none.
   bool step(SetupPoint& point, Eigen::VectorXd& errors, double& damping, const Errors& errors_of) const {
     const auto count = static_cast<Eigen::Index>(figures_.size());
     Eigen::MatrixXd by_figure(errors.size(), count);
@@ -140,10 +142,10 @@ class DampedFit {
   const SetupTrial& trial_;
   const SetupRequest& request_;
   bool is_height_tied_;
-  std::vector<double SetupPoint::*> figures_;  ///< that are free
+  std::vector<double SetupPoint::*> figures_;  ///< the free figures
 };
 
-/// @param rake that both ends shall have.
+/// @param rake asked rake at both ends.
 std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
                                double rake) {
   const auto errors_of = [&](const SetupPoint& point) {
@@ -158,7 +160,8 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
   return EndsFit{*found, maxOf(errors_of(*found)) <= kExact};
 }
 
-/// All errors over the flute, each by its tolerance. @param chord_from below which that of the chords is none.
+/// All errors over the flute, per tolerance.
+/// @param chord_from chordal error, per tolerance, that counts as none.
 Eigen::ArrayXd weighedErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point,
                              double chord_from) {
   const CutterGeometry& c = request.cutter;
@@ -254,7 +257,8 @@ std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& requ
 
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
                                        int most) {
-  // Within its tolerance a chord is none of the errors: the rake at the edge is to be as asked.
+  // A chord within its tolerance counts as no error, so that the rake at the edge comes as near as possible to the
+  // asked one.
   const auto errors_of = [&](const SetupPoint& point) { return weighedErrors(trial, request, point, kWithin); };
   return DampedFit(trial, request).solve(start, errors_of, 0, most);
 }

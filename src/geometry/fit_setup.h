@@ -9,61 +9,64 @@
 
 namespace grinder {
 
-constexpr int kFitSteps = 40;     ///< at most
-constexpr double kWithin = 0.98;  ///< of the tolerances, for a set-up to be taken: figures are rounded, the wheel wears
+constexpr int kFitSteps = 40;     ///< maximum number of steps of a fit
+constexpr double kWithin = 0.98;  ///< fraction of the tolerances for a set-up: figures are rounded, the wheel wears
 
-/// What a set-up makes of the tool, less what is asked; NaN where the wheel does not reach it.
+/// The errors of a set-up's tool against the asked values; NaN where the wheel does not reach it.
 struct SetupErrors {
-  Eigen::ArrayXd rake;    ///< in sections at equal distances, the flute's ends among them [rad]
-  Eigen::ArrayXd turn;    ///< of the edge from each section to the next, as a spiral angle [rad]
-  Eigen::ArrayXd spiral;  ///< of the edge in the sections; none if they are the ends alone [rad]
-  Eigen::ArrayXd chord;   ///< the chordal rake in the sections; none if they are the ends alone [rad]
-  Eigen::ArrayXd core;    ///< of the asked diameters, by that of the small end; if both are asked, in the sections
+  Eigen::ArrayXd rake;    ///< rake in equidistant sections, including the flute's ends [rad]
+  Eigen::ArrayXd turn;    ///< turn of the edge from each section to the next, as a spiral angle [rad]
+  Eigen::ArrayXd spiral;  ///< spiral angle of the edge in the sections; empty for the ends alone [rad]
+  Eigen::ArrayXd chord;   ///< chordal rake in the sections; empty for the ends alone [rad]
+  Eigen::ArrayXd core;    ///< core diameters, relative to the small end's; if both are asked, in the sections
 
-  /// The maximum error by its tolerance: 1 or less is within them; infinite if there is none.
+  /// The maximum error per tolerance: up to 1 is within the tolerances; infinite if there is no tool.
   double worst(const SetupRequest& request) const;
 };
 
-/// @param trial of a right-hand cutter. @param request of the same. @param steps between sections; a cylinder, whose
-///        edge turns as asked in any set-up, has one section.
+/// @param trial trial of a right-hand cutter.
+/// @param request request for the same cutter.
+/// @param steps steps between sections; a cylinder, whose edge turns as asked in any set-up, has one section.
 SetupErrors setupErrors(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point, int steps);
 
-/// Whether a shift is looked for: it has no effect on a cylinder, nor on straight flutes.
+/// Whether to look for a shift along X: it has no effect on a cylinder or on straight flutes.
 bool hasShift(const SetupTrial& trial, const SetupRequest& request);
 
-/// Whether the height follows the swivel, so that the wheel's face passes the axis at the height R sin r: on a cylinder
-/// of which neither another figure is kept nor all are asked.
+/// Whether the height follows the swivel, so that the wheel's face passes the axis at the height R sin r. This is so on
+/// a cylinder unless another figure is fixed or all are asked.
 bool isHeightTied(const SetupTrial& trial, const SetupRequest& request);
 
-/// The height of the wheel for its upper face to pass the axis at the height R sin r [m].
+/// The height at which the wheel's upper face passes the axis at the height R sin r [m].
 double tiedHeight(const SetupTrial& trial, const SetupRequest& request, double swivel);
 
-/// Whether the depth is looked for.
+/// Whether to look for the depth.
 bool findsDepth(const SetupTrial& trial, const SetupRequest& request);
 
-/// What a fit to the flute's ends has come to.
+/// The result of a fit to the flute's ends.
 struct EndsFit {
   SetupPoint point;
-  bool is_exact = false;  ///< gives all that is asked at the ends; else it comes near it
+  bool is_exact = false;  ///< whether it gives all asked values at the ends, rather than near them
 };
 
-/// Fits a set-up to what is asked at the ends: the rake at both, the angle of the edge between them, and the cores. By
-/// the published law of Z the rake rises or falls between the ends, so an exact one gives both the same error of the
-/// other sign: the set-up with the minimum of the maximum error over the flute.
-/// @param trial, request as of setupErrors(). @param start from which it is looked for.
+/// Fits a set-up to the asked values at the ends: the rake at both ends, the angle of the edge between them, and the
+/// cores. With the published law of Z the rake rises or falls between the ends, so an exact fit gives both ends an
+/// error opposite to the one between them: the set-up with the minimum of the maximum error over the flute.
+/// @param trial, request see setupErrors().
+/// @param start start of the fit.
 /// @return nothing if the start gives no tool.
 std::optional<EndsFit> fitEnds(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
-/// The set-up near a start with the least sum of squares of all errors over the flute, each by its tolerance.
-/// @param most steps of the fit. @return nothing if the start gives no tool.
+/// The set-up near a start with the minimum sum of squares of all errors over the flute, per tolerance.
+/// @param most maximum number of steps of the fit.
+/// @return nothing if the start gives no tool.
 std::optional<SetupPoint> nearestSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start,
                                        int most = kFitSteps);
 
-/// The same with the least sums of ever higher powers, in which the maximum error counts most: what it takes to bring
-/// the last error within its tolerance. As it is where all are, or one is far beyond.
+/// The set-up near another one with the minimum sums of ever higher powers of the errors, in which the maximum error
+/// counts most, to bring the last error within its tolerance. Unchanged if all errors are within, or one is far beyond.
 SetupPoint evenedSetup(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest);
 
-/// The set-up near a start whose teeth have a land, with all errors within their tolerances, as far as there is one.
+/// The set-up near a start whose teeth have a land, with all errors within their tolerances, as far as possible.
 SetupPoint setupWithLand(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& start);
 
 }  // namespace grinder

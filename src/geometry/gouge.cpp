@@ -13,9 +13,9 @@ namespace grinder {
 
 namespace {
 
-constexpr int kEvenSections = 6;   ///< beside those where the axes were farthest off
-constexpr int kCompared = 4;       ///< of a section, on which the walls are compared
-constexpr int kPlacesOfWall = 16;  ///< of a wall, from which the nearest is refined
+constexpr int kEvenSections = 6;   ///< equidistant sections, in addition to those where the axes were farthest off
+constexpr int kCompared = 4;       ///< circles of a section on which the walls are compared
+constexpr int kPlacesOfWall = 16;  ///< places of a wall from which the nearest one is refined
 constexpr std::uintmax_t kNearestSteps = 60;
 
 /// X of the sections in which a stroke is measured.
@@ -42,26 +42,26 @@ std::vector<double> sectionsOf(const RunStroke& stroke, const Range& blank) {
   return sections;
 }
 
-/// What a job asks for of a tooth, as if at angle 0.
+/// The flute that a job asks for, for a tooth at angle 0.
 struct Asked {
   const WheelSweep& sweep;
   ConicalCutter cutter;
 
-  /// How far another sweep goes beyond it in a section, if farther than `min`; else no more than that [m].
+  /// The maximum depth of another sweep beyond the flute in a section, if greater than `min`; else at most `min` [m].
   double gouge(const WheelSweep& other, double x, double min) const {
     const double radius = cutter.radius(x);
     const double core = std::min(radius, sweep.minRadius(x, radius));
     const double floor = std::min(radius, other.minRadius(x, radius));
     double depth = core - floor;
     for (int i = 1; i <= kCompared; ++i) {
-      const double u = static_cast<double>(i) / kCompared;  // closer to one another toward the floor
+      const double u = static_cast<double>(i) / kCompared;  // circles closer together toward the floor
       const double r = floor + (radius - floor) * u * u;
       const auto ground = other.arc(x, r);
       if (!ground) continue;
       const auto own = sweep.arc(x, r);
       for (const bool high : {false, true}) {
         const double angle = high ? ground->high : ground->low;
-        // The flute is no farther than its wall is along the circle.
+        // The distance to the flute is at most the distance to its wall along the circle.
         const double along = own ? r * (high ? angle - own->high : own->low - angle) : core - r;
         if (own ? along > std::max(depth, min) : core < radius)
           depth = std::max(depth, distance(x, r, angle, core, along));
@@ -71,7 +71,7 @@ struct Asked {
   }
 
  private:
-  /// From a point to the nearest of the flute's walls, which go on above the blank as far as `above`.
+  /// The distance from a point to the nearest of the flute's walls, which continue above the blank by `above`.
   double distance(double x, double r, double angle, double core, double above) const {
     const double highest = std::min(cutter.radius(x) + above, 2 * cutter.radius(x) - core) - core;
     double nearest = std::numeric_limits<double>::max();

@@ -14,20 +14,21 @@ namespace grinder {
 
 namespace {
 
-/// For the slope of the edge, of the blank's radius: small against the curvature, large against rounding.
+/// Step for the slope of the edge, as a fraction of the blank's radius: small enough for the curvature, large enough
+/// for rounding.
 constexpr double kDifference = 1e-4;
-constexpr int kRings = 64;             ///< for the area of a section
-constexpr double kChordalDepth = 0.1;  ///< of the flute's depth
-constexpr int kRingsOfDepth = 6;       ///< on which a flute must be complete
-constexpr int kRingsOfLand = 8;        ///< on which something of a tooth must be left
+constexpr int kRings = 64;             ///< rings for the area of a section
+constexpr double kChordalDepth = 0.1;  ///< depth of the chord, as a fraction of the flute's depth
+constexpr int kRingsOfDepth = 6;       ///< rings on which a flute must be complete
+constexpr int kRingsOfLand = 8;        ///< rings on which a tooth must have material left
 constexpr double kRangeAccuracy = 10e-6;
-constexpr double kSameArcEnd = 1e-6;  ///< of arcs of several strokes [m]
+constexpr double kSameArcEnd = 1e-6;  ///< tolerance for equal ends of the arcs of several strokes [m]
 constexpr double kSamePitch = 1e-9;   ///< [rad]
 
-/// An angle within one turn.
+/// An angle reduced to one turn.
 double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
 
-/// How much of a turn some arcs cover together.
+/// The angle that some arcs cover together.
 double covered(std::vector<Arc>& arcs) {
   std::vector<Arc> parts;
   for (const Arc& arc : arcs) {
@@ -136,7 +137,7 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
   const double depth = cutter_.radius(x) - core_radius;
   double area = 0;
   for (int i = 0; i < kRings; ++i) {
-    // Closer to one another toward the core, where the arcs open like a root.
+    // Rings closer together toward the core, where the arcs open like a square root.
     const double u = (i + 0.5) / kRings;
     const double r = core_radius + depth * u * u;
     std::vector<std::optional<Arc>> of_flutes;
@@ -156,7 +157,7 @@ double GroundCutter::areaRemoved(double x, double core_radius) const {
 }
 
 GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {
-  // Behind an edge that moves toward falling angles lies what has larger ones.
+  // Behind an edge that moves toward falling angles are larger angles.
   const std::size_t n = teeth_.size();
   const bool right = direction() == CutDirection::kRightHand;
   const std::size_t next = right ? (tooth + 1) % n : (tooth + n - 1) % n;
@@ -172,7 +173,7 @@ void GroundCutter::measureLand(std::size_t tooth, const std::vector<ToothSection
   const bool right = direction() == CutDirection::kRightHand;
   const double turn = *measured[other].edge - *measured[own].edge;
   const double land = section.least_land = behind.pitch + (right ? turn : -turn) - *measured[other].flute;
-  // Deep flutes of many teeth may meet below the land.
+  // Deep flutes may meet below the land, if there are many teeth.
   for (std::size_t i = 0; i < arcs[own].size(); ++i) {
     const auto &a = arcs[own][i], &b = arcs[other][i];
     if (!a || !b) continue;
@@ -205,7 +206,7 @@ bool GroundCutter::arcIsComplete(const Flute& flute, double x, double r) const {
     min = std::min(min, arc->low);
     max = std::max(max, arc->high);
   }
-  // Whether an end is complete is for the stroke to say that goes farthest there; of those that go as far, for any.
+  // An end is complete if the stroke that goes farthest there says so; of several equally far strokes, any.
   const auto complete = [&](double Arc::*angle, double Arc::*axis_x, double farthest, bool high) {
     return std::any_of(reached.begin(), reached.end(), [&](const auto& one) {
       const auto& [sweep, arc] = one;

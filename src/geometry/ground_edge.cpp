@@ -8,7 +8,7 @@ namespace {
 
 using Place = GroundEdge::Place;
 
-/// Linear in one member between the places beside its value.
+/// Interpolates linearly by one member between the places next to its value.
 Place between(const std::vector<Place>& places, double Place::*member, double value) noexcept {
   const auto is_less = [member](const Place& place, double v) { return place.*member < v; };
   const auto after = std::lower_bound(places.begin(), places.end(), value, is_less);

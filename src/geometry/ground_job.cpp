@@ -14,16 +14,16 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSections = 8;      ///< of the flute's length, between those that are measured
-constexpr int kRingsToSpoil = 6;  ///< of a section, at which a stroke may spoil it
+constexpr int kSections = 8;      ///< number of intervals between the measured sections of the flute
+constexpr int kRingsToSpoil = 6;  ///< rings of a section at which a stroke may spoil it
 constexpr double kNoFigure = std::numeric_limits<double>::quiet_NaN();
-constexpr double kSameWear = 20e-6;  ///< whose change of the wheel's curvature a check does not see [m]
+constexpr double kSameWear = 20e-6;  ///< difference of wear that changes a check negligibly, by the curvature [m]
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
 }
 
-/// Of every tooth, the wheel's wear in its deepest pass: the first at full depth, for which the wheel is largest [m].
+/// The wheel's wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
 std::vector<double> wearOfTeeth(const ValidJob& job) {
   const std::vector<double>& depths = job.depths();
   const auto deepest = std::max_element(depths.begin(), depths.end()) - depths.begin();
@@ -34,7 +34,7 @@ std::vector<double> wearOfTeeth(const ValidJob& job) {
   return wear;
 }
 
-/// As WheelSweep::overcutStart(), of the first of some circles of a section.
+/// See WheelSweep::overcutStart(), for the first of some circles of a section.
 std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, double radius) {
   std::optional<double> first = sweep.overcutStart(x, radius);
   if (!first) return first;  // the wheel reaches no other circle from farther away
@@ -46,7 +46,7 @@ std::optional<double> sectionSpoilsFrom(const WheelSweep& sweep, double x, doubl
   return first;
 }
 
-/// The edge of a tooth, in the sections that have one.
+/// The edge of a tooth, from the sections that have one.
 GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<GroundSection>& sections) {
   const StrokeLaw& law = job.strokeLaw(static_cast<int>(tooth));
   const LogCurve curve(ConicalCutter(law.cutter), law.x_shift);
@@ -55,14 +55,14 @@ GroundEdge edgeOf(const ValidJob& job, std::size_t tooth, const std::vector<Grou
     const ToothSection& at = section.teeth[tooth];
     if (!at.edge) continue;
     double wheel_x = job.relief(0) != nullptr ? section.x + law.x_shift : at.edge_wheel_x;
-    // Where the stroke's end forms several sections, their extrema are no more exact than that.
+    // Sections formed by the stroke's end have inexact extrema; the order is kept.
     if (!places.empty()) wheel_x = std::max(wheel_x, places.back().wheel_x);
     places.push_back({section.x, wheel_x, *at.edge - law.a - curve.a(wheel_x)});
   }
   return GroundEdge(std::move(places));
 }
 
-/// Collects what is wrong with a cutter.
+/// Collects the faults of a cutter.
 class Checker {
  public:
   explicit Checker(const ValidJob& job) : job_(job) {}
@@ -78,7 +78,8 @@ class Checker {
     checkCore(section, std::all_of(section.teeth.begin(), section.teeth.end(), complete));
   }
 
-  /// How far the edges turn between two sections. Where each is within the tolerance everywhere, so is this.
+  /// Checks the turn of the edges between two sections. It is within the tolerance if each edge's angle is so
+  /// everywhere.
   void checkTurn(const GroundSection& from, const GroundSection& to) {
     if (job_.relief(0) != nullptr) return;
     for (std::size_t i = 0; i < to.teeth.size(); ++i) {
@@ -101,7 +102,7 @@ class Checker {
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
   }
 
-  /// The stroke may not go so near to the cone's apex that it spoils the flute.
+  /// Checks that the stroke does not go so near to the cone's apex that it spoils the flute.
   void checkOvertravel(const GroundCutter& cutter) {
     if (job_.relief(0) != nullptr) return;
     const bool opens = cutter.cutter().tanCone() >= 0;
@@ -120,11 +121,11 @@ class Checker {
     }
   }
 
-  /// Of each kind the first one: a fault of the set-up shows in every section of every tooth.
+  /// The first reason of each kind: a fault of the set-up shows in every section of every tooth.
   std::vector<Reason> take() { return std::move(reasons_); }
 
  private:
-  /// Those of the operation that is planned. An edge has no spiral angle at the cone's apex.
+  /// Checks the figures of the planned operation. An edge has no spiral angle at the cone's apex.
   void checkFigures(const FigurePlace& place) {
     for (const ToolFigureRow& row : kToolFigures) {
       const ToolFigure figure = row.value;
@@ -144,7 +145,8 @@ class Checker {
     checkFigures({job_, section, i});
   }
 
-  /// A primary relief may end on the land where a secondary one follows, behind where that begins.
+  /// Checks a relief. A primary relief may end on the land if a secondary one follows, but behind the secondary's
+  /// start.
   void checkRelief(const GroundSection& section, std::size_t i) {
     const int number = static_cast<int>(i);
     const ReliefSection relief = section.teeth[i].relief.value_or(ReliefSection{});
@@ -160,7 +162,7 @@ class Checker {
     }
   }
 
-  /// Where a flute is not complete, the core may be too thick only.
+  /// Checks the core. Where a flute is not complete, only a core that is too thick is a fault.
   void checkCore(const GroundSection& section, bool complete) {
     const double core = 2 * section.core_radius, asked = askedCore(job_->cutter, section.x);
     const double tolerance = job_->cutter.core_tolerance;
@@ -168,7 +170,7 @@ class Checker {
     add(ReasonKind::kCoreSize, section.x, 0, Unit::kMetre, core, asked, tolerance);
   }
 
-  /// What the flutes leave is checked with them.
+  /// Checks the core that reliefs leave; the flutes' core is checked with them.
   void checkReliefCore(const GroundSection& section) {
     const auto least = [&](const ToothSection& t) { return t.relief && t.relief->core_radius <= section.core_radius; };
     if (std::none_of(section.teeth.begin(), section.teeth.end(), least)) return;
@@ -179,7 +181,7 @@ class Checker {
         "the height or the swivel of the relief's set-up");
   }
 
-  /// From a tooth to the one whose flute bounds its land [rad].
+  /// The angle from a tooth to the one whose flute bounds its land [rad].
   double pitch(std::size_t tooth) const {
     const std::vector<double>& angles = job_->tooth_angles;
     const std::size_t before =
@@ -200,7 +202,8 @@ class Checker {
   std::vector<Reason> reasons_;
 };
 
-/// The reliefs of a job up to an operation, on flutes. @param flutes the cutter with them.
+/// Adds the reliefs of a job, up to an operation, to flutes.
+/// @param flutes cutter with the flutes.
 GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last) {
   std::vector<Reliefs> reliefs(flutes.flutes().size());
   for (int i = 1; i <= last; ++i) {
@@ -209,7 +212,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, i
     const std::vector<double> wear = wearOfTeeth(relief);
     for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
-      if (own.size() >= static_cast<std::size_t>(i)) continue;  // of a tooth that shares the flute
+      if (own.size() >= static_cast<std::size_t>(i)) continue;  // a tooth that shares the flute has added it
       const int number = static_cast<int>(tooth);
       own.push_back({sweepOf(relief, number, wear[tooth], strokeOf(relief, number, relief.deepest(), wear[tooth]))});
     }
@@ -217,7 +220,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, i
   return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs));
 }
 
-/// @param same_wear difference of the wheel's wear up to which teeth share a flute [m].
+/// @param same_wear maximum difference of the wheel's wear for teeth to share a flute [m].
 GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
   if (job.relief(0) != nullptr) return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), job->operation);
   const std::vector<double> wear = wearOfTeeth(job);

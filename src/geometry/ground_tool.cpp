@@ -15,9 +15,9 @@ namespace {
 using units::kMillimetre;
 
 constexpr int kVolumeSections = 12;
-constexpr double kMinGouge = 1e-6;  ///< below that it is the averaging of positions [m]
+constexpr double kMinGouge = 1e-6;  ///< depth up to which a gouge may come from averaging positions [m]
 
-/// The deepest, if it is worth a reason.
+/// The reason for the deepest gouge, if it is deep enough.
 std::optional<Reason> reasonOf(const std::vector<Gouge>& gouges) {
   const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
   const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);

@@ -17,23 +17,23 @@ namespace grinder {
 
 namespace {
 
-constexpr int kMaxLengthenings = 4;  ///< of the overtravel
-constexpr double kSpare = 2e-5;      ///< added to what it lacks, for the precision of that [m]
-constexpr double kRoom = 0.02;       ///< of the flute's length, for a law of Z
+constexpr int kMaxLengthenings = 4;  ///< maximum number of times that the overtravel is lengthened
+constexpr double kSpare = 2e-5;      ///< addition for the precision of the required overtravel [m]
+constexpr double kRoom = 0.02;       ///< additional overtravel for a law of Z, as a fraction of the flute's length
 
-// Decimals in a file. The rake changes by up to 1/R for a height, 0.0006 deg for 10 nm at a radius of 1 mm, and by a
-// few times as much as the swivel.
+// Decimals in a file. The rake changes by up to 1/R per height (0.0006 deg for 10 nm at a radius of 1 mm), and by a few
+// times the change of the swivel.
 constexpr int kAngleDecimals = 4;
 constexpr int kLengthDecimals = 5;
 constexpr int kOvertravelDecimals = 2;
 
-/// The number that a file has with so many decimals [SI].
+/// A value as read back from a file with so many decimals [SI].
 double rounded(double value, double scale, int decimals) {
   const double unit = std::pow(10, decimals);
   return std::round(value / scale * unit) / unit * scale;
 }
 
-/// A number as it is written, without zeros at its end.
+/// A number as written to a file, without trailing zeros.
 std::string textOf(double value, double scale, int decimals) {
   std::string number = format("%.*f", decimals, value / scale);
   number.erase(number.find_last_not_of('0') + 1);
@@ -129,7 +129,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   const CutterGeometry& c = job.cutter;
   r.core_diameter = c.core_diameter;
   r.core_diameter_end = c.core_diameter_end;
-  // A taper to begin with: that of the asked core.
+  // A first taper from the asked cores.
   r.y_per_x = (c.core_diameter_end - c.core_diameter) / 2 / c.flute_length - std::tan(c.cone_angle);
   r.incomplete_ok = p.incomplete_ok;
   r.asks_spiral = true;
@@ -141,13 +141,13 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   return r;
 }
 
-/// The key of a process in the file of a job, which may have several.
+/// The key of a process in a job's file, which may have several processes.
 std::string keyIn(const GrindJob& job, const std::string& key) {
   if (job.operations.empty()) return key;
   return "operations[" + std::to_string(job.operation) + "]" + key.substr(key.find('.'));
 }
 
-/// Puts a figure into the job as it is read from a file, and an edit that writes it there.
+/// Puts a figure into the job as read back from a file, and adds an edit that writes it there.
 void takeFigure(JobSetup& setup, const char* path, double& field, double value, double scale, int decimals) {
   field = rounded(value, scale, decimals);
   JobEdit edit = editOf(path, field, decimals);
@@ -157,7 +157,7 @@ void takeFigure(JobSetup& setup, const char* path, double& field, double value, 
   setup.edits.push_back(edit);
 }
 
-/// Lengthens the overtravel to what the set-up needs, where it is shorter.
+/// Lengthens the overtravel to the set-up's requirement, where it is shorter.
 void takeOvertravel(JobSetup& setup) {
   GrindProcess& p = setup.job.process;
   const auto lengthen = [&](const char* path, double& field, double needed) {
@@ -169,13 +169,13 @@ void takeOvertravel(JobSetup& setup) {
   lengthen("process.overtravel_shank", p.overtravel_shank, setup.overtravel[1]);
 }
 
-/// Puts the solved figures into the job, as they are read from a file.
+/// Puts the solved figures into the job, as read back from a file.
 void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
   GrindProcess& p = setup.job.process;
   const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
     takeFigure(setup, path, field, value, scale, decimals);
   };
-  // A depth that stays keeps the file's decimals.
+  // A fixed depth keeps the file's decimals.
   if (keep != SetupFigure::kDepth || solved.depth != p.depth)
     take("process.depth", p.depth, solved.depth, units::kMillimetre, kLengthDecimals);
   if (keep != SetupFigure::kSwivel) {
@@ -184,7 +184,7 @@ void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& 
   if (keep != SetupFigure::kHeight) {
     take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
   }
-  // A flute of the same depth everywhere needs no other one at its end.
+  // A flute of constant depth needs no depth at its end.
   if (p.depth_end > 0 || solved.depth_end != solved.depth) {
     take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
   }
@@ -207,7 +207,7 @@ bool hasLaws(const ValidJob& job) {
   }
 }
 
-/// Lengthens the overtravel by more than a law of Z takes: with a flute that is not complete there may be none.
+/// Lengthens the overtravel by more than a law of Z needs: an incomplete flute may have no such law.
 void giveRoom(JobSetup& setup) {
   for (double& beyond : setup.overtravel) {
     if (beyond > 0) beyond += kRoom * setup.job.cutter.flute_length;
@@ -215,8 +215,8 @@ void giveRoom(JobSetup& setup) {
   takeOvertravel(setup);
 }
 
-/// Lengthens the overtravel by what it lacks: the solver knows the published law of Z, and another one moves the places
-/// of the stroke where the flute's ends are formed.
+/// Lengthens the overtravel by what is missing: the solver knows the published law of Z, and another law moves the
+/// places of the stroke where the flute's ends are formed.
 /// @return whether it was too short. Near a cone's apex, where no overtravel is enough, it stays.
 bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   const GrindProcess& p = setup.job.process;
@@ -229,7 +229,7 @@ bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   return complete->from > 0 || complete->to < length;
 }
 
-/// Of one of several operations, what is solved goes into the list as well.
+/// Copies the solved operation into the list of several operations.
 void intoList(GrindJob& job) {
   if (!job.operations.empty()) job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
 }
@@ -257,7 +257,7 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   return setup;
 }
 
-/// The job with a solved set-up, and the tool that it then grinds.
+/// The job with a solved set-up, and the tool that it grinds.
 JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
   JobSetup setup;
   setup.job = job;
@@ -274,11 +274,11 @@ JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional
   }
 }
 
-/// Whether a plan's check takes a job with a solved set-up.
+/// Whether a plan's check accepts a job with a solved set-up.
 bool isAccepted(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
   try {
     return setupWith(solved, job, keep).check.reasons.empty();
-  } catch (const std::invalid_argument&) {  // the job is not valid with it, or has no law of Z
+  } catch (const std::invalid_argument&) {  // the job is then not valid, or has no law of Z
     return false;
   }
 }
@@ -292,7 +292,7 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
   return setupWith(std::get<SolvedSetup>(result), job, keep);
 }
 
-/// The set-up found for a job whose numbers were rounded, in the job itself: with what is written into its file.
+/// Transfers the set-up found for a job with rounded numbers to the job itself, with the numbers written into its file.
 JobSetup inJob(GrindJob job, JobSetup setup) {
   visitJobFields([&](const JobField& field, auto of) {
     const std::string key = keyIn(job, fieldName(field.path));

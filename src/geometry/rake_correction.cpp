@@ -11,13 +11,13 @@ namespace grinder {
 namespace {
 
 constexpr int kPieces[] = {4, 8, ZCorrection::kMaxPieces};
-constexpr int kCorrectedSections = 48;  ///< in which the rake is made right
-constexpr int kSteps = 6;               ///< of Newton's method, for one number of pieces
+constexpr int kCorrectedSections = 48;  ///< number of sections in which the rake is corrected
+constexpr int kSteps = 6;               ///< steps of Newton's method for one number of pieces
 constexpr double kGoodEnough = 0.001 * units::kDegree;
-constexpr double kDerivativeStep = 1e-6;  ///< for derivatives by a coefficient, of the radius
+constexpr double kDerivativeStep = 1e-6;  ///< step for derivatives by a coefficient, as a fraction of the radius
 constexpr double kSmooth = 1e-3;          ///< weight of the coefficients' third differences against the rake
 
-/// Of a right-hand cutter.
+/// Computes the correction for a right-hand cutter.
 class Correction {
  public:
   Correction(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, const WheelSetup& setup,
@@ -58,7 +58,7 @@ class Correction {
     return std::max(std::abs(c.min_rake - rake_), std::abs(c.max_rake - rake_));
   }
 
-  /// The rake less what is asked, in sections over the flute; not finite where there is no flute.
+  /// The rake less the asked rake, in sections over the flute; not finite where there is no flute.
   Eigen::VectorXd rakeErrors(const ZCorrection& z) const {
     goOn();
     GrindStroke stroke = stroke_;
@@ -74,8 +74,7 @@ class Correction {
     return errors;
   }
 
-  /// A step of Newton's method in the sense of least squares, with the coefficients held smooth where the rake leaves
-  /// them free.
+  /// A least-squares step of Newton's method, with coefficients kept smooth where the rake does not determine them.
   void improve(ZCorrection& z, const Eigen::VectorXd& errors) const {
     const int n = z.coefficientCount();
     const double h = kDerivativeStep * cutter_.radius(0);

@@ -21,17 +21,17 @@ namespace {
 
 using units::kPi;
 
-constexpr int kTouchSteps = 12;                ///< either way over the ball, from which a touch is refined
-constexpr std::size_t kCandidates = 3;         ///< places of the ball that may touch first
-constexpr int kBits = 20;                      ///< to which a place is refined: the angle is far better
-constexpr std::uintmax_t kMaxTouchSteps = 60;  ///< of a refinement
-constexpr int kDistances = 24;                 ///< that are tried for what is allowed
-constexpr int kDiameterHalvings = 6;           ///< of the diameter, the same
-constexpr double kAtEdge = 10e-6;              ///< nearer to the edge than this is no rake face [m]
+constexpr int kTouchSteps = 12;                ///< steps to either side over the ball before a touch is refined
+constexpr std::size_t kCandidates = 3;         ///< number of places of the ball that may touch first
+constexpr int kBits = 20;                      ///< precision of a refined place: the angle is far better
+constexpr std::uintmax_t kMaxTouchSteps = 60;  ///< maximum number of steps of a refinement
+constexpr int kDistances = 24;                 ///< number of distances tried to find the allowed range
+constexpr int kDiameterHalvings = 6;           ///< number of halvings of the diameter, likewise
+constexpr double kAtEdge = 10e-6;              ///< distance from the edge that is not yet the rake face [m]
 constexpr double kFar = 1e3;                   ///< more than any angle of a wall [rad]
-constexpr double kRounding = 1e-6;             ///< of lengths in texts, and the minimum ball [m]
+constexpr double kRounding = 1e-6;             ///< rounding of lengths in texts, and the minimum ball [m]
 
-/// Why a ball does not come to the rake face.
+/// The result for a ball turned to the rake face; all but kTouches are refusals.
 enum class Fit { kTouches, kOutside, kEdge, kFloor, kOtherWall };
 
 const char* whatItTouches(Fit fit) {
@@ -47,9 +47,9 @@ const char* whatItTouches(Fit fit) {
 
 const Flute& firstFlute(const GroundCutter& cutter) { return cutter.flutes().at(cutter.teeth().at(0).flute); }
 
-/// A ball that turns about the cutter's axis, in the first tooth's flute. On every circle about that axis the ball has
-/// an arc about its centre's angle, and the flute an arc between its walls; the ball is free as long as the first lies
-/// within the second on all circles. So the circle that lets it turn least says where it touches.
+/// A ball that turns about the cutter's axis in the first tooth's flute. On every circle about that axis the ball has
+/// an arc about its centre's angle, and the flute has an arc between its walls. The ball is free as long as its arc
+/// lies within the flute's arc on all circles; it touches on the circle that lets it turn least.
 class TurningBall {
  public:
   TurningBall(const GroundCutter& cutter, double x, double from_axis, double radius)
@@ -57,32 +57,32 @@ class TurningBall {
 
   struct Result {
     Fit fit = Fit::kOutside;
-    double angle = 0;  ///< of the ball's centre in the cutter's frame when it touches the rake face [rad]
+    double angle = 0;  ///< angle of the ball's centre in the cutter's frame when it touches the rake face [rad]
   };
   Result turn() const {
     return resultOf([this](int side) { return first(side); });
   }
 
-  /// The same from a grid of places on the ball alone.
+  /// The result from a grid of places on the ball only.
   Fit coarseFit() const {
     return resultOf([this](int side) { return coarse(side, 1).front(); }).fit;
   }
 
  private:
-  /// A place on the ball, in angles, and the angle that the ball's centre has when it comes to a wall there, times the
-  /// side of that wall.
+  /// A place on the ball, in angles, and the angle of the ball's centre when the place touches a wall, times the sign
+  /// of that wall.
   struct Place {
-    double along = 0;   ///< from the ball's middle along the axis, in its section
-    double across = 0;  ///< within that section from the innermost place to the outermost within the blank, 0 to 1
+    double along = 0;   ///< angle from the ball's middle along the axis, in its section
+    double across = 0;  ///< from the innermost place of the section to the outermost in the blank, 0 to 1
     double angle = kFar;
   };
-  /// The circle about the cutter's axis on which a place lies.
+  /// The circle about the cutter's axis through a place.
   struct Circle {
     double x, r;
-    double half_angle;  ///< of the arc of it that is inside the ball
+    double half_angle;  ///< half angle of the circle's arc inside the ball
   };
 
-  /// 1 for the wall at the larger angles, -1 for the other one.
+  /// Sign of the rake face's wall: 1 for the wall at the larger angles, -1 for the other one.
   int rakeSide() const { return cutter_.direction() == CutDirection::kRightHand ? 1 : -1; }
 
   std::optional<Circle> circleAt(double along, double across) const {
@@ -97,7 +97,7 @@ class TurningBall {
     return Circle{x, r, 2 * std::asin(std::min(1.0, section * std::cos(at) / (2 * std::sqrt(r * from_axis_))))};
   }
 
-  /// How far the ball may turn before it touches a wall on the circle of a place.
+  /// The angle that the ball may turn before it touches a wall on the circle of a place.
   double angleAt(int side, double along, double across) const {
     const auto circle = circleAt(along, across);
     if (!circle) return kFar;
@@ -110,7 +110,7 @@ class TurningBall {
     return wall - circle->half_angle;
   }
 
-  /// The places of a grid that come to a wall before their neighbours do; the first ones, in order.
+  /// The places of a grid that touch a wall before their neighbours; the first ones, in order.
   std::vector<Place> coarse(int side, std::size_t count) const {
     std::array<std::array<Place, kTouchSteps + 1>, kTouchSteps + 1> grid;
     for (std::size_t i = 0; i <= kTouchSteps; ++i) {
@@ -153,7 +153,7 @@ class TurningBall {
     return {along, in_section(along).first, angle};
   }
 
-  /// Where the ball comes to a wall first.
+  /// The place where the ball first touches a wall.
   Place first(int side) const {
     const std::vector<Place> candidates = coarse(side, kCandidates);
     Place best = candidates.front();
@@ -170,18 +170,18 @@ class TurningBall {
     const auto circle = circleAt(rake.along, rake.across);
     if (!circle || !(rake.angle < kFar / 2)) return Fit::kOutside;
     if (!(circle->r < cutter_.cutter().radius(circle->x) - kAtEdge)) return Fit::kEdge;
-    // Where a wall lies more across the radius than along it, it is the floor.
+    // Where a wall is more across the radius than along it, it is the floor.
     const double inward = from_axis_ * std::cos(circle->half_angle) - circle->r;
     const double around = from_axis_ * std::sin(circle->half_angle);
     return inward < around ? Fit::kTouches : Fit::kFloor;
   }
 
-  /// @param find the place where the ball comes to the wall of a side first.
+  /// @param find returns the place where the ball first touches the wall of a side.
   template <typename Function>
   Result resultOf(const Function& find) const {
     const Place rake = find(rakeSide());
     Result result{fitAt(rake), rakeSide() * rake.angle};
-    // Both walls bound the ball's angle, the other one its negative.
+    // Both walls bound the ball's angle; the other wall bounds its negative.
     if (result.fit == Fit::kTouches && !(rake.angle + find(-rakeSide()).angle > 0)) result.fit = Fit::kOtherWall;
     return result;
   }
@@ -193,15 +193,14 @@ class TurningBall {
 
 double rounded(double length) { return std::nearbyint(length / kRounding) * kRounding; }
 
-/// Refuses what is asked of a ball.
-/// @param why said after the allowed range.
+/// Refuses a value of a ball.
+/// @param why text after the allowed range.
 [[noreturn]] void refuse(const char* what, double value, const Range& allowed, std::string why) {
   throw ReasonError({ReasonKind::kOutOfRange, 0, what, std::move(why), Unit::kMetre, rounded(value),
                      rounded(allowed.from), rounded(allowed.to)});
 }
 
-/// The distances from the axis at which a ball comes to the rake face, of some that are tried: the innermost that
-/// follow one another.
+/// The distances from the axis at which a ball touches the rake face: the innermost run of consecutive distances tried.
 std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, double radius) {
   const double blank = cutter.cutter().radius(x);
   const double core = std::min(blank, firstFlute(cutter).front().minRadius(x, blank));
@@ -211,7 +210,7 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
   while (from < kDistances && !fits(from)) ++from;
   int to = from;
   while (to + 1 < kDistances && fits(to + 1)) ++to;
-  // The ends, near which a grid may err.
+  // Checks the ends precisely, where the grid may err.
   const auto touches = [&](int i) { return TurningBall(cutter, x, at(i), radius).turn().fit == Fit::kTouches; };
   while (from <= to && !(from < kDistances && touches(from))) ++from;
   while (from < to && !touches(to)) --to;
@@ -219,7 +218,7 @@ std::optional<Range> fittingDistances(const GroundCutter& cutter, double x, doub
   return Range{at(from), at(to)};
 }
 
-/// Says what is allowed in place of a ball that does not come to the rake face.
+/// Refuses a ball that does not touch the rake face, with the allowed values.
 [[noreturn]] void refuseFit(Fit fit, const GroundCutter& cutter, double x, double from_axis, double radius) {
   const std::string else_touches = std::string("else it touches ") + whatItTouches(fit);
   if (const auto distances = fittingDistances(cutter, x, radius))

@@ -13,16 +13,16 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRadiusRings = 12;          ///< between which a search among radii looks for a change
-constexpr int kRadiusSteps = 20;          ///< of one between two of them
-constexpr double kRadiusAccuracy = 1e-9;  ///< of that [m]
-constexpr int kNextEdgeRings = 4;         ///< on which the next tooth is looked at
-constexpr double kFloor = 0.1;            ///< of the next flute's depth, which is no longer its rake face
-constexpr double kBelowTheEdge = 1e-5;    ///< of the radius, where a relief is looked at first
-constexpr double kSameBegin = 1e-9;       ///< by which a relief that begins at the edge may be in front of it [rad]
+constexpr int kRadiusRings = 12;          ///< rings between which a search among radii looks for a change
+constexpr int kRadiusSteps = 20;          ///< steps of a search between two rings
+constexpr double kRadiusAccuracy = 1e-9;  ///< accuracy of such a search [m]
+constexpr int kNextEdgeRings = 4;         ///< rings on which the next tooth is examined
+constexpr double kFloor = 0.1;            ///< lowest fraction of the next flute that is not its rake face
+constexpr double kBelowTheEdge = 1e-5;    ///< depth below the edge at which a relief is examined, per radius
+constexpr double kSameBegin = 1e-9;       ///< angle by which a relief at the edge may begin before it [rad]
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-/// In a section, by the angle behind the edge's place on the blank's circle.
+/// A point of a section, with its angle behind the edge's place on the blank's circle.
 struct LandPlace {
   double radius, behind;
 };
@@ -34,8 +34,8 @@ double distance(const LandPlace& a, const LandPlace& b) {
 
 double clearanceOf(double r, const ToothLand::Surface& surface) { return std::atan2(1, -r * surface.slope); }
 
-/// Where a function of the radius, on the way from one to a lesser one, first is not negative.
-/// @return nothing if it is negative all the way.
+/// The first radius, from `outer` to `inner`, at which a function of it is not negative.
+/// @return nothing if it is negative everywhere.
 template <typename Function>
 std::optional<double> crossing(double outer, double inner, const Function& f) {
   double before = outer, at_before = f(outer);
@@ -61,18 +61,18 @@ class RelievedLand {
     for (const Relief& relief : reliefs) least_.push_back(leastRadius(relief, x, radius));
   }
 
-  /// The least radius that is left.
+  /// The minimum radius that is left.
   double core() const { return *std::min_element(least_.begin(), least_.end()); }
 
-  /// No relief reaches a circle below this one.
+  /// The radius below which a relief reaches no circle.
   double lowest(std::size_t relief) const { return least_[relief] * (1 + kBelowTheEdge); }
 
-  /// A relief's surface on a circle, if it reaches that.
+  /// A relief's surface on a circle, if it reaches the circle.
   std::optional<ToothLand::Surface> surface(std::size_t relief, double r) const {
     return r < lowest(relief) ? std::nullopt : tooth_.surface(reliefs_[relief], r);
   }
 
-  /// The land's surface on a circle: what begins nearest to the edge.
+  /// The land's surface on a circle: the surface that begins nearest to the edge.
   std::optional<ToothLand::Surface> surface(double r) const {
     std::optional<ToothLand::Surface> nearest;
     for (std::size_t i = 0; i < reliefs_.size(); ++i) {
@@ -82,12 +82,12 @@ class RelievedLand {
     return nearest;
   }
 
-  /// How far behind the edge a surface begins; a turn where there is none.
+  /// The angle behind the edge at which a surface begins; a whole turn if there is none.
   static double begin(const std::optional<ToothLand::Surface>& surface) {
     return surface ? surface->behind : units::kTurn;
   }
 
-  /// How far behind the edge the reliefs reach on a circle.
+  /// The maximum angle behind the edge that the reliefs reach on a circle.
   double end(double r) const {
     double farthest = -kNone;
     for (const Relief& relief : reliefs_) farthest = std::max(farthest, tooth_.farEnd(relief, r));
@@ -100,17 +100,19 @@ class RelievedLand {
   std::vector<double> least_;
 };
 
-/// The radius of the edge: where the rake face, from the blank's circle inwards, first is in front of the reliefs.
-/// @param lowest circle that the rake face reaches.
+/// The radius of the edge: the first radius, from the blank's circle inward, at which the rake face is in front of the
+/// reliefs.
+/// @param lowest radius of the lowest circle that the rake face reaches.
 double edgeOf(const ToothLand& tooth, const RelievedLand& land, double radius, double lowest) {
   const auto in_front = [&](double r) { return land.begin(land.surface(r)) - tooth.rakeFace(r) + kSameBegin; };
   return crossing(radius, lowest, in_front).value_or(lowest);
 }
 
-/// The radius at which the land of a tooth meets the next flute: in front of the reliefs' end, or, where they take that
-/// flute's wall away down to its floor, there.
-/// @param foot of that wall. @param deepest circle that has a wall and a relief.
-/// @return nothing if the reliefs end before.
+/// The radius at which the land of a tooth meets the next flute: in front of the reliefs' end, or, if they remove that
+/// flute's wall down to its floor, at the floor.
+/// @param foot foot of that wall.
+/// @param deepest radius of the deepest circle that has a wall and a relief.
+/// @return nothing if the reliefs end before it.
 std::optional<double> heelOf(const ToothLand& tooth, const RelievedLand& land, double outer, double foot,
                              double deepest) {
   const auto behind_flute = [&](double r) { return land.begin(land.surface(r)) - tooth.heelWall(r); };
@@ -121,18 +123,21 @@ std::optional<double> heelOf(const ToothLand& tooth, const RelievedLand& land, d
   return crossing(foot, deepest, short_of_flute).value_or(deepest);
 }
 
-/// The radius at which the second relief begins, from a circle inwards.
+/// The radius at which the second relief begins, from a circle inward.
 std::optional<double> secondBegin(const RelievedLand& land, double outer) {
   const auto first_ends = [&](double r) { return land.begin(land.surface(0, r)) - land.begin(land.surface(1, r)); };
   return crossing(outer, std::max(land.lowest(0), land.lowest(1)), first_ends);
 }
 
-/// The first relief's land. @param below the edge, where the relief is looked at. @param end radius where it ends.
+/// Measures the first relief's land.
+/// @param below radius below the edge at which the relief is examined.
+/// @param end radius at which it ends.
 void measureLand(const ToothLand& tooth, const Reliefs& reliefs, const LandPlace& edge, double below, double end,
                  ReliefSection& measured) {
   const auto last = tooth.surface(reliefs[0], end);
   if (!last) return;
-  // Where its surface, straight over so short a way, is as high as the edge; in front of that, the blank is left.
+  // The relief begins where its surface, straight over this distance, is as high as the edge; in front of it is the
+  // blank.
   const auto first = tooth.surface(reliefs[0], below);
   const double begin = first ? first->behind + first->slope * (edge.radius - below) : 0;
   measured.land = distance({edge.radius, std::max(edge.behind, begin)}, {end, last->behind});

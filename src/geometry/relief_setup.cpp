@@ -25,33 +25,33 @@ using units::kDegree;
 
 constexpr double kSameAngle = 1e-9;
 constexpr double kSwivelStep = 2 * kDegree;
-constexpr double kReachMargin = 0.02;  ///< of the end diameter: of the rim beyond the relief's end, enough for anybody
-constexpr double kNextEdgeMargin = 1 * kDegree;  ///< likewise, of the wheel from the next edge
-/// Part of the margin that is left in any case, above what a file rounds, and parts that are tried where there is no
-/// room for all of it.
+constexpr double kReachMargin = 0.02;            ///< ample margin of the rim beyond the relief's end, per end diameter
+constexpr double kNextEdgeMargin = 1 * kDegree;  ///< ample angle of the wheel from the next edge
+/// The fraction of the margin that must be left, above the rounding of a file, and the fractions that are tried if
+/// there is no room for all of it.
 constexpr double kLeastMargin = 0.02, kLessMargins[] = {0.1, 0.25, 0.5};
-constexpr double kHopeless = -5;                   ///< slack from which on nothing else is measured
-constexpr int kCornerHalvings = 5;                 ///< of a corner, whose part may grind the land's end
-constexpr double kLeastClearance = 0.5 * kDegree;  ///< at the land's end
-constexpr double kAlongStep = 0.025;               ///< of the end diameter, along the rim, to the land's end
-constexpr double kWidest = 5;                      ///< of the end diameter, of a rim
+constexpr double kHopeless = -5;                   ///< slack below which nothing else is measured
+constexpr int kCornerHalvings = 5;                 ///< halvings of a corner, a part of which may grind the land's end
+constexpr double kLeastClearance = 0.5 * kDegree;  ///< minimum clearance at the land's end
+constexpr double kAlongStep = 0.025;               ///< step along the rim toward the land's end, per end diameter
+constexpr double kWidest = 5;                      ///< maximum width of a rim, per end diameter
 constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
-constexpr int kPlacesOfWall = 12;     ///< between which a flute's wall is straight enough
-constexpr std::size_t kAtOnce = 8;    ///< of the swivels, tried
-constexpr std::size_t kRefined = 3;   ///< of the swivels that come nearest
-constexpr int kRefinements = 7;       ///< steps between them and the ones beside
-constexpr double kGolden = 0.618034;  ///< of what is left in each
+constexpr int kPlacesOfWall = 12;     ///< intervals in which a flute's wall is straight enough
+constexpr std::size_t kAtOnce = 8;    ///< number of swivels tried at once
+constexpr std::size_t kRefined = 3;   ///< number of the best swivels that are refined
+constexpr int kRefinements = 7;       ///< steps between these swivels and their neighbours
+constexpr double kGolden = 0.618034;  ///< remaining fraction after each step
 constexpr int kPlacesOfRim = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string figure(double si, Unit unit) { return text(Quantity{si, unit}); }
 
-/// The land behind a tooth in a section, of one of those that are alike.
+/// The land behind a tooth in a section; one of several equal lands.
 struct Land {
   GroundSection section;
   std::size_t tooth;
-  std::vector<double> wall;  ///< of the next flute at the heel, from the core to the edge's circle
+  std::vector<double> wall;  ///< wall of the next flute at the heel, from the core to the edge's circle
 
   double heelWall(double r) const {
     const double part = (r - section.core_radius) / (section.radius - section.core_radius);
@@ -98,7 +98,8 @@ std::vector<Land> landsOf(const GroundCutter& cutter) {
   return lands;
 }
 
-/// How far along the rim the surface goes until `is_over`. @return nothing if the clearance is lost before.
+/// The distance along the rim at which `is_over` becomes true.
+/// @return nothing if the clearance is lost before.
 template <typename Over>
 std::optional<double> reachTo(const ReliefPath& path, double x, double diameter, const Over& is_over) {
   const double step = kAlongStep * diameter;
@@ -118,15 +119,15 @@ std::optional<double> reachTo(const ReliefPath& path, double x, double diameter,
   return std::nullopt;
 }
 
-/// A set-up that was tried.
+/// A trial set-up.
 struct Tried {
   ReliefSetup setup;
-  double slack = -kInfinity;  ///< the least of its margins, by what is enough of them; 0 or less if it is refused
+  double slack = -kInfinity;  ///< minimum of its margins, relative to ample ones; 0 or less if it is refused
   double next_edge_slack = -kInfinity;
   bool has_heel = false;
 };
 
-/// Tries set-ups of a relief out.
+/// Tries set-ups of a relief.
 class Trials {
  public:
   Trials(const GrindJob& job, const ValidJob& flutes)
@@ -141,7 +142,7 @@ class Trials {
     }
   }
 
-  /// The best with a swivel, by what is measured in some sections.
+  /// The best set-up with a swivel, judged by some sections.
   Tried best(double swivel) const {
     Tried best;
     best.setup.swivel = swivel;
@@ -163,8 +164,8 @@ class Trials {
     return best;
   }
 
-  /// The best with a swivel, of set-ups with the relief's start all over the rim: what is measured counts, not how wide
-  /// the rim is. The wheel's faces may grind what the rim does not.
+  /// The best set-up with a swivel, with the relief's start anywhere on the rim. The measurements count, not the width
+  /// of the rim: the wheel's faces may grind what the rim does not.
   Tried anywhere(double swivel) const {
     Tried best;
     for (int i = 1; i < kPlacesOfRim; ++i) {
@@ -184,7 +185,7 @@ class Trials {
     return best;
   }
 
-  /// Asks the plan's check, which looks at more sections. What it refuses has no slack.
+  /// Whether the plan's check, which measures more sections, accepts a set-up. A refused set-up has no slack.
   bool isConfirmed(Tried& tried) const {
     if (!(tried.slack > 0)) return false;
     const CutterCheck check = checkGroundCutter(jobWith(tried.setup));
@@ -195,9 +196,9 @@ class Trials {
   }
 
  private:
-  /// What the reliefs behind all lands need.
+  /// The requirements of the reliefs behind all lands.
   struct Needs {
-    std::vector<double> reach;  ///< along the rim behind the relief's start, for each land [m]
+    std::vector<double> reach;  ///< width of rim behind the relief's start, for each land [m]
     Range clearance{kInfinity, -kInfinity};
   };
 
@@ -233,7 +234,7 @@ class Trials {
     return wheel;
   }
 
-  /// A height with which the rim reaches over every land, and how far over the one that it needs most for.
+  /// A height with which the rim reaches over every land, and its reach over the land that needs most.
   std::pair<double, double> heightAt(double swivel, const Needs& needs, double margin) const {
     ReliefWheel wheel = wheelAt(swivel);
     const auto reaches = [&](double height) {
@@ -243,7 +244,7 @@ class Trials {
       }
       return true;
     };
-    // Teeth of one helix need the same height for the same reach.
+    // The teeth of one helix need the same height for the same reach.
     std::vector<std::size_t> by_need(lands_.size());
     std::iota(by_need.begin(), by_need.end(), 0);
     std::stable_sort(by_need.begin(), by_need.end(),
@@ -256,8 +257,8 @@ class Trials {
     throw std::invalid_argument("no height has every edge on the rim, and the rim over every land");
   }
 
-  /// The least margin of the rim with which the relief reaches every heel. It is negative where a corner of the wheel
-  /// grinds the land's end.
+  /// The minimum margin of the rim with which the relief reaches every heel. Negative if a corner of the wheel grinds
+  /// the land's end.
   double leastMargin(double swivel, const Needs& needs, double whole) const {
     const double rounding = kLeastMargin * whole;
     const double corner = std::max(job_.process.wheel_corner_radius_lower, job_.process.wheel_corner_radius_upper);
@@ -271,7 +272,8 @@ class Trials {
     return high + rounding;
   }
 
-  /// @param margin of the rim beyond the lands' ends. @param whole what is enough of it [m].
+  /// @param margin margin of the rim beyond the lands' ends [m].
+  /// @param whole ample margin [m].
   Tried at(double swivel, const Needs& needs, double margin, double whole) const {
     Tried tried;
     tried.setup.swivel = swivel;
@@ -290,8 +292,8 @@ class Trials {
     return tried;
   }
 
-  /// @param margin of the rim, by what is enough. @param good_only whether nothing else is measured of what is
-  /// refused; else, of what is hopeless.
+  /// @param margin margin of the rim, relative to an ample one.
+  /// @param good_only whether to stop measuring as soon as the set-up is refused, rather than hopeless.
   void measure(Tried& tried, double margin, bool good_only = false) const {
     const GroundCutter cutter = groundCutterOf(jobWith(tried.setup));
     const CutterGeometry& c = job_.cutter;
@@ -319,7 +321,7 @@ class Trials {
     } else if (!tried.has_heel) {
       tried.setup.refused = "the relief ends on the land";
     }
-    // Where a corner grinds the land's end, the margin is what is above the least.
+    // Where a corner grinds the land's end, the margin is the part above the minimum.
     tried.slack = std::min(tried.slack, tried.has_heel ? std::max(margin, kLeastMargin) : -kLeastMargin);
   }
 
@@ -337,12 +339,12 @@ class Trials {
   const ValidJob& flutes_;
   const std::vector<EdgeHelix> edges_;
   const std::vector<Land> lands_;
-  double land_;                       ///< width at the small end, where another relief follows; 0: to the heel [m]
-  std::vector<ConicalCutter> teeth_;  ///< of the lands
-  std::vector<ReliefStart> starts_;   ///< of the lands
+  double land_;                       ///< land at the small end, before another relief; 0: up to the heel [m]
+  std::vector<ConicalCutter> teeth_;  ///< teeth of the lands
+  std::vector<ReliefStart> starts_;   ///< starts of the relief on the lands
 };
 
-/// The best swivel between two, of which one in between is better than both.
+/// The best swivel between two others, if one in between is better than both.
 Tried refined(const Trials& trials, double from, double to, Tried best) {
   for (int i = 0; i < kRefinements; ++i) {
     const double middle = best.setup.swivel;

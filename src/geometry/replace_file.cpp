@@ -14,12 +14,12 @@ namespace grinder {
 
 namespace {
 
-/// @param path what it is about, for the message.
+/// @param path file named in the message.
 void require(bool done, const std::string& path) {
   if (!done) throw std::system_error(errno, std::generic_category(), path);
 }
 
-/// Puts the text there in one step.
+/// Writes the new text and commits it.
 void fill(FileReplacement& fresh, const std::string& text) {
   for (std::size_t done = 0; done < text.size();) {
     const ssize_t count = ::write(fresh.descriptor(), text.data() + done, text.size() - done);
@@ -30,9 +30,9 @@ void fill(FileReplacement& fresh, const std::string& text) {
   fresh.commit();
 }
 
-/// Where links lead, to the name of a file that there may not be.
+/// The target of symbolic links; it need not exist.
 std::string behindLinks(const std::string& path) {
-  constexpr int most = 40;  // as Linux
+  constexpr int most = 40;  // as in Linux
   std::filesystem::path file = path;
   std::error_code error;
   for (int i = 0; i < most && std::filesystem::is_symlink(file, error); ++i) {
@@ -43,7 +43,8 @@ std::string behindLinks(const std::string& path) {
 
 std::string folderOf(const std::string& path) { return std::filesystem::absolute(path).parent_path(); }
 
-/// Takes a name beside a file that nobody has. @param take whether it could take one; EEXIST if not.
+/// Takes an unused name beside a file.
+/// @param take returns whether it could take a name; EEXIST if not.
 template <typename Take>
 std::string takeName(const std::string& file, const Take& take) {
   for (int i = 0;; ++i) {
@@ -60,7 +61,7 @@ FileReplacement::FileReplacement(const std::string& path) : file_(behindLinks(pa
   require(is_new_ ? errno == ENOENT : ::access(file_.c_str(), W_OK) == 0, file_);
   constexpr mode_t mode = 0666;
   descriptor_ = ::open(folderOf(file_).c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, mode);
-  // FAT and NFS have no files without a name.
+  // FAT and NFS have no unnamed files.
   if (descriptor_ < 0 && (errno == EOPNOTSUPP || errno == EISDIR)) {
     fresh_ = takeName(file_, [this](const char* name) {
       descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
@@ -72,7 +73,7 @@ FileReplacement::FileReplacement(const std::string& path) : file_(behindLinks(pa
 
 FileReplacement::FileReplacement(const std::string& path, const std::string& fresh)
     : file_(path), fresh_(fresh), is_new_(true) {
-  // A FIFO must not block.
+  // Opening a FIFO must not block.
   descriptor_ = ::open(fresh_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, 0644);
   require(descriptor_ >= 0, fresh_);
 }
@@ -83,7 +84,7 @@ FileReplacement::~FileReplacement() {
 }
 
 void FileReplacement::commit() {
-  // Who is not root cannot give a file away, and need not, if it is his own.
+  // Only root can give a file away; an owner need not.
   require(is_new_ || ::fchown(descriptor_, old_.st_uid, old_.st_gid) == 0 || errno == EPERM, file_);
   require(is_new_ || ::fchmod(descriptor_, old_.st_mode & 07777) == 0, file_);
   require(::fsync(descriptor_) == 0, file_);

@@ -12,11 +12,11 @@ namespace grinder {
 
 namespace {
 
-/// Of X, over which samples are averaged: the sawtooth of odd and even points would turn the wall that is measured [m].
+/// Length in X over which samples are averaged: the sawtooth of odd and even points would tilt the measured wall [m].
 constexpr double kCell = 0.2e-3;
-constexpr double kApart = 5e-6;  ///< of the positions that are kept outside strokes; nearer ones are the same [m]
-constexpr std::size_t kPosesOfPart = 32;  ///< as many as WheelSweep looks at
-constexpr double kShortest = 1e-6;        ///< a move in which X rests counts as this long [m]
+constexpr double kApart = 5e-6;           ///< minimum distance of the positions that are kept outside strokes [m]
+constexpr std::size_t kPosesOfPart = 32;  ///< as many positions as WheelSweep examines
+constexpr double kShortest = 1e-6;        ///< length of a move in which X rests [m]
 
 /// X of a stroke's deviation.
 double xOf(const RunStroke& stroke, std::size_t i) {
@@ -66,7 +66,7 @@ void RunStrokes::add(const Setpoint& setpoint, const Axes& actual) {
   if (!actual.isFinite().all()) {
     throw std::invalid_argument("cycle " + std::to_string(setpoint.cycle) + ": the position read is not finite");
   }
-  // What was read belongs to the setpoint before.
+  // The position that was read belongs to the previous setpoint.
   take(last_ && last_->cycle + 1 == part.cycle ? *last_ : part, actual);
   last_ = part;
 }
@@ -112,8 +112,7 @@ void RunStrokes::beginStroke(const ToothPass& place, double x) {
     samples_.clear();
     return;
   }
-  // After a lift: the stroke counts as far as it had come, and once more with what follows in place of what is
-  // repeated.
+  // After a lift, the stroke counts up to the lift, and once more with the new positions in place of the repeated ones.
   const bool rises = path_->stroke.from < path_->stroke.to;
   const auto repeated = samples_.lower_bound(std::lround(x / kCell));
   samples_.erase(rises ? repeated : samples_.begin(), rises ? samples_.end() : repeated);
@@ -182,7 +181,7 @@ bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double 
   // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
   const double wear = wearOf(stroke.place);
   const double smaller = std::max(0.0, wear - wearOf(place)) / (job_->process.wheel_diameter / 2 - wear);
-  // Along the wheel's radius it only has to be as deep: what the other one removes above is removed as well.
+  // Along the wheel's radius it only has to be as deep: the part above that the other wheel removes is removed, too.
   return off.y - own.y >= 2 * radius_ * smaller - kSame &&
          std::abs(off.z - own.z) + radius_ * std::abs(off.a - own.a) <= kSame;
 }
@@ -214,7 +213,7 @@ void RunStrokes::addOutside(const Poses& poses, std::size_t strokes) {
   };
   std::vector<bool> outside;
   for (const Axes& at : poses.at) outside.push_back(!covered(at));
-  // Each part with a neighbour on either side.
+  // Each part gets a neighbour on either side.
   const std::size_t last = poses.at.size() - 1;
   for (std::size_t i = 0; i <= last; ++i) {
     if (!outside[i]) continue;
@@ -279,7 +278,7 @@ GroundCutter RunStrokes::cutter() const {
   for (const RunStroke* stroke : kept) flutes[static_cast<std::size_t>(stroke->place.tooth)].push_back(sweep(*stroke));
   std::vector<GroundTooth> teeth;
   for (std::size_t i = 0; i < flutes.size(); ++i) {
-    // A stroke without a length removes nothing.
+    // A stroke of zero length removes nothing.
     if (flutes[i].empty()) flutes[i].push_back(sweepOf(job_, static_cast<int>(i), 0, GrindStroke{}));
     teeth.push_back({job_->tooth_angles[i], i});
   }

@@ -15,11 +15,11 @@ namespace grinder {
 
 namespace {
 
-constexpr double kNearFloor = 1e-9;              ///< above a flute's floor [m]
-constexpr int kHeelRings = 16;                   ///< between which a land may meet the flute behind it
-constexpr int kHeelHalvings = 26;                ///< to where, between two of them
-constexpr double kBelowEdgeCircle = 1 - 1e-4;    ///< of the radius, where a relief is looked at first
-constexpr std::uintmax_t kMaxMeetingSteps = 60;  ///< to where two walls meet
+constexpr double kNearFloor = 1e-9;              ///< height above a flute's floor [m]
+constexpr int kHeelRings = 16;                   ///< rings between which a land may meet the flute behind it
+constexpr int kHeelHalvings = 26;                ///< halvings between two rings to find that place
+constexpr double kBelowEdgeCircle = 1 - 1e-4;    ///< factor of the radius at which a relief is first examined
+constexpr std::uintmax_t kMaxMeetingSteps = 60;  ///< maximum number of steps to find where two walls meet
 
 double squared(double v) { return v * v; }
 
@@ -34,7 +34,7 @@ class FluteWalls {
       : cutter_(cutter), flute_(flute), x_(x), core_(blank_radius) {
     core_ = leastRadius(flute, x, blank_radius);
     const double depth = blank_radius - core_;
-    // The floor is a point, in the middle of what is removed a little above it.
+    // The floor is a point, in the middle of the arc removed just above it.
     for (double above = kNearFloor; empty_ && above < depth; above *= 4) {
       const auto arc = cutter.arc(flute, x, core_ + above);
       empty_ = !arc;
@@ -57,7 +57,7 @@ class FluteWalls {
   }
 
  private:
-  /// Of the wheel where it passes the section, or stands nearest to it.
+  /// The angle of the wheel where it passes the section, or is nearest to it.
   double angleNearest() const {
     double nearest = std::numeric_limits<double>::max(), angle = 0;
     for (const WheelSweep& sweep : flute_) {
@@ -106,7 +106,7 @@ class Outliner {
   }
 
  private:
-  /// Flutes are counted on over the turns.
+  /// Flutes are numbered on over the turns.
   FluteWalls& walls(std::size_t flute) { return walls_[cutter_.teeth()[flute % grid_.teeth].flute]; }
   double laps(std::size_t flute) const {
     const std::size_t whole = flute / grid_.teeth;
@@ -120,7 +120,7 @@ class Outliner {
   double low(std::size_t flute, double r) { return angle(flute) + walls(flute).at(r).low; }
   std::size_t next(std::size_t i) const { return i + 1 < cut_.size() ? cut_[i + 1] : cut_[0] + grid_.teeth; }
 
-  /// Where ring `ring` of a wall lies that ends at the radius `top`.
+  /// The radius of ring `ring` of a wall that ends at the radius `top`.
   double radius(std::size_t flute, std::size_t ring, double top) {
     if (ring == grid_.rings) return top;
     const double core = walls(flute).core();
@@ -129,7 +129,7 @@ class Outliner {
 
   std::size_t shallower(std::size_t a, std::size_t b) { return walls(a).core() > walls(b).core() ? a : b; }
 
-  /// What is left between a flute and the next on the circle of radius r.
+  /// The angle left between a flute and the next on the circle of radius r.
   double gap(std::size_t from, std::size_t to, double r) { return low(to, r) - high(from, r); }
 
   void leaveOutSwallowed() {
@@ -144,7 +144,7 @@ class Outliner {
     }
   }
 
-  /// The radius up to which there is something between a flute and the next.
+  /// The radius up to which material is left between a flute and the next.
   double top(std::size_t from, std::size_t to) {
     const std::size_t shallow = shallower(from, to);
     double inside = walls(shallow).core();
@@ -163,7 +163,7 @@ class Outliner {
     return blank_;
   }
 
-  /// The body between a flute and the next that removes something.
+  /// Fills the body between a flute and the next one that removes something.
   void fillBody(std::size_t from, std::size_t to) {
     const double r = top(from, to);
     if (const auto heel = r < blank_ ? std::nullopt : heelOf(from, to)) return fillRelieved(from, to, *heel);
@@ -176,10 +176,10 @@ class Outliner {
 
   bool rightHand() const { return cutter_.direction() == CutDirection::kRightHand; }
 
-  /// Where a body's reliefs meet a circle, nearest to the edge.
+  /// The angle at which a body's reliefs meet a circle, nearest to the edge.
   struct Relieved {
     double angle;
-    const Relief* relief;  ///< that leaves the surface there
+    const Relief* relief;  ///< relief that forms the surface there
   };
 
   std::optional<Relieved> relieved(std::size_t from, std::size_t to, double r) const {
@@ -194,7 +194,8 @@ class Outliner {
     return nearest;
   }
 
-  /// The radius at which the relief at a body's edge ends. @param heel where the land ends.
+  /// The radius at which the relief at a body's edge ends.
+  /// @param heel radius at which the land ends.
   double primaryEnd(std::size_t from, std::size_t to, double heel) const {
     double outer = blank_ * kBelowEdgeCircle, inner = heel;
     const auto first = relieved(from, to, outer);
@@ -210,8 +211,8 @@ class Outliner {
     return outer;
   }
 
-  /// The radius at which the relieved land, on the way inward, first meets the flute behind it, at the latest at its
-  /// floor; nothing if a body is not relieved.
+  /// The radius at which the relieved land, from the edge inward, first meets the flute behind it, at the latest at its
+  /// floor; nothing if the body is not relieved.
   std::optional<double> heelOf(std::size_t from, std::size_t to) {
     const double top = blank_ * kBelowEdgeCircle, lowest = std::max(walls(from).core(), walls(to).core());
     if (!relieved(from, to, top)) return std::nullopt;
@@ -233,7 +234,7 @@ class Outliner {
     return outer;
   }
 
-  /// A body whose land falls from its edge to its heel.
+  /// Fills a body whose land falls from its edge to its heel.
   void fillRelieved(std::size_t from, std::size_t to, double heel) {
     fillWall(true, from, rightHand() ? blank_ : heel);
     fillWall(false, to, rightHand() ? heel : blank_);
@@ -247,7 +248,7 @@ class Outliner {
       const double angle = r == blank_ || !at ? edge : r == heel ? back : at->angle;
       land.push_back(polar(r, std::clamp(angle, std::min(edge, back), std::max(edge, back))));
     }
-    // The flutes in between remove nothing: they shrink to the land's end.
+    // The flutes in between remove nothing, and shrink to the land's end.
     for (std::size_t flute = from; flute < to; ++flute) {
       for (std::size_t column = 0; column <= grid_.columns; ++column) {
         set(flute, grid_.land(flute, column), flute == from ? land[column] : land.back());
@@ -258,7 +259,7 @@ class Outliner {
     }
   }
 
-  /// @param column from the edge.
+  /// @param column column from the edge.
   double landRadius(std::size_t column, double primary_end, double heel) const {
     const std::size_t primary = grid_.primary();
     const auto between = [&](double from, double to, std::size_t part, std::size_t of) {
@@ -280,7 +281,7 @@ class Outliner {
     }
   }
 
-  /// The land between the walls of two flutes; those in between, which remove nothing, shrink to a point of it.
+  /// Fills the land between the walls of two flutes; the flutes in between remove nothing, and shrink to a point of it.
   void fillLands(std::size_t from, const PolarPoint& first, std::size_t to, const PolarPoint& last) {
     PolarPoint begin = first;
     for (std::size_t flute = from; flute < to; ++flute) {

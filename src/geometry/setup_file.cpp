@@ -45,7 +45,7 @@ void writeSetup(const std::string& path, const JobSetup& setup) {
   try {
     const std::string before = readTextFile(path);
     const std::string text = editJob(before, path, setup.edits);
-    // The operations behind this one may still be without a set-up.
+    // The operations after this one may have no set-up yet.
     const GrindJob written = parseJob(text, path, unsolvedFields({}), toString(setup.job.process.kind));
     if (!sameNumbers(written, setup.job)) throw JobFileError(path + ": has changed since it was read");
     writeFile(path + ".before", before);

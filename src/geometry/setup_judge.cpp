@@ -12,17 +12,17 @@ namespace grinder {
 
 namespace {
 
-constexpr double kFormedByFace = 0.2;  ///< of the rake face's depth, that the wheel's face or edge must form
-constexpr double kBelowEdge = 0.998;   ///< of the radius: where the rake face still has the edge's rake
+constexpr double kFormedByFace = 0.2;  ///< fraction of the rake face's depth that the wheel's face or edge must form
+constexpr double kBelowEdge = 0.998;   ///< fraction of the radius at which the rake face still has the edge's rake
 constexpr double kSameFace = 2 * units::kDegree;
 constexpr double kNotThere = std::numeric_limits<double>::infinity();
 constexpr double kSameChord = 2 * units::kDegree;
-constexpr double kSameError = 0.5;  ///< of the tolerances
+constexpr double kSameError = 0.5;  ///< fraction of the tolerances below which errors are equal
 constexpr double kSameRake = 0.1 * units::kDegree;
-constexpr double kNearApex = 0.8;  ///< of the way there, beyond which a stroke is long
-constexpr double kBeyond = 1e-5;   ///< added to the overtravel, for the precision of an extremum's place [m]
+constexpr double kNearApex = 0.8;  ///< fraction of the way to the apex beyond which a stroke is long
+constexpr double kBeyond = 1e-5;   ///< addition to the overtravel, for the precision of an extremum's position [m]
 
-/// The stroke that the flute needs, and where it is then complete by the plan's own measure.
+/// Measures the stroke that the flute needs, and where it is then complete by the plan's check.
 void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup& solved) {
   const double length = trial.cutter().geometry().flute_length;
   const WheelSweep longest = trial.sweep(point);
@@ -31,7 +31,7 @@ void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup&
     solved.overtravel[0] = std::max(solved.overtravel[0], -reach.from);
     solved.overtravel[1] = std::max(solved.overtravel[1], reach.to - length);
   }
-  // As precise as an extremum's place is known.
+  // Covers the precision of an extremum's position.
   for (double& beyond : solved.overtravel) {
     if (beyond > 0) beyond += kBeyond;
   }

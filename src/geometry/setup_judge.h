@@ -7,28 +7,30 @@
 
 namespace grinder {
 
-/// The tool that a set-up grinds, and what is wrong with it.
+/// The tool of a set-up, and its faults.
 struct Judged {
   SetupPoint point;
   SolvedSetup solved;
-  double formed_by_face = 1;  ///< of the depth of the rake face, least over the flute
-  double error = 0;           ///< the largest over the flute, by its tolerance
-  bool is_facet = false;      ///< the rake is that of a facet at the edge, with another angle behind it
+  double formed_by_face = 1;  ///< minimum over the flute, as a fraction of the rake face's depth
+  double error = 0;           ///< maximum over the flute, per tolerance
+  bool is_facet = false;      ///< whether a facet at the edge has the rake, with another angle behind it
   double chord_off = 0;       ///< maximum difference of the chordal rake from the asked rake [rad]
-  double away = 0;            ///< the swivel from the spiral angle [rad], and the depth, by the radius
-  bool cut_short = false;     ///< near a cone's apex, where no overtravel makes the flute complete, or a very long one
+  double away = 0;            ///< angle between swivel and spiral angle [rad], plus depth per radius
+  bool cut_short = false;     ///< near a cone's apex: no overtravel makes the flute complete, or only a very long one
   std::optional<SetupProblem> problem;
 };
 
-/// The least angle from one tooth to the next. @param angles ascending within one turn [rad].
+/// The minimum angle from one tooth to the next.
+/// @param angles ascending within one turn [rad].
 double minPitch(const std::vector<double>& angles);
 
-/// @param trial of a right-hand cutter. @param request of the same.
+/// @param trial trial of a right-hand cutter.
+/// @param request request for the same cutter.
 Judged judge(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& point);
 
-/// The better of two: with the lesser problem, then with a complete flute, nearer to what is asked, with the steadier
-/// rake, the better chord, with more of the rake face formed by the wheel's face, then shallower and with the swivel
-/// nearer to the spiral angle. Differences of the rake that cannot be measured do not count.
+/// Whether one set-up is better than another: with the lesser problem, then with a complete flute, nearer to the asked
+/// values, with the steadier rake, the better chord, more of the rake face formed by the wheel's face, then shallower
+/// and with the swivel nearer to the spiral angle. Differences of the rake that cannot be measured do not count.
 bool isBetter(const Judged& a, const Judged& b);
 
 }  // namespace grinder

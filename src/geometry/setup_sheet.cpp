@@ -62,7 +62,7 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
          (setup.relief ? "" : lawOfFlute(setup));
 }
 
-/// What the reading of Z takes for granted.
+/// The assumption about the wheel's position behind the reading of Z.
 std::string wheelsPlace(const GrindJob& job, const std::optional<double>& above_swivel) {
   if (above_swivel)
     return line("", format("with the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));

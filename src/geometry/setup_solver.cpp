@@ -17,31 +17,32 @@ namespace grinder {
 
 namespace {
 
-constexpr double kWidestSwivel = 80 * units::kDegree;  ///< where a solution is looked for that the machine forbids
+constexpr double kWidestSwivel = 80 * units::kDegree;  ///< maximum swivel of a solution beyond the machine's range
 constexpr double kQuarter = units::kPi / 2;
-constexpr double kSame = 1e-4;        ///< [rad], of the taper and of the radius: of two fits that came to the same
-constexpr double kAlike = 0.02;       ///< likewise, of two that lead on to the same
-constexpr double kMeasurable = 1e-3;  ///< [rad], and of the end diameter
-constexpr int kFirstSteps = 10;       ///< of all fits, after which the most promising ones go on
+constexpr double kSame = 1e-4;        ///< difference of equal fits [rad], of the taper, and per radius
+constexpr double kAlike = 0.02;       ///< difference of fits that would continue to the same result, in the same units
+constexpr double kMeasurable = 1e-3;  ///< smallest measurable difference [rad], and relative to the end diameter
+constexpr int kFirstSteps = 10;       ///< steps of all fits, after which only the most promising ones continue
 constexpr std::size_t kMostPromising = 24;
-constexpr std::size_t kMostEvened = 8;  ///< of those nearest to the tolerances
-/// Of the rake, and of spiral angle and core, by the asked ones: in which set-ups for a correction of Z are looked for.
+constexpr std::size_t kMostEvened = 8;  ///< number of fits nearest to the tolerances
+/// Tolerances, per asked tolerance, within which set-ups for a correction of Z are sought: for the rake, and for spiral
+/// angle and core.
 constexpr std::pair<double, double> kTolerancesForCorrection[] = {{4, 0.8}, {2, 0.8}, {4, 1}};
-/// Less the spiral angle, the swivels from which fits start: first here, then, if that was for nothing, there.
-/// A wheel in the plane of the helix may give the maximum rake on a cylinder, and that be the asked one.
+/// Starting swivels, relative to the spiral angle: the first list, then the second. On a cylinder, a wheel in the plane
+/// of the helix may give the maximum rake, which may be the asked one.
 const std::vector<double> kFirstSwivels{4 * units::kDegree};
 const std::vector<double> kOtherSwivels{0, -4 * units::kDegree, 12 * units::kDegree, -12 * units::kDegree};
 const std::vector<double> kSwivelsOfCylinder{0, 4 * units::kDegree, -4 * units::kDegree};
-constexpr int kStartHeights = 4;                    ///< from which they start, on either side of the axis
-constexpr int kMoreHeights = 12;                    ///< likewise, if all that was for nothing
-constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< of the deepest, where it is found and no core is asked
-constexpr int kSmallerWheels = 15;                  ///< that are tried, each by a twentieth of the diameter less
+constexpr int kStartHeights = 4;                    ///< number of starting heights on either side of the axis
+constexpr int kMoreHeights = 12;                    ///< number of starting heights if the first ones fail
+constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< starting depths, per deepest, if it is free and no core asked
+constexpr int kSmallerWheels = 15;                  ///< number of smaller wheels, each by a twentieth of the diameter
 constexpr double kLessWheel = 0.05;
-constexpr int kNarrowerWheels = 7;  ///< likewise, each by a tenth of the width less
+constexpr int kNarrowerWheels = 7;  ///< number of narrower wheels tried, each narrower by a tenth of the width
 constexpr double kLessWidth = 0.1;
-constexpr int kWiderCores = 12;  ///< times that their tolerance is widened
+constexpr int kWiderCores = 12;  ///< number of times that the cores' tolerance is widened
 constexpr double kWider = 1.4;
-constexpr double kAtLimit = 5 * units::kDegree;  ///< of the swivel, that may have stopped a fit
+constexpr double kAtLimit = 5 * units::kDegree;  ///< angle to the swivel's limit that may have stopped a fit
 
 void requireFinite(const char* name, double value, bool good, const char* allowed) {
   if (good && std::isfinite(value)) return;
@@ -76,7 +77,7 @@ SolvedSetup mirrored(SolvedSetup solved) {
   return solved;
 }
 
-/// The same tool in the mirror: a left-hand cutter becomes a right-hand one.
+/// The mirror image of a request: a left-hand cutter becomes a right-hand one.
 SetupRequest mirrored(SetupRequest r) {
   r.cutter.cut = CutDirection::kRightHand;
   r.cutter.spiral_angle = -r.cutter.spiral_angle;
@@ -89,14 +90,15 @@ SetupRequest mirrored(SetupRequest r) {
   return r;
 }
 
-/// Whether two fits came to the same. @param difference up to which they are [rad], of the taper and of the radius.
+/// Whether two fits have the same result.
+/// @param difference maximum difference [rad], of the taper, and per radius.
 bool isSame(const SetupPoint& a, const SetupPoint& b, double difference, double radius) {
   return std::abs(a.swivel - b.swivel) < difference && std::abs(a.taper - b.taper) < difference &&
          std::max({std::abs(a.height - b.height), std::abs(a.depth - b.depth), std::abs(a.x_shift - b.x_shift)}) <
              difference * radius;
 }
 
-/// With a shift by which the wheel's centre is ahead of where it forms the edge amid the flute.
+/// The point with a shift along X: the distance of the wheel's centre ahead of the edge that it forms at mid-flute.
 std::optional<SetupPoint> withShift(const SetupTrial& trial, SetupPoint point) {
   const double x = trial.cutter().geometry().flute_length / 2;
   const auto wall = trial.sweep(point).wall(x, trial.cutter().radius(x), true);
@@ -114,15 +116,16 @@ std::vector<double> startDepths(const SetupTrial& trial, const SetupRequest& req
   return depths;
 }
 
-/// The height up to which a wheel reaches the flute's depth, on either side of the axis [m].
+/// The maximum height at which a wheel reaches the flute's depth, on either side of the axis [m].
 double highestOf(const SetupTrial& trial, const SetupRequest& request, double swivel) {
   const double radius = request.cutter.end_diameter / 2;
   const double depth = request.core_diameter ? radius - *request.core_diameter / 2 : std::min(request.depth, radius);
   return radius + std::sqrt(2 * trial.wheel().maxRadius() * depth) * std::abs(std::sin(swivel));
 }
 
-/// Starts of a fit: the wheel cuts as deep as is asked at several heights, without and with a shift.
-/// @param swivels less the spiral angle [rad]. @param most heights, on either side of the axis.
+/// Starts of a fit: the wheel cuts to the asked depth at several heights, without and with a shift along X.
+/// @param swivels swivels relative to the spiral angle [rad].
+/// @param most number of heights on either side of the axis.
 std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& request,
                                  const std::vector<double>& swivels, int most) {
   std::vector<SetupPoint> starts;
@@ -150,7 +153,7 @@ std::vector<SetupPoint> startsOf(const SetupTrial& trial, const SetupRequest& re
   return starts;
 }
 
-/// Whether an exact set-up is judged over the flute, too. A law that corrects Z makes the rake between its ends.
+/// Whether an exact set-up is also judged over the flute. A law that corrects Z gives the rake between the ends.
 bool hasTolerances(const SetupRequest& request) {
   const CutterGeometry& c = request.cutter;
   const bool asks_core = request.core_diameter || request.core_diameter_end;
@@ -158,8 +161,8 @@ bool hasTolerances(const SetupRequest& request) {
          (c.spiral_tolerance > 0 || !request.asks_spiral) && (c.core_tolerance > 0 || !asks_core);
 }
 
-/// The tolerances asked, none less than what can be measured: exact set-ups may be alike at the ends of the flute, but
-/// not between them.
+/// The request with no tolerance below the measurable one: exact set-ups may be equal at the ends of the flute, but not
+/// between them.
 SetupRequest measurable(SetupRequest r) {
   CutterGeometry& c = r.cutter;
   c.rake_tolerance = std::max(c.rake_tolerance, kMeasurable);
@@ -168,15 +171,15 @@ SetupRequest measurable(SetupRequest r) {
   return r;
 }
 
-/// The best set-up with all that is asked: exact, or else within the tolerances. If there is none, the nearest.
+/// The best set-up that meets the request: exact, or else within the tolerances. If there is none, the nearest one.
 struct Fitted {
   std::optional<Judged> best;
-  bool settled = false;  ///< the best one is accepted
+  bool settled = false;  ///< whether the best one is accepted
   std::optional<SetupPoint> nearest;
-  double error = std::numeric_limits<double>::infinity();  ///< of the nearest one, by the tolerances
+  double error = std::numeric_limits<double>::infinity();  ///< error of the nearest one, per tolerance
 };
 
-/// What a function makes of each point, in their order.
+/// The results of a function for each point, in their order.
 template <typename Function>
 auto all(const std::vector<SetupPoint>& points, const Function& function) {
   std::vector<decltype(function(points.front()))> results(points.size());
@@ -184,12 +187,13 @@ auto all(const std::vector<SetupPoint>& points, const Function& function) {
   return results;
 }
 
-/// Looks for a set-up from one lot of starts after the other, until one is accepted.
+/// Looks for a set-up from several lists of starts in turn, until one is accepted.
 class Search {
  public:
   Search(const SetupTrial& trial, const SetupRequest& request) : trial_(trial), request_(request) {}
 
-  /// Fits all that is asked, first at the flute's ends. @return whether a set-up is accepted.
+  /// Fits all asked values, first at the flute's ends.
+  /// @return whether a set-up is accepted.
   bool findFromEnds(const std::vector<SetupPoint>& starts) {
     const bool has_tolerances = hasTolerances(request_);
     std::vector<SetupPoint> ends;
@@ -203,7 +207,7 @@ class Search {
     return settle();
   }
 
-  /// Fits what is asked over the flute at once, and a land where all that is found has none.
+  /// Fits the asked values over the flute at once, and a land if no set-up found has one.
   bool findFrom(const std::vector<SetupPoint>& starts) {
     const std::vector<SetupPoint> best = takeNearest(starts);
     if (settle()) return true;
@@ -240,7 +244,7 @@ class Search {
     if (!judged.problem && !judged.cut_short && !judged.is_facet) unasked_.push_back(judged);
   }
 
-  /// Those that fits come to, without what comes to the same, the nearest to the tolerances first.
+  /// The distinct results of fits, the nearest to the tolerances first.
   std::multimap<double, SetupPoint> nearestTo(const std::vector<SetupPoint>& starts, int steps) const {
     const auto fit = [&](const SetupPoint& p) { return nearestSetup(trial_, request_, p, steps); };
     std::vector<SetupPoint> nearest;
@@ -253,7 +257,8 @@ class Search {
     return by_error;
   }
 
-  /// Takes what is within the tolerances near some starts. @return what comes nearest to them.
+  /// Takes the results within the tolerances near some starts.
+  /// @return the nearest results.
   std::vector<SetupPoint> takeNearest(const std::vector<SetupPoint>& starts) {
     std::vector<SetupPoint> promising;
     for (const auto& [error, fit] : nearestTo(starts, kFirstSteps)) {
@@ -277,7 +282,8 @@ class Search {
     return best;
   }
 
-  /// Asks of what would do, the best first. @return whether one is accepted, which then is the best.
+  /// Asks for acceptance of the suitable set-ups, the best first.
+  /// @return whether one is accepted; it is then the best.
   bool settle() {
     std::stable_sort(unasked_.begin(), unasked_.end(), isBetter);
     for (const Judged& judged : std::exchange(unasked_, {})) {
@@ -291,11 +297,11 @@ class Search {
   const SetupTrial& trial_;
   const SetupRequest& request_;
   Fitted fitted_;
-  std::vector<SetupPoint> seen_;  ///< that were judged
-  std::vector<Judged> unasked_;   ///< that would do, and may yet be accepted
+  std::vector<SetupPoint> seen_;  ///< set-ups that were judged
+  std::vector<Judged> unasked_;   ///< suitable set-ups that may yet be accepted
 };
 
-/// The set-up that would be without the figure that is kept, with that figure: near it are those with it.
+/// Starts near the set-up without the fixed figure, but with that figure set.
 std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest request) {
   const auto keep = request.keep;
   if (!keep || trial.isCylinder() || !request.core_diameter) return {};
@@ -314,7 +320,7 @@ std::vector<SetupPoint> startsBesideFree(const SetupTrial& trial, SetupRequest r
   return {point};
 }
 
-/// Of a cylinder whose rake face need not pass the axis at R sin r: at other heights, the nearest first.
+/// For a cylinder whose rake face need not pass the axis at R sin r: other heights, the nearest first.
 std::optional<Fitted> fittedAtOtherHeights(const SetupTrial& trial, SetupRequest request) {
   if (!isHeightTied(trial, request) || request.keep) return std::nullopt;
   const double tied = tiedHeight(trial, request, request.cutter.spiral_angle);
@@ -334,7 +340,7 @@ std::optional<Fitted> fittedAtOtherHeights(const SetupTrial& trial, SetupRequest
   return std::nullopt;
 }
 
-/// A law that corrects Z changes core and edge by so much that other set-ups may do than those without it.
+/// A law that corrects Z changes core and edge so much that other set-ups may suit it.
 std::optional<Fitted> fittedForCorrection(const SetupTrial& trial, const SetupRequest& request,
                                           const std::vector<SetupPoint>& starts) {
   if (request.z_law == ZLaw::kPublished) return std::nullopt;
@@ -349,7 +355,7 @@ std::optional<Fitted> fittedForCorrection(const SetupTrial& trial, const SetupRe
   return std::nullopt;
 }
 
-/// @param everywhere starts from the other swivels, too, if the first ones lead nowhere.
+/// @param everywhere whether to start from the other swivels, too, if the first ones fail.
 Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywhere) {
   Search search(trial, request);
   const bool asks_edge = request.asks_spiral || request.core_diameter_end;
@@ -369,7 +375,7 @@ Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywh
   return std::move(search).result();
 }
 
-/// The nearest set-up with a changed request, if it is one, and leads on to the next change.
+/// The nearest set-up with a changed request, if it is suitable; it is then the start for the next change.
 std::optional<SolvedSetup> changed(const SetupRequest& request, SetupPoint& nearest) {
   const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
   const auto fit = nearestSetup(trial, request, nearest);
@@ -380,7 +386,7 @@ std::optional<SolvedSetup> changed(const SetupRequest& request, SetupPoint& near
   return judged.problem ? std::nullopt : std::optional(judged.solved);
 }
 
-/// The widest of some narrower wheels that mends it; 0 if none does [m].
+/// The widest of some narrower wheels that makes the job possible; 0 if none does [m].
 double mendingWidth(const SetupRequest& request, SetupPoint nearest) {
   const double width = request.wheel.upperFace() - request.wheel.lowerFace();
   for (int i = 1; i <= kNarrowerWheels; ++i) {
@@ -394,7 +400,7 @@ double mendingWidth(const SetupRequest& request, SetupPoint nearest) {
   return 0;
 }
 
-/// The largest of some smaller wheels that mends it; 0 if none does [m].
+/// The largest of some smaller wheels that makes the job possible; 0 if none does [m].
 double mendingDiameter(const SetupRequest& request, SetupPoint nearest) {
   const double diameter = 2 * request.wheel.maxRadius();
   for (int i = 1; i <= kSmallerWheels; ++i) {
@@ -407,7 +413,7 @@ double mendingDiameter(const SetupRequest& request, SetupPoint nearest) {
   return 0;
 }
 
-/// What would mend it: a smaller wheel, else a narrower one, else the cores that can be had.
+/// What would make the job possible: a smaller wheel, else a narrower one, else other cores.
 SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest) {
   if (const double diameter = mendingDiameter(request, nearest); diameter > 0) return {diameter, 0, {}};
   if (const double width = mendingWidth(request, nearest); width > 0) return {0, width, {}};
@@ -427,7 +433,7 @@ SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest
   return {0, 0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
 }
 
-/// That what is asked cannot be had within its tolerances.
+/// The refusal of asked values that are not possible within their tolerances.
 SetupRefusal refusal(const SetupTrial& trial, const SetupRequest& request, const SetupPoint& nearest) {
   const SetupErrors errors = setupErrors(trial, request, nearest, SetupTrial::kSections);
   const auto range = [](const Eigen::ArrayXd& error, double asked) {
@@ -480,7 +486,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
   }
   const Fitted here = fitted(trial, request, true);
   if (here.best && !here.best->problem) return here.best->solved;
-  // What the machine's range does not stop is not beyond it either.
+  // A set-up that the machine's range does not stop is not beyond it either.
   const double nearest = here.nearest ? here.nearest->swivel : request.max_swivel;
   const double to_limit = std::min(nearest - request.min_swivel, request.max_swivel - nearest);
   if (request.keep != SetupFigure::kSwivel && to_limit < kAtLimit) {

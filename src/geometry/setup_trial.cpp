@@ -11,15 +11,15 @@ namespace grinder {
 namespace {
 
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-constexpr double kOfApex = 0.98;   ///< of the way to the apex, the stroke may go
-constexpr double kShortOf = 0.01;  ///< of the way to where a longer stroke spoils the flute, it ends before
-constexpr int kWallRings = 10;     ///< of a wall, on which is asked what forms it
+constexpr double kOfApex = 0.98;   ///< fraction of the way to the apex that the stroke may go
+constexpr double kShortOf = 0.01;  ///< fraction of the way to where a flute is spoilt, by which a stroke ends earlier
+constexpr int kWallRings = 10;     ///< rings of a wall on which its forming surface is determined
 constexpr int kRingsOfReach = 6;
-constexpr double kFloor = 1e-5;     ///< of the depth: where a wall passes into the floor
-constexpr double kEdgeStep = 1e-4;  ///< of the radius, for the slope of the edge
+constexpr double kFloor = 1e-5;     ///< fraction of the depth at which a wall passes into the floor
+constexpr double kEdgeStep = 1e-4;  ///< step for the slope of the edge, as a fraction of the radius
 constexpr double kCylinder = 1e-6;
-constexpr double kMinDepth = 1e-6;  ///< that a job may have [m]
-constexpr double kOnFace = 1e-8;    ///< how far below the edge still is the edge [m]
+constexpr double kMinDepth = 1e-6;  ///< minimum depth of a job [m]
+constexpr double kOnFace = 1e-8;    ///< distance below the edge that still counts as the edge [m]
 
 }  // namespace
 
@@ -44,7 +44,7 @@ bool SetupTrial::isSound(const SetupPoint& p) const noexcept {
 }
 
 WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
-  // A stroke ends before the cutter's apex, and before that of the stroke's curve, which is moved by the shift.
+  // A stroke ends before the cutter's apex, and before the apex of the stroke's curve, which is shifted along X.
   const bool opens = cutter_.tanCone() >= 0;
   const double apex =
       -cutter_.radius(0) / cutter_.tanCone() + (opens ? std::max(0.0, p.x_shift) : std::min(0.0, p.x_shift));

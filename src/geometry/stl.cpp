@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kHeaderSize = 80;
 constexpr std::size_t kTriangleSize = 50;
 
-/// Appends a number, its lowest byte first.
+/// Appends a number in little-endian order.
 void append(std::string& bytes, std::uint32_t number) {
   boost::endian::native_to_little_inplace(number);
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
@@ -46,7 +46,7 @@ void writeStl(std::ostream& out, const CutterSolid& solid) {
     for (const auto& v : {a, b, c}) append(bytes, v);
     bytes.append(2, '\0');
   }
-  // A text that begins with "solid" would be taken for the other form of STL.
+  // A header that begins with "solid" would be taken for the text form of STL.
   std::string head = "flute_grinder, lengths in mm";
   head.resize(kHeaderSize, ' ');
   append(head, count);

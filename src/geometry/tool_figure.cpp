@@ -13,15 +13,15 @@ namespace {
 
 using Place = FigurePlace;
 
-constexpr double kLandPart = 0.05;       ///< of a land, by which its width may be off
-constexpr double kLeastLandOff = 20e-6;  ///< that it may be off in any case [m]
-constexpr double kMostUndercut = 3e-6;   ///< of an edge's radius by a relief [m]
+constexpr double kLandPart = 0.05;       ///< tolerance of a land's width, as a fraction of it
+constexpr double kLeastLandOff = 20e-6;  ///< minimum tolerance of a land's width [m]
+constexpr double kMostUndercut = 3e-6;   ///< maximum undercut of an edge's radius by a relief [m]
 
 const CutterGeometry& cutterOf(const Place& p) { return p.job->cutter; }
 
 FigureValue ifComplete(const Place& p, FigureValue value) { return p.tooth().complete ? value : std::nullopt; }
 
-/// What a secondary relief makes of the tool.
+/// A value that only a secondary relief has.
 FigureValue ifSecondary(const Place& p, double asked) {
   return p.job->operation > 1 ? FigureValue(asked) : std::nullopt;
 }
@@ -35,7 +35,7 @@ double noTolerance(const Place&) { return 0; }
 
 void widen(Range& range, double value) { range = {std::min(range.from, value), std::max(range.to, value)}; }
 
-/// By how much an edge is off the asked helix, turned to where that is the least either way over the whole tooth.
+/// The deviation of an edge from the asked helix, turned to the angle with the smallest deviation over the whole tooth.
 FigureValue offHelix(const Place& p) {
   const LogCurve helix(ConicalCutter(p.job.cutterOf(static_cast<int>(p.number))));
   const auto off = [&](const GroundSection& section) {
@@ -49,17 +49,17 @@ FigureValue offHelix(const Place& p) {
   return *here - (all.from + all.to) / 2;
 }
 
-/// 0 where the flutes leave none.
+/// The land; 0 where the flutes leave none.
 FigureValue land(const Place& p) {
   return p.tooth().flute ? FigureValue(p.tooth().land.value_or(0) * p.section.radius) : std::nullopt;
 }
 
-/// It begins at one part of the radius.
+/// The asked width of the primary relief, a constant fraction of the radius.
 FigureValue askedPrimary(const Place& p) {
   return ifSecondary(p, cutterOf(p).land * p.section.radius / (cutterOf(p).end_diameter / 2));
 }
 
-/// How a figure is measured and asked.
+/// The functions that give the measured and the asked value of a figure.
 struct Measurement {
   ToolFigure value;
   FigureValue (*measured)(const Place&);

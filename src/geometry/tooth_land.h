@@ -9,10 +9,10 @@ namespace grinder {
 /// The land of a tooth in a section, from its edge to the next flute. Angles are counted from the edge toward the heel.
 class ToothLand {
  public:
-  /// @param number of a tooth that has an edge in the section.
+  /// @param number number of a tooth that has an edge in the section.
   ToothLand(const GroundCutter& cutter, const GroundSection& section, std::size_t number);
 
-  /// Where a relief's surface meets a circle, nearest to the edge, by its slope over the radius.
+  /// The point nearest to the edge where a relief's surface meets a circle, with its slope over the radius.
   struct Surface {
     double behind, slope;
   };
@@ -25,7 +25,7 @@ class ToothLand {
   double heelWall(double r) const { return wallOf(*next_flute_, r, !right_).value_or(0) + pitch_; }
   double nextRakeFace(double r) const { return wallOf(*next_flute_, r, right_).value_or(0) + pitch_; }
 
-  /// Where a relief ends, far behind the edge; before everything where it does not reach the circle.
+  /// The end of a relief far behind the edge; a whole turn before the edge where it does not reach the circle.
   double farEnd(const Relief& relief, double r) const;
 
  private:

@@ -12,7 +12,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kTouchTolerance = 1e-6;  ///< of the place on the wheel that touches, and of its radius [m]
+constexpr double kTouchTolerance = 1e-6;  ///< tolerance of the touching place on the wheel, and of its radius [m]
 
 }  // namespace
 

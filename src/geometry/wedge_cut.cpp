@@ -21,17 +21,17 @@ bool comesBefore(const Vector3d& a, const Vector3d& b) {
   return false;
 }
 
-/// Where an edge passes through the plane, the same whichever way round the edge is given.
+/// The point where an edge passes through the plane, whichever way round the edge is given.
 Vector3d crossing(const Vector3d& normal, const Vector3d& a, const Vector3d& b) {
   if (comesBefore(b, a)) return crossing(normal, b, a);
   const double at_a = normal.dot(a), at_b = normal.dot(b);
-  // Exactly, as the axis lies in both half planes.
+  // Exact, as the axis lies in both half planes.
   if (at_a == 0) return a;
   if (at_b == 0) return b;
   return a + at_a / (at_a - at_b) * (b - a);
 }
 
-/// The part of a polygon on one side of a plane; the plane itself belongs to the side that is behind it.
+/// The part of a polygon on one side of a plane; the plane itself counts as behind.
 Polygon clipped(const Polygon& polygon, const Vector3d& normal, bool in_front) {
   Polygon result;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -47,8 +47,8 @@ Polygon clipped(const Polygon& polygon, const Vector3d& normal, bool in_front) {
 /// The corners other than the first, so that all four are an even permutation.
 constexpr std::array<std::array<std::size_t, 3>, 4> kOthers{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
-/// The section of a tetrahedron with a plane, its corners counterclockwise as seen from the plane's front; clockwise
-/// in a tetrahedron that is turned inside out, so that it cancels what the others cover twice.
+/// The section of a tetrahedron with a plane, its corners counterclockwise as seen from the plane's front; clockwise in
+/// a tetrahedron that is turned inside out, so that it cancels the doubly covered parts.
 Polygon section(const std::array<Vector3d, 4>& corners, const Vector3d& normal) {
   std::array<bool, 4> front{};
   for (std::size_t i = 0; i < 4; ++i) front[i] = normal.dot(corners[i]) > 0;

@@ -16,7 +16,7 @@ void require(bool good, const char* name, double value, const char* allowed) {
   throw std::invalid_argument(text.str());
 }
 
-constexpr double kShortfall = 1e-6;  ///< of the radius, that the largest one may fall short
+constexpr double kShortfall = 1e-6;  ///< relative amount by which the largest radius may be too small
 
 }  // namespace
 
@@ -58,7 +58,7 @@ double WheelProfile::Fillet::at(double w_here) const noexcept {
 
 double WheelProfile::Fillet::slopeAt(double w_here) const noexcept {
   const double across = w_here - w;
-  // Upright at the face, where the circle touches it.
+  // At the face, where the circle touches it, the slope is infinite.
   return -across / std::sqrt(std::max(1e-12 * size * size, size * size - across * across));
 }
 

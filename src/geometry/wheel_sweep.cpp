@@ -20,18 +20,18 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kNotReached = -kInfinite;
-constexpr int kMinPoses = 32, kMaxPoses = 512;  ///< of a window, from which an extremum is refined
-constexpr double kPoseTurn = 0.1;  ///< of the cutter between two poses; or the wheel's rise, of the cutter's radius
-constexpr int kAnglesPerPose = 8;  ///< from which the wheel's deepest place on a circle is refined
+constexpr int kMinPoses = 32, kMaxPoses = 512;  ///< poses of a window, from which an extremum is refined
+constexpr double kPoseTurn = 0.1;  ///< turn of the cutter between two poses; or rise of the wheel, per cutter radius
+constexpr int kAnglesPerPose = 8;  ///< angles from which the wheel's deepest place on a circle is refined
 constexpr std::uintmax_t kMaxPoseSteps = 60;
-constexpr int kPoseHalvings = 30;      ///< of a step between poses, for where a circle near the floor is reached
-constexpr int kDiscs = 16;             ///< of the wheel, from which its minimum radius is refined
-constexpr double kCorner = 1e-9;       ///< how near a corner of the profile counts as the corner [m]
-constexpr double kAside = 0.01;        ///< how far beside a pose an end is tried, of a step between poses
-constexpr double kEndStep = 1e-10;     ///< of Newton's method, after which the next is lost in rounding [rad]
-constexpr double kSameAngle = 1e-12;   ///< by which a longer stroke must move an end to count as farther [rad]
-constexpr double kNearestApex = 1e-3;  ///< of the small end's radius: nearer its apex a cone turns without end
-constexpr double kSameEnd = 1e-7;      ///< how well two searches find the same end [rad]
+constexpr int kPoseHalvings = 30;      ///< halvings of a step between poses, to reach a circle near the floor
+constexpr int kDiscs = 16;             ///< discs of the wheel, from which its minimum radius is refined
+constexpr double kCorner = 1e-9;       ///< distance from a corner of the profile that counts as the corner [m]
+constexpr double kAside = 0.01;        ///< distance beside a pose at which an end is tried, per step between poses
+constexpr double kEndStep = 1e-10;     ///< step of Newton's method after which the next is lost in rounding [rad]
+constexpr double kSameAngle = 1e-12;   ///< angle by which a longer stroke must move an end to count as farther [rad]
+constexpr double kNearestApex = 1e-3;  ///< distance from the apex, per end radius, where a cone turns endlessly
+constexpr double kSameEnd = 1e-7;      ///< precision with which two searches find the same end [rad]
 
 void requireFinite(const char* name, double value) {
   if (std::isfinite(value)) return;
@@ -85,7 +85,7 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
   const auto lower = [](const PathDeviation& a, const PathDeviation& b) { return a.y < b.y; };
   const auto deepest = std::min_element(stroke.deviations.begin(), stroke.deviations.end(), lower);
   if (deepest != stroke.deviations.end()) deepest_deviation_ = deepest->y;
-  // A spline keeps between its coefficients.
+  // A spline stays between its coefficients.
   const auto first = stroke.z_correction.coefficients.begin();
   if (const int count = stroke.z_correction.coefficientCount(); count > 0) {
     const auto [low, high] = std::minmax_element(first, first + count);
@@ -133,8 +133,8 @@ WheelSweep::FromWheel WheelSweep::fromWheel(const Pose& p, double y, double z) c
 WheelSweep::Window WheelSweep::reach(double x, double r) const noexcept {
   const double width = std::max(std::abs(wheel_.lowerFace()), std::abs(wheel_.upperFace())) * std::abs(sin_);
   const double radius = wheel_.maxRadius();
-  // Where the wheel's circle, seen from the side and moved by the width either way, meets the height r: on a cone its
-  // centre rises with X.
+  // The range in which the wheel's circle, seen from the side and moved by the width either way, meets the height r: on
+  // a cone its centre rises with X.
   const double above = centre_ + x * y_per_x_ + deepest_deviation_ - r;
   const double stretch = 1 / (cos_ * cos_);
   const double a = y_per_x_ * y_per_x_ + stretch;
@@ -175,7 +175,7 @@ std::optional<WheelSweep::Window> WheelSweep::window(double x, double r) const n
 std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) const {
   const double lowest = p.y - wheel_.maxRadius();
   if (lowest >= r) return std::nullopt;
-  // Where the circle lies between the wheel's faces and not below its lowest point.
+  // The angles at which the circle is between the wheel's faces and not below its lowest point.
   const double cos_open = std::max(0.0, lowest / r), sin_open = std::sqrt(1 - cos_open * cos_open);
   const auto sin_at_face = [&](double w) { return (p.z + (w + p.dx * sin_) / cos_) / r; };
   const double sin_min = sin_at_face(wheel_.lowerFace()), sin_max = sin_at_face(wheel_.upperFace());
@@ -184,12 +184,12 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
   const double min = -sin_open < sin_min ? std::asin(sin_min) : -open;
   const double max = sin_max < sin_open ? std::asin(sin_max) : open;
 
-  // From the end inward to the first point that is in the wheel.
+  // From the end inward to the first point in the wheel.
   const double end = high ? max : min;
   const double step = ((high ? min : max) - end) / kAnglesPerPose;
   const double cos_step = std::cos(step), sin_step = std::sin(step);
   double y = r * std::cos(end), z = r * std::sin(end);
-  double closest = kInfinite;  // to the spindle's axis
+  double closest = kInfinite;  // distance to the spindle's axis
   const auto placeAt = [&](double theta) {
     const FromWheel from = fromWheel(p, y, z);
     closest = std::min(closest, from.spindle);
@@ -204,7 +204,7 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
     if (here.outside < nearest.outside) nearest = here;
     before = here;
   }
-  // The distance from the axis changes by no more than the way along the circle.
+  // The distance from the axis changes by at most the distance along the circle.
   if (closest > wheel_.maxRadius() + r * std::abs(step) / 2) return std::nullopt;
   const auto f = [&](double theta) { return outside(p, r * std::cos(theta), r * std::sin(theta)); };
   std::uintmax_t steps = kMaxPoseSteps;
@@ -216,7 +216,7 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
 }
 
 double WheelSweep::endBetween(const Pose& p, double r, PlaceOnCircle in, PlaceOnCircle out) const noexcept {
-  // Newton's method, which never leaves what is between the two.
+  // Newton's method, kept between the two places.
   double theta = in.theta + (out.theta - in.theta) * in.outside / (in.outside - out.outside);
   for (std::uintmax_t i = 0; i < kMaxPoseSteps; ++i) {
     const double y = r * std::cos(theta), z = r * std::sin(theta);
@@ -242,7 +242,7 @@ double WheelSweep::endOver(double x, double axis_x, double r, bool high) const {
 }
 
 WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& window, bool high) const {
-  // The largest end of the arcs, or the least by its negative.
+  // The largest end of the arcs, or the smallest through its negative.
   const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
   const int poses = posesOf(x, window);
   std::array<double, kMaxPoses + 1> value;
@@ -252,7 +252,7 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
   double best = *first;
   double best_at = static_cast<double>(first - value.begin());
   const auto at = [&](int i) { return i < 0 || i > poses ? kNotReached : value[static_cast<std::size_t>(i)]; };
-  // In steps, since the search ends at a fixed part of its variable.
+  // In steps, since the search ends at a fixed fraction of its variable.
   const auto search = [&](int i, int side) {
     const auto lost = [&](double along) {
       const double e = end(window.from + (i + along) * step);
@@ -269,7 +269,7 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
       return i + side >= 0 && i + side <= poses && end(window.from + (i + side * kAside) * step) > at(i);
     };
     if (at(i) >= at(i - 1) && at(i) >= at(i + 1)) {
-      // Any peak among the poses may be the highest on either side of it.
+      // Any peak among the poses may be highest on either side of it.
       const bool before = rises(-1), after = rises(1);
       if (i > 0 && (before || !after)) search(i, -1);
       if (i < poses && (after || !before)) search(i, 1);
@@ -281,7 +281,7 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
     }
   }
   double axis_x = window.from + best_at * step;
-  // A straight flute's wall is formed all along the stroke; then it is here.
+  // A straight flute's wall is formed all along the stroke; the section's own X is then taken.
   if (const double here = std::clamp(x, window.from, window.to); end(here) >= best) axis_x = here;
   return {best, axis_x};
 }
@@ -311,7 +311,7 @@ std::optional<WheelSweep::Spoiling> WheelSweep::spoiling(double x, double r, boo
   const Window all = openReach(x, r);
   const double nearest = apex_ < 0 ? all.from : all.to, farthest = apex_ < 0 ? all.to : all.from;
   if (!std::isfinite(apex_) || nearest != (1 - kNearestApex) * apex_ || !(all.from < all.to)) return std::nullopt;
-  // From the apex inward, the end falls to where the flute's own poses begin.
+  // From the apex inward, the end falls until the flute's own poses begin.
   const auto end = [&](double axis_x) { return endOver(x, axis_x, r, high); };
   const int poses = posesOf(x, all);
   const double step = (farthest - nearest) / poses;
@@ -345,7 +345,7 @@ std::optional<double> WheelSweep::overcutStart(double x, double r) const {
 
 template <typename Function>
 WheelSweep::Minimum WheelSweep::minimum(double x, double max_height, const Function& f) const {
-  // Along the stroke, for the disc of the wheel at w, f is convex: one search finds its minimum value.
+  // Along the stroke, f is convex for the disc of the wheel at w: one search finds its minimum.
   const auto of_disc = [&](double w) -> Minimum {
     const double radius = wheel_.radius(w);
     double from = std::max(std::min(stroke_.from, stroke_.to), x - (radius * cos_ - w * sin_));
@@ -433,7 +433,7 @@ WheelSweep::Normal WheelSweep::normal(const Pose& p, double r, double theta, dou
   const double dy = y - p.y, dz = z - p.z;
   const double t = dz * sin_ + p.dx * cos_;
   const double from_axis = std::sqrt(dy * dy + t * t);
-  // Of a flat face, or of the profile.
+  // The slope of a flat face, or of the profile.
   const bool upper = w > wheel_.upperFace(), lower = w < wheel_.lowerFace();
   const double axial = upper ? 1 : lower ? -1 : -wheel_.slope(w);
   const double radial = upper || lower ? 0 : 1 / from_axis;
@@ -457,8 +457,8 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   const double theta = angle - p.a;
   const double w = std::clamp((r * std::sin(theta) - p.z) * cos_ - p.dx * sin_, wheel_.lowerFace(), wheel_.upperFace());
 
-  // The wheel moves along its groove's wall: of the normals about the point, one at a corner of the profile being any
-  // between those of its two sides, the wall's is the one square to the wheel's motion.
+  // The wheel moves along its groove's wall. At a corner of the profile the normal may be any between the normals of
+  // its two sides; the wall's normal is the one perpendicular to the wheel's motion.
   const bool on_face = outside(p, r * std::cos(theta), r * std::sin(theta)) < -kCorner;
   const double face = w + (2 * w > wheel_.lowerFace() + wheel_.upperFace() ? 1 : -1) * wheel_.maxRadius();
   const Normal below = normal(p, r, theta, on_face ? face : w - kCorner);

@@ -17,14 +17,16 @@ namespace grinder {
 
 namespace {
 
-constexpr std::size_t kEdgeSections = 9;  ///< of the flute
+constexpr std::size_t kEdgeSections = 9;  ///< number of sections of the flute
 using EdgeAngles = std::array<double, kEdgeSections>;
 
 double sectionOf(const ValidJob& flutes, std::size_t i) {
   return flutes->cutter.flute_length * static_cast<double>(i) / (kEdgeSections - 1);
 }
 
-/// As EdgeHelix::ahead. @param cutter with the helix. @param edge in the sections, less the tooth's own angle [rad].
+/// See EdgeHelix::ahead.
+/// @param cutter cutter with the helix.
+/// @param edge angle of the edge in the sections, less the tooth's angle [rad].
 double aheadOf(const ConicalCutter& cutter, const ValidJob& flutes, EdgeAngles edge) {
   const LogCurve helix(cutter);
   for (std::size_t i = 0; i < edge.size(); ++i) edge[i] -= helix.a(sectionOf(flutes, i));
@@ -32,7 +34,7 @@ double aheadOf(const ConicalCutter& cutter, const ValidJob& flutes, EdgeAngles e
   return (*least + *most) / 2;
 }
 
-/// @param job with the published law.
+/// @param job job with the published law.
 ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch) {
   const GrindProcess& p = job->process;
   const double rake = job->cutter.rake_angle;
@@ -64,7 +66,7 @@ std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
       angles[tooth][i] = *edge - cutter.teeth()[tooth].angle;
     }
   }
-  std::map<std::size_t, double> spirals;  // by flute: teeth that share one have the same to the last bit
+  std::map<std::size_t, double> spirals;  // by flute: teeth that share one have the same spiral to the last bit
   std::vector<EdgeHelix> edges;
   for (std::size_t tooth = 0; tooth < angles.size(); ++tooth) {
     CutterGeometry own = flutes.cutterOf(static_cast<int>(tooth));

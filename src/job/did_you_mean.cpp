@@ -8,7 +8,7 @@ namespace grinder {
 
 namespace {
 
-/// How many letters must be inserted, removed, replaced or swapped with the next to make one word the other.
+/// The edit distance: letters to insert, remove, replace or swap with the next.
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> before_last, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0U);
@@ -27,7 +27,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string didYouMean(const std::string& word, const std::vector<std::string>& known) {
-  // Of a short word less may differ, or each would be near.
+  // Short words may differ less, or every word would be near.
   constexpr std::size_t most = 2;
   const std::size_t farthest = std::min(most, (word.size() - std::min(word.size(), word.find_first_not_of('-'))) / 2);
   const auto far = [&](const std::string& other) -> std::size_t {

@@ -9,7 +9,7 @@ namespace grinder {
 
 namespace {
 
-/// Bytes of the character with which a text begins; 0 if it is not UTF-8.
+/// Bytes of a text's first character; 0 if it is not UTF-8.
 std::size_t lengthOfCharacter(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned first = byte(0);
@@ -18,14 +18,14 @@ std::size_t lengthOfCharacter(std::string_view text) {
   for (std::size_t i = 1; i < length; ++i) {
     if ((byte(i) & 0xc0U) != 0x80) return 0;
   }
-  // Written longer than needed, a surrogate, or beyond the last character.
+  // An overlong encoding, a surrogate, or beyond the last character.
   const unsigned second = byte(1);
   const bool wrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second > 0x9f) ||
                      (first == 0xf0 && second < 0x90) || (first == 0xf4 && second > 0x8f);
   return wrong ? 0 : length;
 }
 
-/// Those of ASCII, and of Unicode beside them.
+/// Whether a character is a control character of ASCII or Unicode.
 bool isControl(std::string_view character) {
   const auto first = static_cast<unsigned char>(character[0]);
   return first < 0x20 || first == 0x7f || (first == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0);

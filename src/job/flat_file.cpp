@@ -17,13 +17,13 @@ bool decode(const YAML::Node& node, T& value) {
   return node.IsScalar() && YAML::convert<T>::decode(node, value);
 }
 
-/// The key of the list that an element is of, e.g. "points_mm" of "points_mm[2][0]"; others as they are.
+/// The key of an element's list, e.g. "points_mm" for "points_mm[2][0]"; any other key unchanged.
 std::string listOf(std::string key) {
   while (!key.empty() && key.back() == ']') key.erase(key.rfind('['));
   return key;
 }
 
-/// Whether a text is a decimal number, of whatever size.
+/// Whether a text is a decimal number of any size.
 bool isNumber(const std::string& text) {
   char* end = nullptr;
   parseNumber(text.c_str(), &end);

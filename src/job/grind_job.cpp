@@ -114,7 +114,7 @@ void checkWheelPoints(Checker& checker, const GrindJob& job) {
   }
 }
 
-/// Whether the wear, the angle and the corner radii fit the wheel's shape.
+/// Checks the wear, the angle and the corner radii against the wheel's shape.
 void checkWheel(Checker& checker, const GrindProcess& p) {
   const bool tapered = isTapered(p.wheel_profile);
   if (tapered != (p.wheel_angle > 0)) {
@@ -138,7 +138,7 @@ void checkWheel(Checker& checker, const GrindProcess& p) {
   }
 }
 
-/// Whether the operations follow one another as they must, and the cutter has what the reliefs grind.
+/// Checks the order of the operations, and that the cutter has the dimensions that the reliefs need.
 void checkOperations(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
   const int count = static_cast<int>(job.operations.size());
@@ -168,7 +168,7 @@ void checkOperations(Checker& checker, const GrindJob& job) {
   ask("cutter.second_clearance", c.second_clearance, Unit::kRadian, "more than 0 with a secondary relief");
 }
 
-/// A relief is ground by the rim of a straight wheel.
+/// A relief needs a straight wheel, since the rim grinds it.
 void checkReliefWheel(Checker& checker, const GrindProcess& p) {
   if (p.wheel_profile == WheelShape::kStraight) return;
   checker.refuse(ReasonKind::kNotAllowed, "process.wheel_profile", {static_cast<double>(p.wheel_profile), Unit::kNone},
@@ -296,7 +296,7 @@ std::vector<double> passDepths(const GrindProcess& process, double deepest) {
 
 double shankCut(const CutterGeometry& cutter) {
   if (cutter.neck_length > 0) return 0;
-  constexpr double kNothing = 0.5e-6;  // a file's shank is that of the flute's end but for its decimals
+  constexpr double kNothing = 0.5e-6;  // except for the decimals of a file, the shank is as thick as the flute's end
   const double cut = cutter.shank_diameter / 2 - ConicalCutter(cutter).radius(cutter.flute_length);
   return cut > kNothing ? cut : 0;
 }

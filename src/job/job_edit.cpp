@@ -11,11 +11,11 @@ namespace grinder {
 
 namespace {
 
-constexpr const char* kBom = "\xEF\xBB\xBF";  ///< yaml-cpp does not count it
+constexpr const char* kBom = "\xEF\xBB\xBF";  ///< byte order mark; yaml-cpp's positions do not count it
 
 /// A value as the parser sees it.
 struct Scalar {
-  std::size_t at = 0;  ///< byte at which it begins
+  std::size_t at = 0;  ///< byte at which the value begins
   int line = 0;
   std::string value, tag;
 
@@ -24,11 +24,11 @@ struct Scalar {
 
 struct Map {
   bool flow = false;
-  std::size_t first_key = 0, next = 0;  ///< byte at which its first key begins, and what comes after the map
-  int column = 0;                       ///< of its keys
+  std::size_t first_key = 0, next = 0;  ///< bytes at which the first key begins and at which the map's successor begins
+  int column = 0;                       ///< column of the map's keys
 };
 
-/// Where everything is in a YAML text, by paths such as "process.overtravel_mm[0]".
+/// The positions of all values in a YAML text, by paths such as "process.overtravel_mm[0]".
 class Outline : public YAML::EventHandler {
  public:
   Outline(const std::string& text, std::string name)
@@ -72,9 +72,9 @@ class Outline : public YAML::EventHandler {
   struct Level {
     std::string path;
     bool map;
-    bool has_key;  ///< whose value is next
+    bool has_key;  ///< the key is read, its value is next
     std::string key;
-    std::size_t count;  ///< of keys or elements so far
+    std::size_t count;  ///< number of keys or elements so far
   };
 
   std::size_t byte(const YAML::Mark& mark) const {
@@ -83,13 +83,13 @@ class Outline : public YAML::EventHandler {
     return at;
   }
 
-  /// The maps left since the last value end before a byte.
+  /// Ends the maps left since the last value at a byte.
   void leave(std::size_t at) {
     for (const std::string& path : left_) maps_[path].next = at;
     left_.clear();
   }
 
-  /// The path of the value that begins, whose key, if it needs one, was read.
+  /// The path of the value that begins; its key, if it needs one, was read.
   std::string nextPath(const YAML::Mark& mark) {
     if (levels_.empty()) return "";
     Level& level = levels_.back();
@@ -124,7 +124,7 @@ class Outline : public YAML::EventHandler {
   }
 
   std::string name_;
-  std::size_t size_, bom_;  ///< of the text, and of its mark at the beginning
+  std::size_t size_, bom_;  ///< bytes of the text, and of the byte order mark at its start
   std::map<std::string, Scalar> scalars_;
   std::map<std::string, Map> maps_;
   std::vector<Level> levels_;
@@ -166,7 +166,7 @@ class Editor {
     return applied();
   }
 
-  /// Whether a text has the numbers that were asked, and else those of before.
+  /// Whether a text has the edited numbers, and all other numbers unchanged.
   bool isRight(const Outline& result) const { return result.scalars() == expected_; }
 
  private:
@@ -200,7 +200,7 @@ class Editor {
     changes_.push_back({at, 0, after_line ? line + eol : eol + line});
   }
 
-  /// The end of the last line before a byte that is not blank or a comment.
+  /// The end of the last line before a byte that is neither blank nor a comment.
   std::size_t endOfContent(std::size_t before) const {
     std::size_t end = before == text_.size() ? before : text_.rfind('\n', before) + 1;
     while (end > 0) {
@@ -239,7 +239,7 @@ std::string editJob(const std::string& text, const std::string& name, const std:
     try {
       return editor.isRight(Outline(result, name));
     } catch (const JobFileError&) {
-      return false;  // no longer YAML
+      return false;  // the edit has broken the YAML
     }
   };
   if (!is_right()) throw JobFileError(name + ": cannot be edited without changing something else");

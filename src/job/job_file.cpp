@@ -48,19 +48,19 @@ constexpr const char* kDepth = "process.depth";
 
 bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
-/// The keys of one process of a file: that of a single operation, or one of the list.
+/// The keys of one process in a file: of the only operation, or of an element of the list.
 class ProcessKeys {
  public:
-  /// @param section with its point, e.g. "process." or "operations[1].".
+  /// @param section name with its trailing point, e.g. "process." or "operations[1].".
   explicit ProcessKeys(std::string section) : section_(std::move(section)) {}
 
   bool single() const { return section_ == kProcess; }
-  /// @param key of a file with a single operation.
+  /// @param key key in a file with a single operation.
   std::string operator()(std::string_view key) const {
     return begins(key, kProcess) ? section_ + std::string(key.substr(std::string_view(kProcess).size()))
                                  : std::string(key);
   }
-  /// A text with keys of a single operation. Only they begin with its section's name.
+  /// A text in which the keys of a single operation are replaced by this operation's keys.
   std::string in(std::string text) const {
     for (std::size_t at = 0; (at = text.find(kProcess, at)) != std::string::npos; at += section_.size()) {
       text.replace(at, std::string_view(kProcess).size(), section_);
@@ -72,7 +72,7 @@ class ProcessKeys {
   std::string section_;
 };
 
-/// Whether a wheel's own file has the number, or it follows from it; the wear per pass is the process's.
+/// Whether the number comes from the wheel's own file or is derived from it; the wear per pass belongs to the process.
 bool isOfWheelFile(const JobField& field) {
   return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
@@ -82,8 +82,8 @@ std::string wheelPath(const std::string& job, const std::string& wheel) {
   return (std::filesystem::path(job).parent_path() / wheel).string();
 }
 
-/// Refuses a text where the wheel's keys belong, which is most likely the path of a wheel file. @return whether it is
-/// so.
+/// Refuses a text in place of the wheel's keys, which is most likely the path of a wheel file.
+/// @return whether it is a text.
 bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
   const std::string key = keys("process.wheel");
   const std::string allowed = "keys of a wheel below it, as file: PATH for a wheel file";
@@ -93,7 +93,7 @@ bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
   return true;
 }
 
-/// @param path_of_job as its messages name it.
+/// @param path_of_job path of the job file in messages.
 void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, GrindJob& job) {
   const std::string key = keys("process.wheel.file");
   const std::string allowed = "the path of a wheel file";
@@ -122,27 +122,27 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
 }
 
-/// Whether a file omits a figure that is yet to be found.
+/// Whether a file omits a number that is yet to be found.
 bool isToBeFound(const FlatFile& file, const std::string& key, const JobField& field,
                  const std::vector<std::string>& unsolved) {
   return !file.has(key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
 }
 
-/// How a missing figure is found; nothing for most.
+/// How a missing number can be found; empty for most numbers.
 std::string remedy(std::string_view path) {
   return path == kDepth || path.substr(0, path.find('_')) == "process.setup" ? "; 'grind setup --write' finds it" : "";
 }
 
-/// Whether a file omits a number that it may omit. The elements of a pair are omitted together.
+/// Whether a file omits a number that is optional. The elements of a pair are omitted together.
 bool omits(const FlatFile& file, const std::string& key, const JobField& field) {
   if (key == "cutter.spiral_angle_deg" && file.mentions("cutter.spiral_angles_deg")) return !file.has(key);
   return field.optional && !file.mentionsPart(key);
 }
 
-/// Reads one operation, and all that the file has but operations.
+/// Reads one operation, and the rest of the file except the other operations.
 class OperationReader {
  public:
-  /// @param before the operation ahead, from which a relief takes what it leaves out; null for the first.
+  /// @param before the preceding operation, from which a relief takes omitted values; null for the first.
   OperationReader(FlatFile& file, ProcessKeys keys, const GrindProcess* before)
       : file_(file), keys_(std::move(keys)), before_(before) {}
 
@@ -180,7 +180,8 @@ class OperationReader {
     job_.process.kind = *which;
   }
 
-  /// Whether a relief takes a key from the operation ahead. @param key of a single operation.
+  /// Whether a relief takes a key from the preceding operation.
+  /// @param key key of a single operation.
   bool inherits(const char* key) const { return before_ != nullptr && !file_.has(keys_(key)); }
 
   template <typename Of>
@@ -234,7 +235,7 @@ class OperationReader {
 
 std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
 
-/// How many operations a file lists; 0 for a single process.
+/// The number of operations that a file lists; 0 for a single process.
 std::size_t operationsIn(const FlatFile& file) {
   std::size_t count = 0;
   while (count < kMaxOperations && file.mentionsSection(element(kOperations, count))) ++count;
@@ -248,7 +249,8 @@ void failInvalid(FlatFile& file, const ProcessKeys& keys, const GrindJob& job) {
   file.throwErrors();
 }
 
-/// The index of an operation. @param named its number, from 1, or its kind; may be empty if there is one alone.
+/// The index of an operation.
+/// @param named its number, from 1, or its kind; may be empty for a single operation.
 std::size_t operationNamed(const std::string& named, const std::vector<GrindOperation>& operations,
                            const std::string& name) {
   std::string all;
@@ -260,7 +262,8 @@ std::size_t operationNamed(const std::string& named, const std::vector<GrindOper
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
-/// One operation, with the rest of the file. @param file of which nothing was taken.
+/// Reads one operation, and the rest of the file except the other operations.
+/// @param file file from which nothing was taken.
 GrindJob readOperation(FlatFile file, const std::string& name, const std::vector<std::string>& unsolved,
                        const std::string& section, const GrindProcess* before) {
   const ProcessKeys keys(section);
@@ -268,7 +271,7 @@ GrindJob readOperation(FlatFile file, const std::string& name, const std::vector
     for (std::size_t i = 0; i < kMaxOperations; ++i) {
       if (sectionOf(i) != section) file.dropSection(sectionOf(i));
     }
-    // A record names its operation, and repeats it.
+    // A record names its operation, and also repeats its values.
     if (file.has(kOperation)) file.dropSection(kProcess);
     file.drop(kOperation);
   }
@@ -305,7 +308,7 @@ GrindJob parseJob(const std::string& text, const std::string& name, const std::v
   std::string named = operation;
   if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
   const std::size_t index = operationNamed(named, job.operations, name);
-  // What is ahead of an operation must be solved for it to be solved.
+  // The operations before this one must be solved already.
   for (std::size_t i = 0; i < index && !unsolved.empty(); ++i) {
     readOperation(whole, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
   }

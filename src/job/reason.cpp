@@ -11,7 +11,7 @@ namespace grinder {
 
 namespace {
 
-constexpr int kFieldDigits = 10;  ///< for a job's numbers, so that they appear as entered
+constexpr int kFieldDigits = 10;  ///< digits of a job's numbers, so that they appear as entered
 
 /// Converts a reason to words.
 class Writer {
@@ -74,7 +74,7 @@ class Writer {
   }
 
  private:
-  /// A text of kReasonKinds with what its braces stand for.
+  /// A text of kReasonKinds with the braces replaced.
   std::string filled(const std::string& text) const {
     std::string whole;
     for (std::size_t at = 0; at < text.size();) {
@@ -135,7 +135,7 @@ class Writer {
            " or more; raise it";
   }
 
-  /// What to do about a collision of two bodies, of which the cutter's own are named so by CollisionCheck.
+  /// What to do about a collision of two bodies; the names of the cutter's own bodies come from CollisionCheck.
   std::string wayOut() const {
     const auto is_of = [&](const char* body) { return r_.detail.find(body) != std::string::npos; };
     if (is_of("shank")) {
@@ -146,7 +146,7 @@ class Writer {
     return "; stick the blank out further, and set the zero of X anew";
   }
 
-  /// Where the swivel stands, and what to do about it.
+  /// The swivel as it stands, and what to do about it.
   std::string swivel() const {
     const std::string allowed = "; allowed: within " + low() + " of that; set it to " + digits(r_.limit);
     if (r_.detail == "measured") return "the swivel is at " + digits(r_.value) + allowed;

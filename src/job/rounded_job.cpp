@@ -21,7 +21,7 @@ void roundOff(std::vector<ProfilePoint>& points) {
   for (ProfilePoint& point : points) roundOff(point.w, Unit::kMetre), roundOff(point.radius, Unit::kMetre);
 }
 
-/// A job of one operation.
+/// Rounds a job of one operation.
 void roundOffOne(GrindJob& job) {
   visitJobFields([&](const JobField& field, auto of) { roundOff(of(job), field.unit); });
   roundOff(job.wheel_points);

@@ -10,7 +10,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kRunIn = 1e-3;  ///< of a relief's stroke at either end, in which it reaches its feed, and stops [m]
+constexpr double kRunIn = 1e-3;  ///< length at either end of a relief's stroke for reaching the feed and stopping [m]
 
 std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& depths) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
@@ -26,12 +26,13 @@ std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& de
   return all;
 }
 
-/// Where the start of a relief goes in a stroke: X of the cutter [m].
+/// The travel of a relief's start in a stroke: X of the cutter [m].
 Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
 }
 
-/// The paths of a relief behind all teeth. @throw InvalidJob
+/// The paths of a relief behind all teeth.
+/// @throw InvalidJob if a relief cannot be ground.
 std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters) {
   try {
     std::vector<ReliefPath> paths;
@@ -48,8 +49,8 @@ std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterG
   }
 }
 
-/// The laws of the strokes of all teeth; of reliefs, X goes as far in each as the farthest needs.
-/// @param edges of the teeth; none for flutes.
+/// The laws of the strokes of all teeth; all reliefs get the longest travel of X that any of them needs.
+/// @param edges edges of the teeth; empty for flutes.
 std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters,
                               const std::vector<ReliefPath>& reliefs, const std::vector<EdgeHelix>& edges) {
   const GrindProcess& p = job.process;

@@ -21,7 +21,8 @@ constexpr const char* kWidth = "measured.width_mm";
 constexpr const char* kBy = "measured.by";
 constexpr const char* kDressed = "dressed";
 
-/// The key of a job's number in a wheel file; empty if it is none of the wheel's, or the wear, which follows.
+/// The key of a job's number in a wheel file; empty if it is not a number of the wheel, or is the wear, which is
+/// derived.
 std::string wheelKey(const JobField& field) {
   const std::string_view key = field.file_key;
   const std::string_view prefix = "process.wheel.";
@@ -62,7 +63,8 @@ void takeFlange(FlatFile& file, WheelFile& wheel) {
   wheel.flange = flange.si;
 }
 
-/// Wear of the radius, to a picometre, so that it has the bits that the same number of millimetres has in a job file.
+/// Wear of the radius, rounded to a picometre, so that it is bit-identical to the same number of millimetres in a job
+/// file.
 double wearOf(double diameter, double measured) {
   constexpr double per_millimetre = 1e9;
   return std::round((diameter - measured) / 2 / kMillimetre * per_millimetre) / per_millimetre * kMillimetre;
@@ -93,7 +95,7 @@ void takeDate(FlatFile& file, const std::string& key, std::string& date) {
   file.fail(file.line(key), key + " = " + date + "; allowed: " + forms);
 }
 
-/// @param process gets the wear and the width.
+/// @param process receives the wear and the width.
 void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
   for (const char* key : {kDate, kDiameter, kWidth, kBy}) wheel.measured = wheel.measured || file.mentions(key);
   if (!wheel.measured) {
@@ -121,7 +123,7 @@ std::string keyOf(const Reason& reason, bool measured) {
   return key;
 }
 
-/// @param measured whether the numbers are those of the wheel as measured.
+/// @param measured whether the numbers are the measured wheel's.
 void check(FlatFile& file, const GrindJob& job, bool measured) {
   for (Reason reason : validateWheel(job)) {
     reason.field = keyOf(reason, measured && file.mentions(kWidth));
@@ -133,7 +135,7 @@ void check(FlatFile& file, const GrindJob& job, bool measured) {
 }  // namespace
 
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
-  // Whether an unknown profile has a side is not known.
+  // An unknown profile may have a side.
   if (!file.takeChoice(prefix + "profile", job.process.wheel_profile)) return file.drop(prefix + "side");
   if (isTapered(job.process.wheel_profile)) file.takeChoice(prefix + "side", job.process.wheel_side);
   if (job.process.wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);

@@ -19,7 +19,7 @@ namespace {
   throw JobFileError(name + ":" + std::to_string(mark.line + 1) + ": " + why);
 }
 
-/// Looks at the parser's events before anything is built of them.
+/// Checks the parser's events before any node is built.
 class YamlCheck : public YAML::EventHandler {
  public:
   explicit YamlCheck(std::string name) : name_(std::move(name)) {}

@@ -34,7 +34,7 @@ constexpr Transition kTransitions[]{
     {S::kHoming, E::kFault, S::kFault},
 
     {S::kStarting, E::kDisable, S::kCanceling},
-    {S::kStarting, E::kHold, S::kStarting},  // the job then starts held, before anything moves
+    {S::kStarting, E::kHold, S::kStarting},  // the job then starts in hold, before anything moves
     {S::kStarting, E::kResume, S::kStarting},
     {S::kStarting, E::kCancel, S::kCanceling},
     {S::kStarting, E::kDone, S::kRunning},
@@ -110,8 +110,8 @@ constexpr Transition kTransitions[]{
     {S::kJoggingRetracted, E::kAtRest, S::kRetracted},
     {S::kJoggingRetracted, E::kFault, S::kFault},
 
-    // By hand: at rest or while an axis is jogged, in a job only with the wheel off the workpiece; off also in every
-    // other state without a job.
+    // Spindle and coolant by hand: at rest or while an axis is jogged, in a job only with the wheel off the workpiece;
+    // switching off also in every other state without a job.
     {S::kReady, E::kSpindleOn, S::kReady},
     {S::kReady, E::kSpindleOff, S::kReady},
     {S::kReady, E::kCoolantOn, S::kReady},
@@ -154,7 +154,7 @@ std::string allowedIn(MachineState state) {
   for (const Transition& t : kTransitions) {
     if (t.from != state || !isRequest(t.event) || isSwitch(t.event)) continue;
     text += (text.empty() ? "" : ", ") + std::string(toString(t.event));
-    if (t.event == E::kStart) text += " (grind run)";  // the others are commands by their names
+    if (t.event == E::kStart) text += " (grind run)";  // all other events have commands with their names
   }
   return text;
 }

@@ -11,15 +11,15 @@ namespace grinder {
 
 namespace {
 
-constexpr double kSameFigure = 1e-9;  ///< below any measurement, above any rounding [m]
+constexpr double kSameFigure = 1e-9;  ///< tolerance below any measurement and above any rounding [m]
 
-/// What a zero point depends on.
+/// The values that a zero point depends on.
 struct Dependence {
-  bool on_job;  ///< at all: an offset that was set for no particular job does not fit
+  bool on_job;  ///< any of the values: an offset set for no particular job does not fit
   bool end_diameter;
   bool height;
   bool wheel;
-  bool placing;  ///< of the wheel's middle off the swivel's axis: swivel and width
+  bool placing;  ///< position of the wheel's middle off the swivel's axis: swivel and width
 };
 
 constexpr std::array<Dependence, kAxisCount> kDependences{{
@@ -43,8 +43,8 @@ std::string wheelText(const std::string& name, double diameter) {
   return (name.empty() ? "" : name + ", ") + "D " + shown(diameter, Unit::kMetre);
 }
 
-/// The figures of a job that an axis depends on, as "D 6 mm, wheel a.yaml, D 100 mm".
-/// @param other only those that are not the same in it; null for all.
+/// The values of a job that an axis depends on, as "D 6 mm, wheel a.yaml, D 100 mm".
+/// @param other if not null, only the values that differ from it.
 std::string figures(int axis, const OffsetBasis& basis, const OffsetBasis* other) {
   const Dependence& on = dependenceOf(axis);
   std::string list;
@@ -66,7 +66,7 @@ std::string figures(int axis, const OffsetBasis& basis, const OffsetBasis* other
 
 std::string ofJob(const OffsetBasis& basis) { return basis.job_name.empty() ? "" : " (" + basis.job_name + ")"; }
 
-/// What makes an offset fit another job of the same wheel, as it is mounted and swivelled.
+/// The change that makes an offset fit another job with the same wheel, mounting and swivel.
 std::optional<double> changeFor(int axis, const OffsetBasis& was, const OffsetBasis& is) {
   const Dependence& on = dependenceOf(axis);
   if (!isSameWheel(was, is)) return std::nullopt;
@@ -107,7 +107,7 @@ std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, con
 
 const char* wordsOf(int operation) { return rowOf(static_cast<OperationKind>(operation)).words; }
 
-/// Why A does not fit what is ground behind the flutes, or what is to be ground is there already.
+/// The mismatch of A with an operation after the flutes, or of an operation that is already ground.
 std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const OffsetBasis& job) {
   const auto refused = [](const std::string& set, const std::string& asked, const std::string& reason) {
     return OffsetMismatch{"A", set, asked, "A: " + reason, kA, {}};
@@ -124,7 +124,7 @@ std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const 
     return refused(is, "A as the flutes were ground, or probed on a tooth",
                    "where the teeth of this tool are is not known: " + is + "; probe a tooth: grind probe tooth");
   }
-  // On a tooth that was probed, nobody knows what was ground elsewhere.
+  // After probing a tooth, it is unknown which operations are ground.
   const int before = job.operation - 1;
   const bool probed = offsets.axes[kA].basis.method == OffsetMethod::kProbe;
   if (tool.isGround(before) || probed) return std::nullopt;

@@ -9,7 +9,7 @@ namespace grinder {
 
 namespace {
 
-constexpr int kDigits = 9;  ///< so that offsets that differ look different
+constexpr int kDigits = 9;  ///< digits enough for different offsets to look different
 
 Quantity quantityOf(int axis, double value) { return {value, unitOf(axis, 0)}; }
 

@@ -21,20 +21,20 @@ namespace {
 using tinyxml2::XMLAttribute;
 using tinyxml2::XMLElement;
 
-constexpr int kText = 0;  ///< instead of a count of numbers
+constexpr int kText = 0;  ///< marks an attribute with any text instead of numbers
 
-/// What an element of a URDF may hold.
+/// The content that an element of a URDF may have.
 struct Rule {
   struct Attribute {
     std::string name;
-    int numbers;  ///< how many it holds; kText: any text
+    int numbers;  ///< number of values; kText: any text
     bool required;
   };
   std::vector<Attribute> attributes;
-  std::vector<std::string> once, often;  ///< elements
+  std::vector<std::string> once, often;  ///< elements that may occur once, or often
 };
 
-/// Of http://wiki.ros.org/urdf/XML, by element.
+/// Rules by element, from http://wiki.ros.org/urdf/XML.
 const std::map<std::string, Rule>& rules() {
   static const Rule::Attribute kName{"name", kText, false}, kNeedsName{"name", kText, true};
   static const std::map<std::string, Rule> kRules{
@@ -91,7 +91,7 @@ std::string listed(const std::vector<std::string>& words) {
   return text.empty() ? "nothing" : text;
 }
 
-/// Walks the elements of a URDF. What other programs find in <gazebo> and <transmission> is theirs.
+/// Walks the elements of a URDF. The content of <gazebo> and <transmission> is left to other programs.
 class StrictUrdf {
  public:
   explicit StrictUrdf(std::string name) : name_(std::move(name)) {}
@@ -117,7 +117,7 @@ class StrictUrdf {
     }
   }
 
-  /// Refuses a link of which the parser has left out a part.
+  /// Refuses a link if the parser has left out a part of it.
   void compare(const XMLElement& link, const urdf::Link& parsed) const {
     const auto count = [&](const char* name) {
       std::size_t n = 0;
@@ -154,7 +154,7 @@ class StrictUrdf {
     }
     for (const XMLAttribute* at = element.FirstAttribute(); at; at = at->Next()) {
       const std::string attribute = at->Name();
-      // A namespace, as xacro leaves it, is no figure.
+      // An XML namespace, as xacro leaves it, is ignored.
       if (attribute.compare(0, 5, "xmlns") == 0 || std::find(known.begin(), known.end(), attribute) != known.end()) {
         continue;
       }

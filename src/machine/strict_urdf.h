@@ -7,8 +7,8 @@
 
 namespace grinder {
 
-/// Parses a URDF by urdfdom, which leaves out what it cannot read: here that is an error.
-/// @param name of its file or parameter, in messages.
+/// Parses a URDF with urdfdom, and makes an error of everything that urdfdom would leave out.
+/// @param name name of its file or parameter in messages.
 /// @throw std::invalid_argument naming line, link or joint, element, attribute, value and what is allowed.
 std::shared_ptr<const urdf::ModelInterface> parseUrdf(const std::string& urdf, const std::string& name);
 

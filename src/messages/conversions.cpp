@@ -66,7 +66,7 @@ GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal) {
   job.spiral_angles = goal.cutter.spiral_angles;
   const std::vector<double>& points = goal.process.wheel_points;
   for (std::size_t i = 0; i < points.size(); i += 2) {
-    // A place without a radius becomes a point that validate() refuses.
+    // A position without a radius becomes a point that validate() refuses.
     const double radius = i + 1 < points.size() ? points[i + 1] : std::numeric_limits<double>::quiet_NaN();
     job.wheel_points.push_back({points[i], radius});
   }

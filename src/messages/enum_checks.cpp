@@ -1,5 +1,5 @@
-// Compares the messages' constants with the tables of core's enums: they must have the same values and the same names
-// in capitals, and there must be no others. All checks are made at compile time.
+// Compares the messages' constants with the tables of core's enums: the values must be the same, the names must be the
+// same in capitals, and there must be no further constants. All checks are made at compile time.
 
 #include "flute_grinder/PathStatistics.h"
 #include "flute_grinder/curve/enum_table.h"
@@ -80,7 +80,7 @@ static_assert(has<OffsetMethod>(message_text::kOffsetBasis));
 static_assert(has<TeethUnknown>(message_text::kClampedTool));
 static_assert(has<ProbingCycle>(message_text::kProbe));
 static_assert(has<ToolFigure>(message_text::kToolFigure));
-// Its other constants are axes and units, which reasons.cpp compares.
+// The message's other constants are axes and units, which reasons.cpp compares.
 static_assert(hasAllOf<ReasonKind>(message_text::kReason) &&
               countConstants(message_text::kReason) == kReasonKindCount + kAxisCount + kUnitCount);
 static_assert(has<MachineState>(message_text::kGrinderState));

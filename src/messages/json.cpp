@@ -14,7 +14,7 @@ namespace {
 
 using namespace units;
 
-/// Where a key of a job file stands, e.g. "process.overtravel_mm[0]".
+/// The JSON pointer to a key of a job file, e.g. "process.overtravel_mm[0]".
 Json::json_pointer pointerTo(const std::string& key) {
   std::string pointer = "/";
   for (const char c : key) {
@@ -23,7 +23,7 @@ Json::json_pointer pointerTo(const std::string& key) {
   return Json::json_pointer(pointer);
 }
 
-/// The key of a choice of a job, see visitJobChoices().
+/// The key of a job's choice, see visitJobChoices().
 std::string choiceKey(const std::string& path) {
   const std::string wheel = "process.wheel_";
   const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
@@ -64,7 +64,7 @@ void addTeeth(Json& file, const GrindJob& job) {
   file["cutter"]["spiral_angles_deg"] = degrees(job.spiral_angles);
 }
 
-/// The numbers and choices of an operation, with those of the whole job.
+/// The numbers and choices of an operation and of the whole job.
 Json fieldsOf(const GrindJob& job) {
   Json file = Json::object();
   visitJobFields([&](const JobField& field, auto of) {
@@ -82,7 +82,7 @@ Json fieldsOf(const GrindJob& job) {
   return file;
 }
 
-/// As an element of a job file's list.
+/// An operation as an element of a job file's list.
 Json operationOf(const GrindJob& job) {
   Json process = fieldsOf(job)["process"];
   process["kind"] = isRelief(job.process.kind) ? "relief" : "flute";
@@ -114,7 +114,7 @@ Json toJson(const GrindJob& job) {
   Json file = fieldsOf(job);
   addTeeth(file, job);
   if (job.operations.empty()) return file;
-  // Of a record: the operation that was ground, for its readers.
+  // For readers of a record: the operation that was ground.
   file["process"] = operationOf(job);
   file["operation"] = toString(job.process.kind);
   for (int i = 0; i < static_cast<int>(job.operations.size()); ++i) {

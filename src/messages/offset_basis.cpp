@@ -16,7 +16,7 @@ namespace {
 
 std::string nameOf(const std::string& path) { return std::filesystem::path(path).filename(); }
 
-/// What tells a wheel without a file of its own from others of its diameter.
+/// A description that distinguishes a wheel without a file from others of the same diameter.
 std::string described(const GrindProcess& wheel) {
   return std::string(toString(wheel.wheel_profile)) + ", " + text(Quantity{wheel.wheel_width, Unit::kMetre}) + " wide";
 }

@@ -48,7 +48,7 @@ bool AxisMove::next(Setpoint& setpoint) noexcept {
 
 double AxisMove::position() const noexcept {
   if (law_.finished()) return to_;
-  // The whole distance, which is rounded, may lead beyond the end.
+  // The distance is rounded, so the sum may lie beyond the end.
   const double at = from_ + direction() * law_.position();
   return direction() > 0 ? std::min(at, to_) : std::max(at, to_);
 }

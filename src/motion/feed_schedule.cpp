@@ -56,8 +56,8 @@ FeedSchedule::ForX FeedSchedule::forX(const Axes& limit) const noexcept {
   return lowest;
 }
 
-/// What the bending of Z leaves of its acceleration, and so much that the share of it in the jerk of Z, 3 Z'' v dv/dt,
-/// stays within a quarter of that limit.
+/// The limit on the acceleration of X that remains beside the curvature of Z. It also keeps the term 3 Z'' v dv/dt in
+/// Z's jerk within a quarter of the jerk limit.
 FeedSchedule::ForX FeedSchedule::accelerationForX(const AxisLimits& limits, double speed) const noexcept {
   Axes left = limits.max_acceleration;
   if (z_bend_ > 0) {
@@ -90,7 +90,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
   const double longest = kMaxStep / (b * machine.period);
   const double ripple = 1 + b * std::min({turning, limits.max_velocity[kA] / k, longest}) * machine.period;
 
-  Bound even;  // on the speed of X, everywhere on the stroke
+  Bound even;  // bound on the speed of X, everywhere on the stroke
   // The odd points' deviation is largest at the thin end. The next-order term reduces the leading-order step.
   const double a_error = stroke.tolerance / FormedEdge{cutter, stroke.x_shift}.deviation(thin_x, 1);
   const double step = OddEvenInterpolator::maxStepLength(curve, 1, thin_x, a_error);
@@ -99,7 +99,7 @@ void FeedSchedule::chooseSpeeds(const ConicalCutter& cutter, const Stroke& strok
     even.add(dx / (1 + b * dx / u_thin) / machine.period, "interpolation tolerance");
   }
   even.add(velocity.limit / ripple, axisName(velocity.axis) + " velocity");
-  // A quarter of the limits of Z, each, is for its bending.
+  // Curvature of Z may use a quarter of each of Z's limits.
   even.add(std::sqrt(limits.max_acceleration[kZ] / (4 * z_bend_)), axisName(kZ) + " acceleration");
   even.add(std::cbrt(limits.max_jerk[kZ] / (4 * z_twist_)), axisName(kZ) + " jerk");
   if (even.value < wanted) feed_limits_.push_back({even.cause, stroke.from, stroke.to});
@@ -139,7 +139,7 @@ void FeedSchedule::chooseBlendAndLimits(const LogCurve& curve, const AxisLimits&
   const double a_acceleration = limits.max_acceleration[kA];
   const double a_jerk = limits.max_jerk[kA];
 
-  double blend_jerk = 0;  // of X
+  double blend_jerk = 0;  // jerk of X
   if (beta_ > 0) {
     // A quarter of the jerk limits is for the blend. chooseSpeeds() keeps the blend shorter than 1/beta.
     blend_jerk = std::min(x_jerk, a_jerk / a_slope) / 4;

@@ -12,7 +12,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kMinPeriod = 1e-6;  ///< of the control cycle [s]
+constexpr double kMinPeriod = 1e-6;  ///< minimum control cycle [s]
 
 FeedSchedule::Stroke strokeOf(const ValidJob& job) {
   FeedSchedule::Stroke stroke;
@@ -66,7 +66,9 @@ void requireSwivel(const Machine& machine, const ValidJob& job) {
                      swivel, machine.swivel.from, machine.swivel.to});
 }
 
-/// @param clearance_y in work coordinates. @param park, offset of Y; see RunStart [m].
+/// @param clearance_y clearance height in work coordinates [m].
+/// @param park park position of Y [m].
+/// @param offset work offset of Y, see RunStart [m].
 void requireParkClear(double clearance_y, double park, double offset) {
   if (park - offset >= clearance_y) return;
   throw ReasonError({ReasonKind::kParkInWork, kY, "", "", Unit::kMetre, park, 0, clearance_y + offset});

@@ -17,7 +17,7 @@ void refuse(JobPlan& plan, PlanFault fault, Reason reason) {
   plan.reasons.push_back(std::move(reason));
 }
 
-/// @param min lower bound of the duration [s]; 0 if it is unknown.
+/// @param min lower bound of the duration; 0 if it is unknown [s].
 void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine, double min) {
   Reason reason;
   reason.kind = ReasonKind::kTooLong;
@@ -32,7 +32,7 @@ void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine,
 double minDuration(const ValidJob& job, const ToothPass& first) {
   const double travel = std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
   const auto teeth = static_cast<double>(job.teeth());
-  double edge = std::numeric_limits<double>::infinity();  // per travel, the shortest of all teeth
+  double edge = std::numeric_limits<double>::infinity();  // shortest edge of all teeth, per axial travel
   for (int i = 0; i < job.teeth(); ++i) {
     edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
   }
@@ -61,7 +61,7 @@ class Supervisor {
   }
 
  private:
-  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< a few tenths of a millisecond
+  static constexpr std::uint64_t kSetpointsPerLook = 4096;  ///< setpoints between checks, some tenths of a millisecond
 
   bool isWanted(const Setpoint& p) {
     const double done = (p.move_index + p.move_fraction) / static_cast<double>(plan_.program->moves().size());
@@ -89,18 +89,17 @@ void planAllSetpoints(JobPlan& plan, const std::function<void(const Setpoint&)>&
   checks.finish();
 }
 
-/// Generates and checks the moves of a plan's program, of each shape only the first as a whole. Of every other move it
-/// generates the beginning and the end with the move's own offsets; in between, the move differs from the first by
-/// constant offsets alone. They leave velocity, acceleration, jerk and the errors as they are, and no position there is
-/// farther out than at the ends: all axes move one way, but for Z in a stroke, which has no offset.
+/// Generates and checks the moves of a plan's program, but only the first of each shape completely. Of every other move
+/// it generates the beginning and the end with the move's own offsets. In between, the move differs from the first only
+/// by constant offsets, so velocity, acceleration, jerk and the errors are the same, and no position is farther out
+/// than at the ends: all axes move in one direction, except Z in a stroke, which has no offset.
 class ShapePlanner {
  public:
   ShapePlanner(JobPlan& plan, const PlanWatch& watch)
       : plan_(plan), stream_(plan.program), checks_(plan), supervisor_(watch, plan) {}
 
-  /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics. It is
-  /// not
-  ///         if something is not allowed: every setpoint is needed to say all of that.
+  /// @return whether the plan is now as planAllSetpoints() would make it, up to the rounding of the statistics; false
+  ///        if something is not allowed, since the full list of reasons needs every setpoint.
   bool run() {
     Setpoint p;
     while (stream_.next(p)) {
@@ -130,15 +129,15 @@ class ShapePlanner {
   /// The first move of a shape.
   struct Known {
     SetpointStream near_end;
-    std::uint64_t cycles;  ///< of the move, up to there
+    std::uint64_t cycles;  ///< cycles of the move up to near_end
   };
 
-  /// The jerk at a setpoint comes from the three pairs before it too.
+  /// Cycles of the preceding move that affect the jerk at a setpoint: three pairs.
   static constexpr std::uint64_t kReach = 6;
-  /// Left out at a time [cycles], some microseconds: a move of hours can be given up too, and ends with the longest
-  /// job.
+  /// Maximum number of cycles left out at a time, some microseconds' worth, so that planning a move of hours can be
+  /// stopped and ends at the maximum duration.
   static constexpr std::uint64_t kMostSkipped = 4096;
-  /// What is generated of the end of a move: setpoints to compare with, and as many to check [cycles].
+  /// Cycles generated at the end of a move: setpoints to compare with, and as many to check.
   static constexpr double kEnd = 2 * kReach;
 
   void beginMove(const Setpoint& p) {
@@ -149,7 +148,7 @@ class ShapePlanner {
     known_ = found == moves_.end() ? nullptr : &found->second;
   }
 
-  /// Goes on near the end of a known move, once the setpoints are past the reach of the move before.
+  /// Jumps near the end of a known move once the previous move no longer affects the jerk.
   void skipToEnd(const Setpoint& p) {
     if (cycles_ != kReach) return;
     stream_.skip(known_->near_end, known_->cycles - cycles_);
@@ -179,13 +178,13 @@ class ShapePlanner {
   Supervisor supervisor_;
   std::map<MoveShape, Known> moves_;
   std::uint32_t move_ = 0;
-  std::uint64_t cycles_ = 0;  ///< of the move so far
-  MoveShape shape_;           ///< of the move
+  std::uint64_t cycles_ = 0;  ///< cycles of the move so far
+  MoveShape shape_;           ///< shape of the move
   const Known* known_ = nullptr;
-  std::uint64_t to_recall_ = 0;  ///< setpoints
+  std::uint64_t to_recall_ = 0;  ///< number of setpoints yet to be recalled
 };
 
-/// Generates and checks the setpoints of a plan's program, if possible only those of each shape.
+/// Generates and checks the setpoints of a plan's program, if possible only one move of each shape.
 void planSetpoints(JobPlan& plan, const PlanWatch& watch) {
   JobPlan by_shapes = plan;
   const bool done = ShapePlanner(by_shapes, watch).run();

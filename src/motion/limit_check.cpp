@@ -12,8 +12,8 @@ constexpr double kRelativeRounding = 1e-9;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Whether every value is within its limits; false for NaN. Asks what a clamp to the limits would change, because that
-/// is computed for all axes at once: it takes half the time of comparisons.
+/// Whether every value is within its limits; false for NaN. Compares with the clamped value, which is computed for all
+/// axes at once and takes half the time of comparisons.
 bool between(const Axes& value, const Axes& low, const Axes& high) noexcept {
   return (value.max(low).min(high) - value).abs().sum() == 0;
 }
@@ -56,7 +56,7 @@ std::optional<LimitViolation> LimitCheck::check(const Setpoint& setpoint, const 
 }
 
 void LimitCheck::slowPastDown() noexcept {
-  // Samples the parabola through the last pair ends, one and two pairs back.
+  // Samples the parabola through the last three pair ends, one and two pairs back.
   const double f = slow_down_;
   const Axes change = ends_[0] - ends_[1];
   const Axes bend = change - (ends_[1] - ends_[2]);
@@ -68,8 +68,8 @@ void LimitCheck::slowPastDown() noexcept {
 void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept {
   const Axes position = setpoint.position + offset;
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    // A machine position at its limit is rounded on the way to work coordinates, and on the way back; a stroke that is
-    // begun again comes to its end by other sums.
+    // A machine position at its limit is rounded when converted to work coordinates and back; a resumed stroke reaches
+    // its end by a different sum.
     const double rounding = kEpsilon * std::abs(offset[axis]) + noise(axis);
     const bool low = position[axis] < low_[axis] - rounding;
     const double limit = low ? low_[axis] : high_[axis];
@@ -82,7 +82,7 @@ void LimitCheck::checkPosition(const Setpoint& setpoint, const Axes& offset) noe
 }
 
 double LimitCheck::noise(int axis) const noexcept {
-  // A position is the sum of a few numbers no larger than that, each rounded to half an epsilon.
+  // A position is the sum of a few numbers up to max_[axis], each rounded to half an epsilon.
   return roundings_ * 2 * kEpsilon * max_[axis];
 }
 

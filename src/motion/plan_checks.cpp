@@ -10,9 +10,9 @@ namespace grinder {
 
 namespace {
 
-/// The factor by which the feed override may increase the deviations over those at the job's feed. They grow with the
-/// square of the step length. The schedule keeps them within the tolerance at any override, except with the published
-/// rule, whose even points drift.
+/// The factor by which the feed override may increase the deviations above the deviations at the job's feed. They grow
+/// with the square of the step length. The schedule keeps them within the tolerance at any override, except with the
+/// published rule, whose even points drift.
 double overrideFactor(const GrindProgram& program) {
   double factor = 1;
   if (program.job()->interpolation.even_step != EvenStepRule::kPublished) return factor;
@@ -122,16 +122,16 @@ void PlanChecks::addDeviation(const Setpoint& p, double deviation) {
   deviation_.cycle = p.cycle;
 }
 
-/// An interrupted stroke comes to other points of the same path than the plan's.
-/// @param place of a point of the plan, with its axis and the machine's position there.
-/// @param room how much farther out others may be.
+/// Checks points between the plan's, since an interrupted stroke samples its path at other points.
+/// @param place a point of the plan, with its axis and machine position.
+/// @param room distance by which other points may lie farther out.
 void PlanChecks::checkRoom(LimitViolation place, double room) {
   const AxisLimits& limits = program_.machine().limits;
   const double at = place.value;
   for (const auto& [limit, way] :
        {std::pair(limits.min_position[place.axis], -1), {limits.max_position[place.axis], 1}}) {
     const double past = way * (at - limit);
-    // What is beyond the limit itself is found without this.
+    // A point beyond the limit itself is reported elsewhere.
     if (past > 0 || past + room <= 0) continue;
     place.value = at + way * room;
     place.limit = limit;
@@ -139,7 +139,7 @@ void PlanChecks::checkRoom(LimitViolation place, double room) {
   }
 }
 
-/// Each point of A is within the tolerance of the curve.
+/// Checks A at a stroke's end, which an interrupted stroke reaches to within the tolerance.
 void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
   const double at = stroke.to[kA] + program_.run().offset[kA];
   const double room = deviation_.limit / program_.helix(stroke.tooth).edge.deviation(stroke.to[kX], 1);
@@ -147,7 +147,7 @@ void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
             room);
 }
 
-/// Between two setpoints, no bend of Z leads farther out than the acceleration does.
+/// Checks Z between two setpoints, where it bends outward by no more than its acceleration limit allows.
 void PlanChecks::checkBend(const Setpoint& p) {
   if (program_.helix(p.tooth).z_correction.pieces == 0) return;
   const double at = p.position[kZ] + program_.run().offset[kZ];
@@ -156,7 +156,7 @@ void PlanChecks::checkBend(const Setpoint& p) {
 }
 
 void PlanChecks::finish() {
-  // A move of zero length has no setpoints of its own.
+  // A move of zero length has no setpoints.
   for (std::size_t i = 1; i < plan_.move_ends.size(); ++i) {
     const Move& move = program_.moves()[i];
     if (move.kind == MoveKind::kStroke && plan_.move_ends[i] > 0) checkStrokeEnd(move, plan_.move_ends[i]);

@@ -9,23 +9,23 @@
 
 namespace grinder {
 
-/// Checks the setpoints of a plan, and writes what they come to into the plan: its statistics, the ends of its moves,
-/// its fault and its reasons.
+/// Checks the setpoints of a plan, and writes the results into the plan: statistics, ends of moves, fault and reasons.
 class PlanChecks {
  public:
-  /// @param plan with a program; must outlive this object.
+  /// @param plan plan with a program; must outlive this object.
   explicit PlanChecks(JobPlan& plan);
 
-  /// Checks the next setpoint. @return false if it is not a number, so that none can follow.
+  /// Checks the next setpoint.
+  /// @return false if it is not finite, so that no further setpoint can be checked.
   bool add(const Setpoint& setpoint);
 
-  /// Takes the next setpoint for granted: it is counted, and those that follow are compared with it.
+  /// Counts the next setpoint without checking it; the following setpoints are compared with it.
   void recall(const Setpoint& setpoint);
 
-  /// Takes some cycles of a move for granted without their setpoints. The next setpoints must be recalled.
+  /// Counts some cycles of a move without their setpoints. The next setpoints must be recalled.
   void skip(MoveKind move, std::uint64_t cycles);
 
-  /// Writes what is known only at the end.
+  /// Writes the results that are known only at the end.
   void finish();
 
  private:
@@ -52,10 +52,10 @@ class PlanChecks {
   LimitCheck check_;
   std::array<std::uint64_t, kMoveKindCount> cycles_{};
   Axes last_velocity_ = Axes::Zero();
-  Axes max_change_ = Axes::Zero();  ///< of the velocity, from one cycle to the next
-  double end_x_ = 0;                ///< of the last pair
+  Axes max_change_ = Axes::Zero();  ///< maximum change of the velocity from one cycle to the next
+  double end_x_ = 0;                ///< X of the last pair's end
   std::vector<Excess> excesses_;
-  Reason deviation_;  ///< the largest above the tolerance, if there is one
+  Reason deviation_;  ///< the largest deviation above the tolerance, if there is one
 };
 
 }  // namespace grinder

@@ -22,7 +22,8 @@ MotionLimits limitsAlong(const Axes& way, const AxisLimits& limits) noexcept {
           (limits.max_jerk / size).minCoeff()};
 }
 
-/// @p position, but on no axis outside [@p from, @p to]: the way of a straight is rounded, and may lead past its end.
+/// @p position, clamped on every axis to [@p from, @p to]: the travel of a straight move is rounded, and its end may be
+/// exceeded.
 Axes clamped(const Axes& position, const Axes& from, const Axes& to) noexcept {
   return position.max(from.min(to)).min(from.max(to));
 }

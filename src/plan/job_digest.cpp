@@ -17,7 +17,7 @@ bool isOfWheel(std::string_view path) {
 
 bool isOfProcess(std::string_view path) { return path.substr(0, 8) == "process."; }
 
-/// The figures and choices that are not 0, a line for each.
+/// The numbers and choices that are not 0, one per line.
 /// @param wanted whether a path counts.
 template <typename Wanted>
 std::string figuresOf(const GrindJob& job, const Wanted& wanted) {

@@ -10,11 +10,11 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr double kHub = 0.84;       ///< radius of the wheel's body, of the rim's
-constexpr double kStraight = 1e-7;  ///< a point that is nearer to a line is on it [m]
-constexpr int kProfileSteps = 48;   ///< of the rim's outline
+constexpr double kHub = 0.84;       ///< radius of the wheel's body, as a fraction of the rim's radius
+constexpr double kStraight = 1e-7;  ///< distance from a line within which a point is on it [m]
+constexpr int kProfileSteps = 48;   ///< steps of the rim's outline
 
-/// Appends a point to an outline. Where the outline goes straight on, the point before it is not needed: each costs
+/// Appends a point to an outline. If the outline goes straight on, the point before it is dropped: each point costs
 /// time in every frame.
 void appendCorner(std::vector<OutlinePoint>& outline, const OutlinePoint& next) {
   if (outline.size() >= 2) {

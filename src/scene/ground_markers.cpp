@@ -18,15 +18,16 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
-constexpr double kMaxTriangles = 17000;    ///< of 72 bytes each, and what the cut adds
-constexpr double kLabelHeight = 0.03;      ///< of a text's letters, of the flute's length
-constexpr std::size_t kPlaces = 13;        ///< over the flute's length, where rake and clearance are measured
-constexpr std::size_t kErrorColours = 16;  ///< markers are lit only if they have one colour each
+constexpr double kMaxTriangles = 17000;    ///< maximum number of triangles, of 72 bytes each, before the cut adds some
+constexpr double kLabelHeight = 0.03;      ///< height of letters, as a fraction of the flute's length
+constexpr std::size_t kPlaces = 13;        ///< places over the flute's length where rake and clearance are measured
+constexpr std::size_t kErrorColours = 16;  ///< number of colours; markers are lit only if they have one colour each
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
-/// Seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the flutes.
+/// The cut seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the
+/// flutes.
 constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
 
-/// The strokes of each tooth: the deepest that is done, if any, and the one that runs.
+/// The strokes of each tooth: the deepest finished one, if any, and the running one.
 std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Reached& reached) {
   std::vector<double> deepest(job->tooth_angles.size(), 0);
   std::vector<std::vector<GrindStroke>> strokes(job->tooth_angles.size());
@@ -48,7 +49,7 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Re
   }
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     if (deepest[i] > 0) strokes[i].push_back(at(i, deepest[i]));
-    // One in the air removes nothing.
+    // A stroke in the air removes nothing.
     if (strokes[i].empty()) strokes[i].push_back(at(i, -job->process.clearance));
   }
   return strokes;
@@ -59,13 +60,13 @@ bool isSame(const std::vector<GrindStroke>& a, const std::vector<GrindStroke>& b
                     [](const GrindStroke& s, const GrindStroke& t) { return s.to == t.to && s.y == t.y; });
 }
 
-/// X of the shank's begin; nothing if it is not known: then the flutes run out into the shank.
+/// X of the shank's start; nothing if it is unknown: then the flutes run out into the shank.
 std::optional<double> shankOf(const CutterGeometry& cutter) {
   if (!(cutter.neck_length > 0)) return std::nullopt;
   return cutter.flute_length + cutter.neck_length;
 }
 
-/// Of what the wheel may touch. What is behind it is round.
+/// The part of the cutter that the wheel may touch. The rest is round.
 SolidExtent extentOf(const ValidJob& job) {
   const auto& p = job->process;
   const double stroke_end = job->cutter.flute_length + p.overtravel_shank;
@@ -75,7 +76,7 @@ SolidExtent extentOf(const ValidJob& job) {
   return {0, std::min(*shank, stroke_end + run_out), job->cutter.shank_diameter, 0};
 }
 
-/// As fine as fits a message.
+/// The finest resolution that fits a message.
 SolidResolution resolutionOf(const ValidJob& job) {
   const SolidExtent extent = extentOf(job);
   double turns = 0;
@@ -84,7 +85,7 @@ SolidResolution resolutionOf(const ValidJob& job) {
     turns = std::max(turns, std::abs(curve.a(extent.to)) / (2 * units::kPi));
   }
   const auto teeth = static_cast<double>(job->tooth_angles.size());
-  // Rings are where flutes are; the facets around show on lands, neck and shank, which are round.
+  // Rings resolve the flutes; facets around the axis show on lands, neck and shank, which are round.
   SolidResolution r{40, 16, 120};
   const auto triangles = [&] {
     const auto rings = static_cast<double>(r.rings), around = std::max(teeth, static_cast<double>(r.around));
@@ -103,10 +104,10 @@ SolidResolution resolutionOf(const ValidJob& job) {
   return r;
 }
 
-/// Where the last pass of a tooth has been: before it an angle is not the tool's.
+/// The places where the last pass of a tooth has been; before it, an angle is not the tool's.
 class LastPasses {
  public:
-  /// @param reached nothing for a job that is done.
+  /// @param reached nothing for a finished job.
   LastPasses(const ValidJob& job, const std::optional<Reached>& reached)
       : from_end_(job->process.direction == StrokeDirection::kFromEnd) {
     const int last = static_cast<int>(job.depths().size()) - 1;
@@ -129,17 +130,17 @@ class LastPasses {
   struct Reach {
     bool begun = false;
     bool whole = false;
-    double x = 0;  ///< to which the stroke has come [m]
+    double x = 0;  ///< X that the stroke has reached [m]
   };
 
   bool from_end_;
   std::vector<Reach> teeth_;
 };
 
-/// How far rake faces and primary reliefs are from rake and clearance as asked, as a part of the tolerance.
+/// The differences of rake faces and primary reliefs from the asked rake and clearance, as a fraction of the tolerance.
 class Deviations {
  public:
-  /// @param reached nothing for a job that is done.
+  /// @param reached nothing for a finished job.
   Deviations(const GroundCutter& cutter, const ValidJob& job, const std::optional<Reached>& reached)
       : length_(job->cutter.flute_length), kind_(job->process.kind), last_(job, reached) {
     const CutterGeometry& asked = job->cutter;
@@ -154,11 +155,11 @@ class Deviations {
     }
   }
 
-  /// At the nearest place that was measured; nothing where the surface is not finished.
+  /// The difference at the nearest measured place; nothing where the surface is not finished.
   std::optional<double> at(SurfaceKind surface, double x, std::size_t tooth) const {
     const bool rake = surface == SurfaceKind::kRakeFace;
     if ((!rake && surface != SurfaceKind::kPrimary) || x > length_) return std::nullopt;
-    // What an operation ahead has ground is finished.
+    // A surface of a preceding operation is finished.
     const bool own = kind_ == (rake ? OperationKind::kFlute : OperationKind::kPrimaryRelief);
     if (own && !last_.at(x, tooth)) return std::nullopt;
     const double place = std::clamp(x / length_, 0.0, 1.0) * (kPlaces - 1);
@@ -168,14 +169,14 @@ class Deviations {
 
  private:
   struct Parts {
-    std::optional<double> rake;  ///< nothing where the flute is not complete
+    std::optional<double> rake;  ///< rake difference; nothing where the flute is not complete
     std::optional<double> clearance;
   };
 
   double length_;
   OperationKind kind_;
   LastPasses last_;
-  std::vector<std::vector<Parts>> parts_;  ///< by places, by teeth
+  std::vector<std::vector<Parts>> parts_;  ///< deviations by place, then tooth
 };
 
 std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
@@ -188,10 +189,10 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
     case SurfaceKind::kShank: return colour(0.74, 0.75, 0.77);
     case SurfaceKind::kCut: break;
   }
-  return colour(0.93, 0.89, 0.70);  // not the wheel's
+  return colour(0.93, 0.89, 0.70);  // different from the wheel's colour
 }
 
-/// The neck, if there is one, and the shank, as far as they are behind extentOf().
+/// The neck, if there is one, and the shank, as far as they lie beyond extentOf().
 void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
   const ConicalCutter cutter(job->cutter);
   const SolidExtent extent = extentOf(job);

@@ -19,7 +19,7 @@ constexpr int kNice = 15;
 constexpr std::chrono::duration<double> kMinPause{1};
 constexpr double kPausePerWork = 20;
 
-/// What this thread has computed for.
+/// The processor time of this thread.
 std::chrono::duration<double> worked() {
   timespec t{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -61,7 +61,7 @@ std::optional<GroundView::Request> GroundView::next(Clock::time_point earliest) 
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait_until(lock, earliest, [this] { return ended_ || (request_ && !request_->reached); });
   changed_.wait(lock, [this] { return ended_ || request_; });
-  // What is shown is still taken back at the end.
+  // A request to clear is carried out even at the end.
   const bool clears = request_ && !request_->job;
   if (ended_ && !clears) return std::nullopt;
   return std::exchange(request_, std::nullopt);

@@ -57,13 +57,13 @@ Marker& append(MarkerArray& array, const char* ns, int type, const char* frame) 
 Marker& appendLines(MarkerArray& array, const char* ns, int type, const char* frame, double width) {
   Marker& m = append(array, ns, type, frame);
   m.scale.x = width;
-  m.scale.y = m.scale.z = 0;  // rviz 1.14.4 complains of any other
+  m.scale.y = m.scale.z = 0;  // rviz 1.14.4 warns about any other value
   return m;
 }
 
 Marker& appendSolid(MarkerArray& array, const char* ns, const char* frame, const std::vector<OutlinePoint>& outline,
                     const std_msgs::ColorRGBA& colour) {
-  constexpr int segments = 180;  // 2 degrees each: off by 0.15 per mille of the radius, so that no corners show
+  constexpr int segments = 180;  // 2 degrees each: error of 0.15 per mille of the radius, so no corners show
   const auto at = [](const OutlinePoint& p, int i) {
     const double angle = 2 * units::kPi * (i % segments) / segments;
     return point(p.x, p.radius * std::cos(angle), p.radius * std::sin(angle));

@@ -14,14 +14,14 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr const char* kFrame = "cutter";
-constexpr double kPathTolerance = 1e-7;     ///< between the strip shown and the helix [m]
-constexpr double kPathWidth = 0.3e-3;       ///< like all widths, for a cutter that is not small [m]
+constexpr double kPathTolerance = 1e-7;     ///< maximum distance between the strip shown and the helix [m]
+constexpr double kPathWidth = 0.3e-3;       ///< width for a large cutter, like the other widths [m]
 constexpr double kExecutedWidth = 0.25e-3;  ///< [m]
 constexpr double kArrowWidth = 0.12e-3;     ///< [m]
 constexpr double kMaxArrow = 3e-3;          ///< [m]
-constexpr double kMinDrawn = 1e-3;          ///< error whose arrow may have full length, of the tolerance
+constexpr double kMinDrawn = 1e-3;          ///< minimum error for an arrow of full length, per tolerance
 constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not shown [m]
-constexpr std::size_t kMostSteps = 4000;    ///< of a flute's strip
+constexpr std::size_t kMostSteps = 4000;    ///< maximum number of steps of a flute's strip
 constexpr std::size_t kMaxArrows = 200;
 constexpr std::size_t kMaxExecutedPoints = 2000;
 
@@ -39,7 +39,7 @@ double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radiu
 /// The maximum axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
 double pathStep(const GrindProgram& program) {
-  double turning = 0;  // of the steepest helix
+  double turning = 0;  // turning of the steepest helix
   for (const Helix& helix : program.helices()) {
     const ConicalCutter& cutter = helix.edge.cutter;
     const double radius = std::min(cutter.radius(0), cutter.radius(cutter.geometry().flute_length));
@@ -49,7 +49,7 @@ double pathStep(const GrindProgram& program) {
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
-/// Whether a place is on an edge, and not beyond its ends, where the stroke's overtravel forms none.
+/// Whether a place is on an edge; beyond the edge's ends the overtravel forms none.
 bool isOn(const GroundEdge& edge, double x) { return x >= edge.from() && x <= edge.to(); }
 
 /// Rounds down to 1, 2, 5, 10, ...
@@ -214,7 +214,7 @@ void PathErrorMarkers::thinOut() {
 
 double PathErrorMarkers::scale() const {
   if (points_.empty()) return 0;
-  // Rounding errors, where there are no others, as on a cylinder, are not to look like any.
+  // On a cylinder, for example, there are only rounding errors; they must not look like real ones.
   const double max = std::max(max_, kMinDrawn * tolerance_);
   return roundDown(kMaxArrow * fineness(formed_.cutter) / max);
 }
@@ -223,7 +223,7 @@ MarkerArray PathErrorMarkers::markers() const {
   MarkerArray array = clearedArray();
   if (points_.empty()) return array;
   Marker& arrows = appendLines(array, "path_error", Marker::LINE_LIST, kFrame, kArrowWidth * fineness(formed_.cutter));
-  // Across the helix in the plane that touches the cone: a part along the generatrix and one around the axis.
+  // The direction across the helix, tangent to the cone: a part along the generatrix and one around the axis.
   const ConicalCutter& cutter = formed_.cutter;
   const double around = cutter.cosHelixToGeneratrix();
   const double along = std::copysign(std::sqrt(1 - around * around), cutter.tanSpiral());

@@ -14,9 +14,9 @@ namespace {
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
-constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< it changes slowly
-constexpr double kTitleHeight = 0.06;              ///< of letters, of the flute's length
-const ros::WallDuration kGreeting(1);              ///< within which a viewer that has come knows the frames
+constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< updates per path error, which changes slowly
+constexpr double kTitleHeight = 0.06;              ///< height of letters, as a fraction of the flute's length
+const ros::WallDuration kGreeting(1);              ///< time within which a new viewer learns the frames
 
 /// All strokes of a job have the same errors.
 PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& program,
@@ -112,7 +112,7 @@ void Scene::trackGround(const Setpoint& setpoint, const Axes& actual) {
     return;
   }
   if (reached.phase != phase) reached = {pass, phase, setpoint.position[kX]};
-  // What is ground stays so when the wheel goes back along the stroke; a faulty drive may report NaN.
+  // The ground part stays ground when the wheel goes back along the stroke; a faulty drive may report NaN.
   const bool from_end = shown_->job->process.direction == StrokeDirection::kFromEnd;
   if (from_end ? actual[kX] > reached.x : actual[kX] < reached.x) reached.x = actual[kX];
 }
@@ -157,7 +157,7 @@ void Scene::publishExecuted() {
   executed_path_.publish(array);
 }
 
-/// The arrows, with the figures that go with them.
+/// Publishes the arrows and the numbers of their legend.
 void Scene::publishPathError() {
   path_error_.publish(shown_->errors.markers());
   shown_->legend.arrow_scale = shown_->errors.scale();

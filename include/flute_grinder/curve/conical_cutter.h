@@ -4,11 +4,11 @@
 
 namespace grinder {
 
-/// Which way a cutter turns, and so which wall of a flute is its rake face: the edges of a right-hand cutter move
-/// toward decreasing A.
+/// The direction in which a cutter turns; it decides which wall of a flute is the rake face. The edges of a right-hand
+/// cutter move toward decreasing A.
 enum class CutDirection { kRightHand, kLeftHand };
 
-/// With the names used in job files.
+/// Each direction with its name in job files.
 inline constexpr EnumRow<CutDirection> kCutDirections[]{
     {CutDirection::kRightHand, "right_hand"},
     {CutDirection::kLeftHand, "left_hand"},
@@ -20,25 +20,25 @@ struct CutterGeometry {
   double end_diameter = 0;  ///< D1, diameter at the small end, X = 0 [m]
   double cone_angle = 0;    ///< C, half angle between axis and generatrix; negative for a back taper [rad]
   double spiral_angle = 0;  ///< S, from the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
-  double rake_angle = 0;    ///< r [rad]
-  double flute_length = 0;  ///< along the cutter's axis [m]
+  double rake_angle = 0;    ///< r, radial rake angle [rad]
+  double flute_length = 0;  ///< length of the flutes along the cutter's axis [m]
   CutDirection cut = CutDirection::kRightHand;
   double rake_tolerance = 0;     ///< maximum allowed difference of the ground rake from the asked one [rad]
   double shank_diameter = 0;     ///< [m]
-  double core_diameter = 0;      ///< asked at the small end [m]
-  double neck_length = 0;        ///< from the flute's end to the shank; 0: not known [m]
-  double core_diameter_end = 0;  ///< asked at the flute's end [m]
+  double core_diameter = 0;      ///< asked diameter of the core at the small end [m]
+  double neck_length = 0;        ///< length from the flute's end to the shank; 0: unknown [m]
+  double core_diameter_end = 0;  ///< asked diameter of the core at the flute's end [m]
   double core_tolerance = 0;     ///< maximum allowed difference of the ground core's diameter from the asked one [m]
-  double spiral_tolerance = 0;   ///< the same of the edge's spiral angle [rad]
-  double chordal_rake_tolerance = 0;  ///< the same of the ground chordal rake from the asked rake [rad]
-  double chordal_rake_depth = 0;      ///< below the edge, where the chord ends; 0: a tenth of the flute's depth [m]
-  double clearance = 0;               ///< asked of the primary relief at the edge, radial; 0 without reliefs [rad]
+  double spiral_tolerance = 0;   ///< maximum error of the edge's spiral angle [rad]
+  double chordal_rake_tolerance = 0;  ///< maximum error of the ground chordal rake against the asked rake [rad]
+  double chordal_rake_depth = 0;      ///< depth of the chord's end below the edge; 0: a tenth of the flute's depth [m]
+  double clearance = 0;               ///< asked radial clearance of the primary relief at the edge; 0: no reliefs [rad]
   double clearance_tolerance = 0;     ///< maximum allowed difference of the ground clearances from the asked ones [rad]
   double land = 0;                    ///< asked width of the primary relief at the small end; 0: up to the heel [m]
-  double second_clearance = 0;        ///< asked of the secondary relief where it begins; 0 without one [rad]
+  double second_clearance = 0;        ///< asked clearance of the secondary relief at its start; 0: none [rad]
 };
 
-/// Of a figure: X [m], an angle [rad], as its user says.
+/// A closed interval, in the unit of what it describes.
 struct Range {
   double from = 0, to = 0;
 };

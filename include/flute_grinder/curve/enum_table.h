@@ -8,7 +8,7 @@
 
 /// @file
 /// The values of an enum, their names and other properties: one table beside the enum, with a row for every value in
-/// order. `rowsOf` of the enum returns the table. The values are listed nowhere else.
+/// order. `rowsOf(Enum)` returns the table.
 namespace grinder {
 
 /// A table row with only a name; other row types derive from it.

@@ -12,9 +12,9 @@ class LogCurve {
   /// Takes b = 2 tan C / D1 and k = 2 tan S / D1 from a cutter.
   explicit LogCurve(const ConicalCutter& cutter) noexcept : LogCurve(cutter, 0) {}
 
-  /// The cutter's curve shifted along X, A(X - shift), so that the edge that a wheel grinds is the asked helix. That is
-  /// the curve of the cone moved by `x_shift`, which begins at another A. See FormedEdge.
-  /// @param x_shift finite; the cone must be open at X = -shift [m].
+  /// The cutter's curve shifted along X, A(X - shift), so that the ground edge is the asked helix: the curve of the
+  /// cone moved by `x_shift`, with another A at X = 0. See FormedEdge.
+  /// @param x_shift shift along X, finite; the cone's radius must be positive at X = -shift [m].
   LogCurve(const ConicalCutter& cutter, double x_shift) noexcept
       : LogCurve(2 * cutter.tanCone() / cutter.geometry().end_diameter,
                  2 * cutter.tanSpiral() / cutter.geometry().end_diameter) {
@@ -32,7 +32,7 @@ class LogCurve {
   double b() const noexcept { return b_; }  ///< [1/m]
   double k() const noexcept { return k_; }  ///< [rad/m]
 
-  /// Radius of the cone at X divided by that at X = 0; the curve exists where this is positive.
+  /// Radius of the cone at X divided by its radius at X = 0; the curve exists where this is positive.
   double u(double x) const noexcept { return 1 + b_ * x; }
 
   /// A(X) [rad].

@@ -7,12 +7,12 @@ namespace grinder {
 
 /// How the even step returns to the curve.
 enum class EvenStepRule {
-  kPublished,   ///< the paper's equations 14 and 15; the error of the even steps accumulates
-  kThirdOrder,  ///< circle and curve expanded in arc length to third order; local error fourth order
+  kPublished,   ///< the paper's equations 14 and 15; the errors of the even steps accumulate
+  kThirdOrder,  ///< circle and curve expanded in arc length to third order; fourth-order local error
   kExact,       ///< the circle's intersection with the curve; even points are on the curve except for rounding
 };
 
-/// With the names used in job files.
+/// Each rule with its name in job files.
 inline constexpr EnumRow<EvenStepRule> kEvenStepRules[]{
     {EvenStepRule::kPublished, "published"},
     {EvenStepRule::kThirdOrder, "third_order"},
@@ -38,7 +38,6 @@ struct OddEvenPair {
 /// The step length may change from pair to pair; a negative length moves backwards. Real-time safe.
 class OddEvenInterpolator {
  public:
-  /// @param curve the curve.
   /// @param rotary_scale rho [m/rad], positive.
   /// @param rule the rule for the even step.
   /// @param start_x X of the start, on the curve [m]; the whole path must stay where curve.u() > 0.
@@ -51,7 +50,7 @@ class OddEvenInterpolator {
   /// Advances by the pair that moves `dx` [m] in X, to within rounding.
   OddEvenPair advance(double dx) noexcept;
 
-  /// The last even point, or the start.
+  /// The last even point; before the first pair, the start.
   const CurvePoint& position() const noexcept { return p0_; }
 
   /// The step length for which the next pair advances by `dx` [m] in X; solved to within rounding.
@@ -86,7 +85,7 @@ class OddEvenInterpolator {
   double slope_scale_;  ///< K = rho k, slope of the curve at X = 0 in the metric
   EvenStepRule rule_;
   CurvePoint p0_;
-  Tangent tangent_;  ///< at p0_
+  Tangent tangent_;  ///< tangent at p0_
 };
 
 }  // namespace grinder

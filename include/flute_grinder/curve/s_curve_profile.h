@@ -34,14 +34,14 @@ class SCurveProfile {
   bool begin(const MotionLimits& limits, double distance, double target) noexcept;
 
   /// Changes the target speed immediately; a target of 0 stops as soon as the limits allow, before the end of the
-  /// distance. Once the motion brakes to that end, a target changes it only after slowDown(). One outside 0 to
+  /// distance. During the final braking a new target takes effect only after slowDown(). A target outside 0 to
   /// limits().velocity is ignored.
   /// @return whether the target is in that range.
   bool setTarget(double target) noexcept;
 
-  /// For axes that stood still for a while: continues the same motion at reduced speed from the current position. Speed
-  /// and acceleration are scaled in time, so the remaining distance still suffices for a stop, even during braking; the
-  /// motion then accelerates to the target again.
+  /// Continues the same motion at reduced speed from the current position, after the axes stood still for a while.
+  /// Speed and acceleration are scaled in time, so the remaining distance still suffices for a stop, even during
+  /// braking; the motion then accelerates to the target again.
   /// @param factor time scale, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept;
 
@@ -50,11 +50,11 @@ class SCurveProfile {
 
   /// If the motion has run at the target speed for `margin` [s], advances in pairs of `dt` [s] up to twice `margin`
   /// before it leaves that speed; otherwise does nothing.
-  /// @param at_most how often it may advance by `dt`.
-  /// @return the number of times that it advanced by `dt`.
+  /// @param at_most maximum number of advances by `dt`.
+  /// @return the number of advances by `dt`.
   std::uint64_t skipCruise(double dt, double margin, std::uint64_t at_most) noexcept;
 
-  double position() const noexcept { return position_; }  ///< from the start of the motion
+  double position() const noexcept { return position_; }  ///< distance from the start of the motion
   double speed() const noexcept { return speed_; }        ///< never negative, except by rounding
   double acceleration() const noexcept { return acceleration_; }
   double target() const noexcept { return target_; }
@@ -111,10 +111,10 @@ class SCurveProfile {
   std::array<Segment, 7> segments_{};
   int segment_count_ = 0;
   int segment_ = 0;
-  int final_braking_ = 0;  ///< index of its first segment; segment_count_ if the plan stops short of the end
+  int final_braking_ = 0;  ///< first segment of the final braking; segment_count_ if the plan stops short of the end
   State end_{};
   double end_time_ = 0;
-  double time_ = 0;  ///< since the plan was made
+  double time_ = 0;  ///< time since the plan was made
 };
 
 }  // namespace grinder

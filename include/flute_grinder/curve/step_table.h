@@ -24,8 +24,8 @@ struct StepTable {
 };
 
 /// Interpolates a cutter's curve from X = 0 until a pair ends at or beyond the end of the flute.
-/// @param rotary_scale what one radian counts for in the metric of OddEvenInterpolator [m/rad].
-/// @param step_length in the same metric, positive [m].
+/// @param rotary_scale length equivalent to one radian in the metric of OddEvenInterpolator [m/rad].
+/// @param step_length length of a step in that metric, positive [m].
 StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, EvenStepRule rule, double step_length);
 
 }  // namespace grinder

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The only conversion between the operator's units (mm, deg, mm/min, um) and the SI units of the code: multiply to
-/// convert to SI, divide to convert back.
+/// The factors between the operator's units (mm, deg, mm/min, um) and the SI units of the code: multiply to convert to
+/// SI, divide to convert back.
 namespace grinder::units {
 
 constexpr double kPi = 3.14159265358979323846;

@@ -7,8 +7,8 @@
 
 namespace grinder {
 
-/// A smooth addition to Z over X: a quintic spline in equal pieces, continuous up to its fourth derivative. Outside its
-/// range it stays as at the ends. Without pieces it is 0. Real-time safe.
+/// A smooth addition to Z over X: a quintic spline of equal pieces, continuous up to its fourth derivative, constant
+/// outside its range, and 0 without pieces. Real-time safe.
 struct ZCorrection {
   static constexpr int kMaxPieces = 16;
   static constexpr int kDegree = 5;
@@ -17,7 +17,7 @@ struct ZCorrection {
   double piece = 0;  ///< length of a piece [m]
   int pieces = 0;
   std::array<double, kMaxPieces + kDegree>
-      coefficients{};  ///< of the B-splines; those beyond the pieces' are unused [m]
+      coefficients{};  ///< coefficients of the B-splines, of which the first `pieces` + kDegree are used [m]
 
   /// Z and its derivatives over X.
   struct Value {
@@ -49,15 +49,15 @@ struct ZCorrection {
     return {z, first / piece, second / (piece * piece), third / (piece * piece * piece)};
   }
 
-  /// What the derivatives keep within over the whole range.
+  /// The extremes of the derivatives over the whole range.
   struct Bounds {
     double min_first = 0, max_first = 0;
-    double second = 0;  ///< of its magnitude [1/m]
-    double third = 0;   ///< of its magnitude [1/m^2]
+    double second = 0;  ///< maximum magnitude of the second derivative [1/m]
+    double third = 0;   ///< maximum magnitude of the third derivative [1/m^2]
   };
 
-  /// A derivative of a B-spline in equal pieces is one too, of the coefficients' differences, and lies between the
-  /// minimum and the maximum of them.
+  /// The derivative of a B-spline of equal pieces is a B-spline whose coefficients are differences of the original
+  /// ones; it lies between their minimum and maximum.
   Bounds bounds() const noexcept {
     Bounds bounds;
     std::array<double, kMaxPieces + kDegree> difference = coefficients;
@@ -72,13 +72,13 @@ struct ZCorrection {
     bounds.max_first = *max;
     for (const int order : {2, 3}) {
       const auto [lowest, highest] = differentiate(order);
-      // Never -0.0: limits are divided by it.
+      // Never -0.0: limits are divided by this value.
       (order == 2 ? bounds.second : bounds.third) = std::max({0.0, -*lowest, *highest});
     }
     return bounds;
   }
 
-  /// The six B-splines on a piece, by powers of u, times 120.
+  /// The six B-splines on a piece, as polynomials in u, times 120.
   static constexpr double kBasis[kDegree + 1][kDegree + 1] = {{1, -5, 10, -10, 5, -1},  {26, -50, 20, 20, -20, 5},
                                                               {66, 0, -60, 0, 30, -10}, {26, 50, 20, -20, -20, 10},
                                                               {1, 5, 10, 10, 5, -5},    {0, 0, 0, 0, 0, 1}};

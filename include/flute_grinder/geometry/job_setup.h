@@ -15,36 +15,37 @@
 /// The set-up for a job: what `grind setup` and the panel show, and write into the job's file.
 namespace grinder {
 
-/// The set-up for a job, and the tool that the job then grinds.
+/// The set-up for a job, and the tool that the job grinds with it.
 struct JobSetup {
-  GrindJob job;                               ///< with the set-up, as it would be read from its file
-  std::vector<JobEdit> edits;                 ///< what makes the file say so
-  std::array<double, 2> overtravel{};         ///< that the set-up needs, at the small end and at the shank [m]
-  std::array<double, 2> overtravel_before{};  ///< of the job as it was [m]
-  CutterCheck check;                          ///< as of a plan; with a reason the set-up is not written
-  SetupLimit limit = SetupLimit::kSwivel;     ///< what comes nearest to its limit
-  double margin = 0;                          ///< as of SolvedSetup
-  /// Of a relief, in place of overtravel, limit and margin.
+  GrindJob job;                               ///< the job with the set-up, as it would be read from its file
+  std::vector<JobEdit> edits;                 ///< edits that write the set-up into the job's file
+  std::array<double, 2> overtravel{};         ///< required overtravel, at the small end and at the shank [m]
+  std::array<double, 2> overtravel_before{};  ///< overtravel of the job before [m]
+  CutterCheck check;                          ///< result of the plan's check; a set-up with a reason is not written
+  SetupLimit limit = SetupLimit::kSwivel;     ///< the limit with the smallest margin
+  double margin = 0;                          ///< see SolvedSetup
+  /// Properties of a relief, instead of overtravel, limit and margin.
   struct Relief {
-    double rim = 0;  ///< width of the wheel behind the relief's start, of which the land needs all but a margin [m]
-    double next_edge = 0;  ///< how near the wheel comes to the next tooth's edge [rad]
-    /// Minimum and maximum over the flute [rad]; nothing if the wheel's faces grind a part of the land.
+    double rim = 0;        ///< width of the rim behind the relief's start; the land needs all of it except a margin [m]
+    double next_edge = 0;  ///< smallest angle between the wheel and the next tooth's edge [rad]
+    /// Minimum and maximum over the flute; nothing if the wheel's faces grind a part of the land [rad].
     std::optional<Range> land_end_clearance;
   };
   std::optional<Relief> relief;
 };
 
-/// The fields that a job may leave to the set-up, for readJobFile(). @param keep the figure that stays.
+/// The fields that the set-up can find for a job, for readJobFile().
+/// @param keep the figure that stays.
 std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep);
 
-/// Solves the set-up of a job: rake and edge over the flute, and the cores at its ends. The
-/// wheel is taken with its wear at the job's start, and of unequal spirals the middle. The figures are rounded to what
-/// is written into a file, and measured as such, and the overtravel is lengthened to what the job's law of Z needs.
-/// Takes up to some tenths of a second, and seconds if it is refused. Of a relief, swivel and height are found: the
-/// swivel nearest to the flutes' with which the rim reaches over the land, and nothing of the next tooth.
-/// @param asked read with unsolvedFields(); its numbers count with nine digits, see roundedOff().
-/// @param swivel that the machine allows [rad].
-/// @return the set-up; or for the operator what is asked, what is reachable, and which key to change.
+/// Solves the set-up of a job: rake and edge over the flute, and the cores at its ends. Uses the wheel's wear at the
+/// job's start, and the middle of unequal spiral angles. The figures are rounded as in a file before the tool is
+/// checked, and the overtravel is lengthened as the job's law of Z requires. Takes up to some tenths of a second, or
+/// seconds if it is refused. For a relief, finds swivel and height: the swivel nearest to the flutes' swivel at which
+/// the rim covers the land and clears the next tooth.
+/// @param asked read with unsolvedFields(); its numbers are rounded to nine digits, see roundedOff().
+/// @param swivel range that the machine allows [rad].
+/// @return the set-up; or, for the operator, the asked values, the reachable values, and the key to change.
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep);
 

@@ -9,8 +9,8 @@
 
 namespace grinder {
 
-/// Calls f(0) to f(count - 1), as many at once as there are cores. Not for the control cycle: it starts threads.
-/// @throw what the first of them in order has thrown, once all have ended.
+/// Calls f(0) to f(count - 1), as many at a time as there are cores. Not for the control cycle: it starts threads.
+/// @throw the exception of the first call that threw one, in order, after all calls have ended.
 template <typename Function>
 void onAllCores(std::size_t count, const Function& f) {
   const std::size_t threads = std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency()));

@@ -6,21 +6,21 @@
 
 namespace grinder {
 
-/// What a file is to hold, whether there is one or not. Until commit() it is nowhere to be seen, and gone if the
-/// process ends before. Then whoever reads the file sees the old contents or the new ones, also after a power failure.
-/// Mode and owner stay; of a symbolic link, the file behind it is replaced. All but the destructor throw
-/// std::system_error for what cannot be done; the file is then as it was.
+/// Replaces a file's contents, or creates the file, in one step. Before commit() the new contents are invisible, and
+/// vanish if the process ends. After it, a reader sees either the old or the new contents, even after a power failure.
+/// Mode and owner stay; of a symbolic link, the target is replaced. All members except the destructor throw
+/// std::system_error if something fails; the file is then unchanged.
 class FileReplacement {
  public:
   explicit FileReplacement(const std::string& path);
-  /// For one writer at a time: mode and owner are a new file's, and a symbolic link is replaced itself.
-  /// @param fresh until commit() the contents have this name; what has it, as after a crash, is overwritten.
+  /// For a single writer: mode and owner are as for a new file, and a symbolic link is itself replaced.
+  /// @param fresh name of the new contents before commit(); a file of that name, e.g. after a crash, is overwritten.
   FileReplacement(const std::string& path, const std::string& fresh);
   FileReplacement(const FileReplacement&) = delete;
   FileReplacement& operator=(const FileReplacement&) = delete;
   ~FileReplacement();
 
-  /// Of the new contents, open for writing.
+  /// Descriptor of the new contents, open for writing.
   int descriptor() const { return descriptor_; }
 
   /// The file behind all symbolic links.
@@ -30,24 +30,24 @@ class FileReplacement {
 
  private:
   const std::string file_;
-  std::string fresh_;  ///< path of the new contents; empty while they have none
+  std::string fresh_;  ///< path of the new contents; empty while they have no name
   struct stat old_ {};
   bool is_new_ = false;
   int descriptor_ = -1;
 };
 
-/// Gives a file a new text, as FileReplacement does; returns once it is on the disk.
-/// @throw std::system_error if that cannot be done; the file is then as it was, unless it is its folder that cannot be
+/// Replaces the text of a file like FileReplacement; returns once it is on the disk.
+/// @throw std::system_error if that fails; the file is then unchanged, unless only its folder could not be
 ///        synchronized.
 void replaceFile(const std::string& path, const std::string& text);
 
-/// The same for one writer at a time, see FileReplacement, whose text is in a file of this name and the suffix `.new`
-/// until it is on the disk; after a power failure the new file is certain only once settleFile() has returned.
-/// @throw std::system_error if that cannot be done; the file is then as it was.
+/// Replaces the text of a file for a single writer, see FileReplacement. The new text has the suffix `.new` until it is
+/// on the disk; it survives a power failure only once settleFile() has returned.
+/// @throw std::system_error if that fails; the file is then unchanged.
 void writeFile(const std::string& path, const std::string& text);
 
-/// Returns once the file's name on the disk stands for the text written last.
-/// @throw std::system_error if its folder cannot be synchronized.
+/// Synchronizes the folder, so that the file's name on the disk refers to the last text.
+/// @throw std::system_error if that fails.
 void settleFile(const std::string& path);
 
 }  // namespace grinder

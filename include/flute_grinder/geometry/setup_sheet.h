@@ -7,17 +7,17 @@
 
 namespace grinder {
 
-/// The height of a face of the wheel above the cutter's axis at Z = 0, where it is deepest in the cutter [m].
+/// Heights of the wheel's faces above the cutter's axis at Z = 0, where the wheel is deepest in the cutter [m].
 double upperFaceHeight(const GrindJob& job);
 double lowerFaceHeight(const GrindJob& job);
 
-/// The set-up sheet for the operator, in mm and deg: what to set, what to touch and what the axes then read, what comes
-/// out, and what limits it.
-/// @param swivel that the machine allows [rad].
-/// @param above_swivel as of wheelAboveSwivel() [m]; if it is not known, the sheet says what it changes.
+/// The set-up sheet for the operator, in mm and deg: settings, touch points with the axis readings, the resulting tool,
+/// and its limits.
+/// @param swivel range that the machine allows [rad].
+/// @param above_swivel see wheelAboveSwivel(); if unknown, the sheet states its effect [m].
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel);
 
-/// Why a plan would refuse the tool, a line for each reason; empty if it would not. A set-up with one is not to be
+/// Why a plan would refuse the tool, a line for each reason; empty if it would not. A set-up with a reason must not be
 /// written.
 std::string planRefusal(const JobSetup& setup);
 

@@ -6,9 +6,9 @@
 
 namespace grinder {
 
-/// Writes a solid as binary STL, in millimetres: the format has no units, and the trade takes millimetres. Triangles
-/// of which two corners are the same as single-precision numbers are left out. The stream says whether that succeeded.
-/// @param out opened in binary mode.
+/// Writes a solid as binary STL in millimetres: the format has no units, and millimetres are customary. Leaves out
+/// triangles with two corners equal in single precision. The stream's state tells whether it succeeded.
+/// @param out stream opened in binary mode.
 void writeStl(std::ostream& out, const CutterSolid& solid);
 
 }  // namespace grinder

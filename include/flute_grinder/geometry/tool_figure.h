@@ -11,8 +11,8 @@
 #include <vector>
 
 /// @file
-/// The figures of a tool: what each is, what a job asks for within which tolerance, and what is measured of the ground
-/// cutter. Checks and outputs go through this table. A new figure is a row here and its measurement in the source.
+/// The figures of a tool: each with its meaning, its asked value and tolerance, and its measurement on the ground
+/// cutter. Checks and outputs use this table. A new figure is a row here and its measurement in the source.
 namespace grinder {
 
 enum class ToolFigure : std::uint8_t {
@@ -28,13 +28,13 @@ enum class ToolFigure : std::uint8_t {
   kEdgeDiameter,
 };
 
-/// The name is that in files and, in capitals, that of the message's constant.
+/// A figure with its name in files, which is the message constant in lower case.
 struct ToolFigureRow : EnumRow<ToolFigure> {
-  const char* words = "";  ///< in texts
+  const char* words = "";  ///< name in texts
   Unit unit = Unit::kNone;
-  ReasonKind reason = ReasonKind::kNone;  ///< why a plan is refused for it; none if its check is another one
-  bool of_relief = false;                 ///< judged of a relief, else of flutes
-  bool of_complete = false;               ///< counts where the flute is complete, and nowhere else
+  ReasonKind reason = ReasonKind::kNone;  ///< reason for refusing a plan; none if another check covers it
+  bool of_relief = false;                 ///< whether it is judged for reliefs, rather than for flutes
+  bool of_complete = false;               ///< whether it counts only where the flute is complete
 };
 
 inline constexpr ToolFigureRow kToolFigures[]{
@@ -55,12 +55,12 @@ inline constexpr ToolFigureRow kToolFigures[]{
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 
-/// A tooth in a section of the cutter that a job grinds.
+/// A tooth in a section of a job's ground cutter.
 struct FigurePlace {
   const ValidJob& job;
   const GroundSection& section;
-  std::size_t number;  ///< of the tooth, from 0
-  /// All sections that are measured, for a figure that hangs on them; null if only this one is known.
+  std::size_t number;  ///< number of the tooth, from 0
+  /// All measured sections, for a figure that depends on them; null if only this one is known.
   const std::vector<GroundSection>* tool = nullptr;
 
   const ToothSection& tooth() const { return section.teeth[number]; }
@@ -68,20 +68,20 @@ struct FigurePlace {
 
 using FigureValue = std::optional<double>;
 
-/// Nothing where there is none. The rake face of a flute that is not complete is not the one that a longer stroke would
-/// leave: it has no rake.
+/// The measured value; nothing where there is none. An incomplete flute has no rake, since a longer stroke would form
+/// another rake face.
 FigureValue measured(ToolFigure figure, const FigurePlace& place);
 
-/// Nothing if the job does not ask for it there.
+/// The asked value; nothing if the job does not ask for it there.
 FigureValue asked(ToolFigure figure, const FigurePlace& place);
 
-/// Of what is asked, either way.
+/// Tolerance of the asked value, to either side.
 double tolerance(ToolFigure figure, const FigurePlace& place);
 
-/// Whether a figure is measured there, and is as asked within its tolerance, or is not asked.
+/// Whether a figure is measured there, and is within its tolerance or not asked.
 bool isAsAsked(ToolFigure figure, const FigurePlace& place);
 
-/// A figure over all teeth and the sections that were measured.
+/// A figure over all teeth and all measured sections.
 struct GroundFigure {
   struct At {
     double value = 0;
@@ -91,22 +91,22 @@ struct GroundFigure {
 
   ToolFigure figure{};
   At least, largest;
-  std::optional<Range> asked;  ///< least and largest at these places; nothing if the job does not ask for it
-  double tolerance = 0;        ///< the least at these places
+  std::optional<Range> asked;  ///< extremes of the asked values there; nothing if the job does not ask for it
+  double tolerance = 0;        ///< minimum tolerance at these places
 };
 
-/// The figures of a tool, in the order of the table; those that there are none of are left out.
+/// The figures of a tool that have values, in the order of the table.
 using CutterFigures = std::vector<GroundFigure>;
 CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& sections);
 
-/// Null if there is none.
+/// The figure in a list; null if it is not there.
 const GroundFigure* find(const CutterFigures& figures, ToolFigure figure);
 
-/// What is ground, in mm or deg: "7.980 to 8.030 deg".
+/// The ground values, in mm or deg: "7.980 to 8.030 deg".
 std::string groundText(const GroundFigure& figure);
-/// What is asked, in mm or deg without a unit: "6.8 to 12.05"; empty if nothing is.
+/// The asked values, in mm or deg without a unit: "6.8 to 12.05"; empty if nothing is asked.
 std::string askedText(const GroundFigure& figure);
-/// Both: "7.980 to 8.030 deg; asked 8 deg within 0.5 deg".
+/// Ground and asked values: "7.980 to 8.030 deg; asked 8 deg within 0.5 deg".
 std::string text(const GroundFigure& figure);
 
 }  // namespace grinder

@@ -7,7 +7,7 @@
 
 namespace grinder {
 
-/// What is cut out of a solid so that its inside can be seen: all between two half planes that end at the X axis.
+/// A wedge to cut out of a solid to show its inside: the space between two half planes that end at the X axis.
 struct Wedge {
   double from = 0, to = 0;  ///< angles of the half planes, less than half a turn apart [rad]
 };
@@ -20,11 +20,11 @@ class WedgeCut {
   /// @throw std::invalid_argument unless `to` is beyond `from`, by less than half a turn.
   explicit WedgeCut(const Wedge& wedge);
 
-  /// What the wedge leaves of a triangle. Where it cuts an edge is the same for both triangles at that edge.
+  /// The parts of a triangle outside the wedge. A cut edge gets the same points in both of its triangles.
   std::vector<Polygon> outside(const std::array<Eigen::Vector3d, 3>& triangle) const;
 
   /// The faces that the wedge leaves on a tetrahedron, facing into the wedge.
-  /// @param tetrahedron of positive volume, unless it is turned inside out: then its faces are so as well.
+  /// @param tetrahedron tetrahedron of positive volume; if it is turned inside out, so are its faces.
   std::vector<Polygon> faces(const std::array<Eigen::Vector3d, 4>& tetrahedron) const;
 
  private:

@@ -9,8 +9,8 @@
 
 namespace grinder {
 
-/// A grinding wheel: a filled solid of revolution between two flat faces. A diameter is the largest one of the wheel as
-/// it is, with its rounded corners: what a micrometer measures. Evaluation is real-time safe.
+/// A grinding wheel: a filled solid of revolution between two flat faces. Its diameter is the largest diameter with
+/// wear and rounded corners, as measured with a micrometer. Evaluation is real-time safe.
 class WheelProfile {
  public:
   /// A profile of straight lines between corners, the ends rounded where asked.
@@ -34,16 +34,17 @@ class WheelProfile {
   double upperFace() const noexcept { return corners_.back().w; }   ///< w of the upper face [m]
   double maxRadius() const noexcept { return max_radius_; }
 
-  /// Where the radius is the largest: a place, or a cylinder's length; of several, the one nearest to the upper face.
+  /// The range of w with the largest radius: a point, or the length of a cylinder; of several, the one nearest to the
+  /// upper face.
   const Range& maxPlace() const noexcept { return max_place_; }
 
-  /// Where the profile's lines meet, before the ends are rounded.
+  /// The intersections of the profile's lines, without the rounded ends.
   const std::vector<ProfilePoint>& corners() const noexcept { return corners_; }
 
-  /// Radius of the profile at `w`, which is taken to lie between the faces [m].
+  /// Radius of the profile at `w`, clamped to the faces [m].
   double radius(double w) const noexcept;
 
-  /// d radius / dw at `w`, which is taken to lie between the faces; at a corner that of the side below it.
+  /// d radius / dw at `w`, clamped to the faces; at a corner, the slope below it.
   double slope(double w) const noexcept;
 
   /// The wheel the other way up.
@@ -52,14 +53,15 @@ class WheelProfile {
   /// The wheel after its radius has worn by `wear` [m].
   WheelProfile worn(double wear) const;
 
-  /// The wheel with the same profile farther out or in, so that its maximum diameter is this [m].
+  /// The wheel with its profile moved out or in to this maximum diameter [m].
   WheelProfile withDiameter(double diameter) const;
 
-  /// A straight wheel of another width. @return nothing if the profile is another, or its corners do not fit.
+  /// The same wheel with another width.
+  /// @return nothing unless the wheel is straight and its corners fit.
   std::optional<WheelProfile> withWidth(double width) const;
 
  private:
-  /// Where a circle rounds the profile off.
+  /// The part of the profile that is rounded by a circle.
   struct Fillet {
     double from = 0, to = 0;             ///< range of w; empty for a sharp edge [m]
     double w = 0, radius = 0, size = 0;  ///< centre, and radius of the circle [m]
@@ -69,7 +71,7 @@ class WheelProfile {
     double slopeAt(double w_here) const noexcept;
   };
 
-  std::size_t lineAt(double w) const noexcept;  ///< the corner at its upper end
+  std::size_t lineAt(double w) const noexcept;  ///< index of the corner at the line's upper end
   Fillet fillet(bool upper, double size) const;
   void findMax();
 
@@ -77,7 +79,7 @@ class WheelProfile {
   std::array<double, 2> corner_radii_;
   std::array<Fillet, 2> fillets_;
   double max_radius_ = 0;
-  Range max_place_;  ///< w [m]
+  Range max_place_;  ///< range of w [m]
 };
 
 }  // namespace grinder

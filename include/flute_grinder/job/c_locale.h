@@ -4,8 +4,8 @@
 
 namespace grinder {
 
-/// As long as it lives, the C functions of its thread write and read numbers with a point, whatever the locale of the
-/// process: rviz has the desktop's.
+/// During its lifetime, the C functions of the calling thread read and write numbers with a decimal point, whatever the
+/// locale of the process (rviz uses the desktop's).
 class CLocale {
  public:
   CLocale() noexcept : before_(::uselocale(c())) {}

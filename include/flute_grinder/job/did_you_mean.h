@@ -5,8 +5,9 @@
 
 namespace grinder {
 
-/// The known word that is nearest to an unknown one, for the end of a message: "; did you mean 'hold'?". A word that
-/// was begun is near; otherwise two letters at most may differ. @return empty if none is near.
+/// The known word nearest to an unknown one, as the end of a message: "; did you mean 'hold'?". A known word is near if
+/// it begins with the unknown one, or differs in at most two letters.
+/// @return empty if no word is near.
 std::string didYouMean(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace grinder

@@ -9,15 +9,15 @@
 
 namespace grinder {
 
-/// What a drive's plugin gives as a text, which may be null.
+/// A text from a drive's plugin, which may pass null.
 inline std::string_view textOrNone(const char* text) noexcept { return text ? text : "no text"; }
-/// What it has thrown as a text; without one, it has thrown all the same.
+/// The text of an exception that a drive's plugin threw; its what() may be null.
 inline std::string_view textOrNone(const std::exception& error) noexcept {
   const std::string_view text = textOrNone(error.what());
   return text.empty() ? textOrNone(nullptr) : text;
 }
 
-/// A short text that is copied without the heap; what is too long is cut off. Real-time safe.
+/// A short text that is copied without the heap; longer texts are truncated. Real-time safe.
 class FaultText {
  public:
   static constexpr std::size_t kMost = 95;  ///< characters
@@ -35,12 +35,12 @@ class FaultText {
     size_ = static_cast<unsigned char>(size_ + count);
     return *this;
   }
-  /// Appends, and cuts off what is before it if both are too long.
+  /// Appends `end`; if both are too long together, truncates the text before it.
   void endWith(const FaultText& end) noexcept {
     size_ = static_cast<unsigned char>(std::min<std::size_t>(size_, kMost - end.size_));
     *this += std::string_view(end.text_.data(), end.size_);
   }
-  /// The only way to read it, since it comes from a drive: escaped(), for people. Not real-time safe.
+  /// The text, escaped() for people, since it comes from a drive. Not real-time safe.
   std::string text() const;
 
  private:

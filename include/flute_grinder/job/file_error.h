@@ -7,13 +7,13 @@
 
 namespace grinder {
 
-/// A file that cannot be opened, read or written; what() names it, and is escaped() but for the ends of its lines.
+/// A file that cannot be opened, read or written; what() names it, and is escaped() except for line ends.
 class FileError : public std::runtime_error {
  public:
   explicit FileError(const std::string& text) : std::runtime_error(escaped(text, "\n")) {}
 };
 
-/// A file that could be opened, but not written to its end.
+/// A file that was opened, but could not be written completely.
 class WriteError : public FileError {
  public:
   using FileError::FileError;

@@ -14,19 +14,21 @@ namespace grinder {
 /// The name of an element of a list, e.g. "points_mm[2]".
 std::string element(const std::string& key, std::size_t i);
 
-/// Reads a value. @return what is wrong with it, e.g. " is not a number"; empty if it was read. A whole number must be
-/// decimal: YAML would take 010 for 8.
+/// Reads a value. A whole number must be decimal: YAML would read 010 as 8.
+/// @return what is wrong with the value, e.g. " is not a number"; empty if it was read.
 std::string readValue(const YAML::Node& node, double& value);
 std::string readValue(const YAML::Node& node, int& value);
 std::string readValue(const YAML::Node& node, bool& value);
 std::string readValue(const YAML::Node& node, std::string& value);
 
 /// A YAML file of known keys, flattened: "process.wheel.diameter_mm" or "process.overtravel_mm[0]" to value. Known keys
-/// are removed as they are read; the remaining ones are unknown. Errors are collected, each with file and line.
+/// are removed as they are read, so the remaining keys are unknown. Errors are collected, each with file and line.
 class FlatFile {
  public:
-  /// @param text YAML. @param name of the file, in messages.
-  /// @param kind of file, e.g. "job file". @param content its sections or keys, in words.
+  /// @param text YAML.
+  /// @param name name of the file in messages.
+  /// @param kind kind of file, e.g. "job file".
+  /// @param content its sections or keys, in words.
   /// @throw JobFileError if it is not a map, or a key is duplicate or not a word.
   FlatFile(const std::string& text, std::string name, std::string kind, const std::string& content);
 
@@ -47,8 +49,8 @@ class FlatFile {
     return false;
   }
 
-  /// Takes a value that must be one of an enum's names.
-  /// @return whether it is.
+  /// Takes a value that must be a name of the enum.
+  /// @return whether it is one.
   template <typename Enum>
   bool takeChoice(const std::string& key, Enum& value) {
     const std::string allowed = namesOf<Enum>();
@@ -63,68 +65,70 @@ class FlatFile {
     return true;
   }
 
-  /// The same for a key that the file may omit.
+  /// Like takeChoice(), for a key that the file may omit.
   template <typename Enum>
   void takeOptionalChoice(const std::string& key, Enum& value) {
     if (mayHave(key)) takeChoice(key, value);
   }
 
-  /// Whether there is a value to take of a key that the file may omit.
+  /// Whether the file has a value for an optional key.
   bool mayHave(const std::string& key) {
     if (!has(key)) know(key);
     return has(key);
   }
 
-  /// Notes a key that the file may have, for the message about those it may not have.
+  /// Records an allowed key, for the message about unknown keys.
   void know(const std::string& key) { known_.push_back(key); }
 
-  /// Removes a value, or a list.
+  /// Removes a value or a list.
   void drop(const std::string& key);
 
-  /// Whether the file had a value, a list or a list of lists of this name, taken by now or not.
+  /// Whether the file had a value, a list or a list of lists with this key, even if it has been taken.
   bool mentions(const std::string& key) const { return findLine(key) != lines_.end(); }
 
-  /// Whether it had a value, or for an element of a list, e.g. "corner_radius_mm[1]", any part of the list.
+  /// Whether the file had a value with this key; for a list element, e.g. "corner_radius_mm[1]", any part of the list.
   bool mentionsPart(const std::string& key) const;
 
-  /// Whether the file has any key of a section. @param section without its point.
+  /// Whether the file has any key of a section.
+  /// @param section name without its trailing point.
   bool mentionsSection(const std::string& section) const;
 
-  /// Removes every key of a section that has not been taken. @param section with its point.
+  /// Removes all remaining keys of a section.
+  /// @param section name with its trailing point.
   void dropSection(const std::string& section);
 
   bool has(const std::string& key) const { return entries_.count(key) != 0; }
 
-  /// Whether there is a value, or the first of a list.
+  /// Whether the file has a value or a first list element with this key.
   bool hasAny(const std::string& key) const { return has(key) || has(element(key, 0)); }
 
-  /// Takes a list of numbers into `values`, in SI.
+  /// Takes a list of numbers into `values`, in SI units.
   void takeList(const std::string& key, const std::string& allowed, double scale, std::vector<double>& values);
 
-  /// Refuses a key if it stands beside another one that it could replace.
+  /// Refuses a key that stands beside an alternative to it.
   bool refuseBoth(const std::string& key, const std::string& other);
 
-  /// Refuses every key of a section that has not been taken, because it stands beside `key`.
+  /// Refuses all remaining keys of a section, because it stands beside `key`.
   void refuseBeside(const std::string& key, const std::string& section, const std::string& allowed);
 
   void refuseTheRest();
 
-  /// The line of a key, or of its first element; 1 if it is not in the file.
+  /// The line of a key or of its first element; 1 if the file does not have it.
   int line(const std::string& key) const;
 
-  /// Adds an error, in one line that a terminal can show, whatever the file has.
+  /// Adds an error as one line that is safe for a terminal.
   void fail(int line, std::string what);
 
-  /// Adds errors that name their file and line themselves.
+  /// Adds errors that already contain file and line.
   void add(const std::string& errors);
 
-  /// @throw JobFileError with the errors so far, if there are any: the first of them, and how many more.
+  /// @throw JobFileError with the first errors and the number of further ones, if there are any.
   void throwErrors() const;
 
  private:
-  static constexpr int kDeepest = 6;              ///< operations[0].wheel.points_mm[0][0]
-  static constexpr int kMaxReported = 20;         ///< errors
-  static constexpr std::size_t kMaxError = 2000;  ///< characters
+  static constexpr int kDeepest = 6;              ///< maximum nesting: operations[0].wheel.points_mm[0][0]
+  static constexpr int kMaxReported = 20;         ///< maximum number of errors reported
+  static constexpr std::size_t kMaxError = 2000;  ///< maximum length of an error [characters]
 
   std::map<std::string, int>::const_iterator findLine(const std::string& key) const;
   void flatten(const YAML::Node& node, const std::string& path, int line, int depth);
@@ -136,7 +140,7 @@ class FlatFile {
   std::map<std::string, YAML::Node> entries_;
   std::map<std::string, int> lines_;
   std::vector<std::string> known_;
-  std::string errors_;  ///< the first ones
+  std::string errors_;  ///< the first errors
   int error_count_ = 0;
 };
 

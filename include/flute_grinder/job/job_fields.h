@@ -10,12 +10,12 @@ namespace grinder {
 /// One number of a job: its names, its unit and its range. The job file, the checks and the conversion to a goal all
 /// use the table of these fields.
 struct JobField {
-  const char* path;      ///< in messages, e.g. "process.wheel_diameter"
-  const char* file_key;  ///< in a job file, e.g. "process.wheel.diameter_mm"
+  const char* path;      ///< name in messages, e.g. "process.wheel_diameter"
+  const char* file_key;  ///< key in a job file, e.g. "process.wheel.diameter_mm"
   Unit unit;
   double min, max;        ///< allowed range in shop units, inclusive
   bool optional = false;  ///< whether a job file may omit it, together with the other element of a pair; it is then 0
-  /// Of which operations it is a figure; of the others it is 0.
+  /// The operations that have the field; it is 0 in the others.
   enum class Of { kAll, kFlute, kRelief } of = Of::kAll;
 
   bool isOf(OperationKind kind) const { return of == Of::kAll || (of == Of::kRelief) == isRelief(kind); }
@@ -76,7 +76,7 @@ void visitJobFields(const Visit& visit) {
 }
 
 /// Visits the choices and counts of a job, which have other types in a goal.
-/// @param visit called with the path, the maximum allowed value, and a function like that of visitJobFields().
+/// @param visit called with the path, the maximum allowed value, and a function like the one for visitJobFields().
 template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-/// Core types that have a counterpart among the messages have the message's name, in a separate namespace.
+/// Core types that have a counterpart among the messages have the same name, in a separate namespace.
 namespace grinder {
 
 /// The kind of a reason.
@@ -20,7 +20,7 @@ enum class ReasonKind : std::uint8_t {
   kOutOfRange,  ///< a field is outside `low` to `limit`; `detail`, if there is one, says whose range
   kNotBelow,    ///< a field is `limit` or more
   kAbove,       ///< a field is more than `limit`
-  kNotAllowed,  ///< a field is not as `detail` requires; `limit` is appended to the text unless it is 0
+  kNotAllowed,  ///< a field does not meet the requirement `detail`; the text ends with `limit` unless it is 0
   kFeedTooLow,  ///< `detail` restricts the feed to less than `limit`, the slowest allowed feed
   kParkInWork,  ///< the park position is below `limit`, in the workpiece
   kTolerance,   ///< the path deviates by more than `limit`
@@ -49,28 +49,28 @@ enum class ReasonKind : std::uint8_t {
   kRake,         ///< the rake angle ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kLand,         ///< a flute takes `value` of its tooth's pitch `limit`: no land is left; at `x` of `tooth`
   kCore,         ///< the wheel cuts through the core; at `x`
-  kIncomplete,   ///< the flutes are complete from X = `low` to `value`, and the flute length is `limit`
-  kCollision,    ///< `detail`, two bodies, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
-  kSwivel,       ///< the job needs `limit` within `low`; the swivel stands at `value`, as `detail`, or that is unknown
-  kUnevenRake,   ///< the rake of `tooth` is at best from `low` to `value`, asked `limit`; no rake face if low > value
+  kIncomplete,   ///< the flutes are complete from X = `low` to `value`; `limit` is the flute length
+  kCollision,    ///< two bodies, `detail`, come within `value`, 0 if they hit; allowed: `limit`, for a `field` of `low`
+  kSwivel,       ///< the job needs `limit` within `low`; the swivel is at `value`, by `detail`, or unknown
+  kUnevenRake,   ///< the best rake of `tooth` is `low` to `value`, asked `limit`; no rake face if low > value
   kSpiral,       ///< the edge's spiral angle is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
-  kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`; `detail`, if there is
-                 ///< one, says what to change of a relief
+  kCoreSize,     ///< the core's diameter is `value`, the asked one `limit`, within `low`; at `x`; for a relief,
+                 ///< `detail` says what to change
   kChordalRake,  ///< the chordal rake is `value`, the asked rake `limit`, within `low`; at `x` of `tooth`
   kClearance,    ///< the clearance ground is `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kUndercut,  ///< a relief leaves an edge diameter of `value`, the asked one `limit`, within `low`; at `x` of `tooth`
   kNextEdge,  ///< a relief's wheel goes `value` into the tooth behind `tooth`; at `x`
   kHeel,      ///< a relief ends on the land, before the heel or the next relief; at `x` of `tooth`
   kSlow,      ///< the control loop's cycles take `value` on average, allowed `limit`
-  kSecondClearance,  ///< as kClearance, of the secondary relief where it begins
+  kSecondClearance,  ///< like kClearance, for the secondary relief where it begins
   kPrimaryLand,      ///< the primary relief is `value` wide, the asked one `limit`, within `low`; at `x` of `tooth`
 };
 
-/// The name is that of the message's constant, in small letters.
+/// Each kind's name is the message constant in lower case.
 struct ReasonRow : EnumRow<ReasonKind> {
-  /// In words, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}, {low}, {tooth}, {x};
-  /// {excess} is value and limit and what lies between, {number} the value without its unit; a field's path in braces
-  /// is its name in a file. Null if text() puts the words together.
+  /// The text, with members of Reason in braces: {axis}, {value}, {limit}, {detail}, {cycle}, {low}, {tooth}, {x}.
+  /// {excess} is value and limit with the words between them, {number} the value without its unit; a field's path in
+  /// braces is its name in a file. Null if text() composes the words.
   const char* text = nullptr;
 };
 
@@ -146,10 +146,10 @@ constexpr int kReasonKindCount = countOf<ReasonKind>();
 /// Why a job was refused or has ended, or why the machine stopped, as data; text() converts it to words.
 struct Reason {
   ReasonKind kind = ReasonKind::kNone;
-  int axis = 0;             ///< for kParkInWork, the limits, kInvalidFeedback and kFollowingError
-  std::string field{};      ///< for the kinds about a field: its path, e.g. "process.feed"
+  int axis = 0;             ///< axis, for kParkInWork, the limits, kInvalidFeedback and kFollowingError
+  std::string field{};      ///< path of the field, for the kinds about a field, e.g. "process.feed"
   std::string detail{};     ///< further information, without numbers that have a unit
-  Unit unit = Unit::kNone;  ///< of value, low and limit
+  Unit unit = Unit::kNone;  ///< unit of value, low and limit
   double value = 0;         ///< the wrong value, in SI
   double low = 0;           ///< lower end of the allowed range, for kOutOfRange
   double limit = 0;         ///< the allowed value, or the upper end of the allowed range
@@ -158,8 +158,8 @@ struct Reason {
   int tooth = 0;            ///< from 0
   int pass = 0;             ///< from 0
   double x = 0;             ///< along the cutter [m]
-  std::uint64_t cycle = 0;  ///< of the setpoint, for the limits and kTolerance; of the last one, for kUnderrun
-  std::uint64_t count = 0;  ///< number of setpoints of which this is the worst; passes of the job, for kTooLong
+  std::uint64_t cycle = 0;  ///< cycle of the setpoint, for limits and kTolerance; of the last one, for kUnderrun
+  std::uint64_t count = 0;  ///< number of violating setpoints, of which this is the worst; passes, for kTooLong
 };
 
 /// A reason of kind kOther.

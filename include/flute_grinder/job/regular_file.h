@@ -4,12 +4,12 @@
 
 namespace grinder {
 
-/// Refuses what is no regular file, before it is opened: a FIFO would block its reader until somebody writes into it. A
-/// link counts as what it leads to. All files that the package reads are let through here. Thread safe.
-/// @throw JobFileError if there is none, or it is a folder, a FIFO or a device.
+/// Refuses everything but a regular file, before it is opened: a FIFO would block its reader until a writer opens it.
+/// Links are followed. Every file that the package reads is checked here first. Thread safe.
+/// @throw JobFileError if the file does not exist, or is a folder, a FIFO or a device.
 void requireRegularFile(const std::string& path);
 
-/// Whether requireRegularFile() has let this file through in this process, by whatever name. Thread safe.
+/// Whether requireRegularFile() has accepted this file in this process, by whatever name. Thread safe.
 bool wasRead(const std::string& path);
 
 }  // namespace grinder

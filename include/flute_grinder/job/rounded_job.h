@@ -4,8 +4,8 @@
 
 namespace grinder {
 
-/// A job with all its numbers rounded to nine digits in shop units, for what is fitted to them: of solutions that are
-/// equally good, or all but, the last bits of a number would choose another one for the same tool.
+/// A job with all its numbers rounded to nine digits in shop units, as the input of a fit: between solutions that are
+/// almost equally good, the last bits of a number would otherwise decide, and the same tool would get different ones.
 GrindJob roundedOff(GrindJob job);
 
 }  // namespace grinder

@@ -3,7 +3,7 @@
 namespace grinder {
 
 constexpr int kMaxTeeth = 64;
-constexpr int kMaxPasses = 10000;  ///< per tooth
+constexpr int kMaxPasses = 10000;  ///< maximum number of passes per tooth
 
 /// A pass of a tooth.
 struct ToothPass {

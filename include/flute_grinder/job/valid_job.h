@@ -20,46 +20,48 @@ class InvalidJob : public std::invalid_argument {
   std::vector<Reason> reasons_;
 };
 
-/// The wheel of a relief, and how the machine is set for it.
+/// The wheel of a relief, and its set-up on the machine.
 ReliefWheel reliefWheelOf(const GrindProcess& process);
 
-/// Where a job's relief begins behind the edge of a tooth: of a secondary one, at the end of the primary's land.
-/// @param tooth its cutter. @throw std::invalid_argument if the primary is not as wide as the land.
+/// The start of a job's relief behind the edge of a tooth; a secondary relief starts at the end of the primary's land.
+/// @param tooth the tooth's cutter.
+/// @throw std::invalid_argument if the primary relief is narrower than the land.
 ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth);
 
-/// Y of a pass over X: that of the cone, the taper's, less the depth.
+/// Y of a pass over X: the cone's Y plus the taper, less the depth.
 struct DepthLaw {
-  double at_end = 0;  ///< below the cone's at X = 0 [m]
-  double taper = 0;   ///< added to the cone's dY/dX
+  double at_end = 0;  ///< depth below the cone's Y at X = 0 [m]
+  double taper = 0;   ///< slope added to the cone's dY/dX
 };
 
-/// The strokes of a tooth: where X goes, and by which laws A and Z follow it.
+/// The strokes of a tooth: the travel of X, and the laws by which A and Z follow it.
 struct StrokeLaw {
-  CutterGeometry cutter;    ///< whose helix A, and whose rake Z follows
-  double from = 0, to = 0;  ///< X of the ends, in the direction of the strokes [m]
-  double x_shift = 0;       ///< of A's curve [m]
-  double a = 0;             ///< added to A [rad]
+  CutterGeometry cutter;    ///< cutter whose helix A follows, and whose rake Z follows
+  double from = 0, to = 0;  ///< X of the stroke's ends, in the direction of travel [m]
+  double x_shift = 0;       ///< shift of A's curve along X [m]
+  double a = 0;             ///< angle added to A [rad]
 };
 
-/// The helix through the ends of a tooth's edge, as its flute leaves it.
+/// The helix through the ends of a tooth's ground edge.
 struct EdgeHelix {
   double spiral_angle = 0;  ///< [rad]
-  /// By which the edge is ahead of the helix that begins at the tooth's angle: the middle of its extremes along the
-  /// flute [rad].
+  /// The angle by which the edge is ahead of the helix that begins at the tooth's angle: the middle of its extremes
+  /// along the flute [rad].
   double ahead = 0;
 };
 
 /// A pass of a job.
 struct JobPass {
   ToothPass place;
-  double depth = 0;  ///< where the flute is deepest [m]
-  double wear = 0;   ///< of the wheel when it begins, as foreseen by the job [m]
+  double depth = 0;  ///< depth of the pass where the flute is deepest [m]
+  double wear = 0;   ///< wear of the wheel's radius at the start of the pass, as the job predicts it [m]
 };
 
-/// A job that validate() accepts, with what follows from it, computed once. Copies share it.
+/// A job that validate() accepts, with everything derived from it, computed once. Copies share it.
 class ValidJob {
  public:
-  /// Explicit: one made anew of a valid job's content has neither its laws nor its edges. @throw InvalidJob
+  /// Explicit, since a new object from the content of another has neither its laws nor its edges.
+  /// @throw InvalidJob if validate() refuses the job.
   explicit ValidJob(GrindJob job);
 
   const GrindJob& operator*() const noexcept { return content_->job; }
@@ -74,47 +76,55 @@ class ValidJob {
   const std::vector<double>& depths() const noexcept { return content_->depths; }
   /// The passes of all teeth, in grinding order.
   const std::vector<JobPass>& passes() const noexcept { return content_->passes; }
-  double deepest() const noexcept { return content_->deepest; }  ///< of depths() [m]
+  double deepest() const noexcept { return content_->deepest; }  ///< maximum of depths() [m]
 
-  /// Of a tooth. @throw std::invalid_argument if the job is a relief, and withEdges() has not been called.
+  /// The strokes of a tooth.
+  /// @throw std::invalid_argument if the job is a relief, and withEdges() has not been called.
   const StrokeLaw& strokeLaw(int tooth) const;
-  /// Every pass of a flute has the same part of its depth everywhere, so that no infeed is larger than the job's. A
-  /// relief's are as much higher everywhere than the last one.
-  /// @param depth of the pass, as in depths() [m]. @param wear of the wheel, which Y compensates [m].
+  /// The law of Y of a pass. Every pass of a flute has the same fraction of the full depth everywhere, so no infeed
+  /// exceeds the job's. A relief's passes are each at a constant distance above the last one.
+  /// @param depth depth of the pass, as in depths() [m].
+  /// @param wear wear of the wheel's radius, compensated in Y [m].
   DepthLaw depthLaw(int tooth, double depth, double wear) const noexcept;
-  /// The depth of a pass at the small end [m]. @param depth as in depths() [m].
+  /// The depth of a pass at the small end [m].
+  /// @param depth depth of the pass, as in depths() [m].
   double depthAtEnd(double depth) const noexcept;
 
-  /// What the strokes of a tooth add to the published law of Z.
+  /// The correction that the strokes of a tooth add to the published law of Z.
   /// @throw std::invalid_argument if the job asks for kConstantRake, and withLaws() has not been called.
   const ZCorrection& zCorrectionOf(int tooth) const;
-  /// The job with these. @param corrections one for each tooth. @throw std::invalid_argument for another number.
+  /// The job with corrections of Z.
+  /// @param corrections one for each tooth.
+  /// @throw std::invalid_argument for another number.
   ValidJob withZCorrections(std::vector<ZCorrection> corrections) const;
 
-  /// The path of a relief. @return null for flutes.
+  /// The path of a relief; null for flutes.
   const ReliefPath* relief(int tooth) const noexcept;
-  /// A relief's job with what it is ground on: the reliefs follow the edges as they are.
-  /// @param flutes the job of the flutes, with their law of Z. @param edges of every tooth. @throw InvalidJob
+  /// The job of a relief together with the flutes under it, so that the reliefs follow the ground edges.
+  /// @param flutes the job of the flutes, with their law of Z.
+  /// @param edges the edges of all teeth.
+  /// @throw InvalidJob if no relief can be ground behind these edges.
   ValidJob withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edges) const;
-  /// Of a relief after withEdges().
+  /// The flutes and the edges under a relief, after withEdges().
   const ValidJob& flutes() const { return *content_->flutes; }
   const std::vector<EdgeHelix>& edges() const { return content_->edges; }
 
  private:
   struct Content {
     GrindJob job;
-    std::vector<CutterGeometry> cutters;  ///< of the teeth
+    std::vector<CutterGeometry> cutters;  ///< cutters of the teeth
     std::vector<double> depths;
     std::vector<JobPass> passes;
-    std::vector<ZCorrection> z_corrections;  ///< of the teeth; empty if they are yet to be computed
+    std::vector<ZCorrection> z_corrections;  ///< corrections of the teeth; empty until they are computed
     double deepest = 0;
-    std::vector<ReliefPath> reliefs;         ///< of the teeth; empty for flutes
-    std::vector<StrokeLaw> laws;             ///< of the teeth; empty if a relief's edges are yet to be computed
-    std::shared_ptr<const ValidJob> flutes;  ///< of a relief
-    std::vector<EdgeHelix> edges;            ///< of the teeth, for a relief
+    std::vector<ReliefPath> reliefs;         ///< reliefs of the teeth; empty for flutes
+    std::vector<StrokeLaw> laws;             ///< laws of the teeth; empty until a relief's edges are computed
+    std::shared_ptr<const ValidJob> flutes;  ///< job of the flutes under a relief
+    std::vector<EdgeHelix> edges;            ///< edges of the teeth, for a relief
   };
 
-  /// Computes the reliefs behind edges, and their depths. @param edges the cutters with the spiral angles of these.
+  /// Computes the reliefs behind the edges, and their depths.
+  /// @param edges cutters with the spiral angles of the edges.
   static void takeReliefs(Content& content, const std::vector<CutterGeometry>& edges);
 
   std::shared_ptr<const Content> content_;

@@ -25,8 +25,8 @@ constexpr bool isTapered(WheelShape shape) noexcept {
 
 /// A corner of a wheel's profile.
 struct ProfilePoint {
-  double w = 0;       ///< along the spindle, from the middle of the width [m]
-  double radius = 0;  ///< from the spindle's axis [m]
+  double w = 0;       ///< position along the spindle, from the middle of the width [m]
+  double radius = 0;  ///< distance from the spindle's axis [m]
 };
 
 }  // namespace grinder

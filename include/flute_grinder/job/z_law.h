@@ -7,7 +7,7 @@ namespace grinder {
 /// How Z follows X along a stroke.
 enum class ZLaw {
   kPublished,     ///< Z = X tan C sin r, mirrored for a left-hand cutter
-  kConstantRake,  ///< that and a smooth correction, with which the rake is the same over the whole flute
+  kConstantRake,  ///< the published law with a smooth correction that keeps the rake constant over the whole flute
 };
 inline constexpr EnumRow<ZLaw> kZLaws[]{
     {ZLaw::kPublished, "published"},

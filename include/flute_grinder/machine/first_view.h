@@ -7,7 +7,7 @@ struct FirstView {
   double wheel_diameter = 0;  ///< [m]
   double wheel_width = 0;     ///< [m]
   double blank_diameter = 0;  ///< [m]
-  double blank_length = 0;    ///< from its end face into the collet [m]
+  double blank_length = 0;    ///< length from the end face into the collet [m]
 };
 
 }  // namespace grinder

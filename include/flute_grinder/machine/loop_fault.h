@@ -8,18 +8,18 @@
 
 namespace grinder {
 
-/// The conditions for grinding. The value names one that is not met.
+/// The conditions for grinding; a value other than kNone names one that is not met.
 enum class Interlock : std::uint8_t {
   kNone,
   kNotHomed,
-  kSpindle,  ///< not at speed
-  kCoolant,  ///< not flowing
-  kProbe,    ///< in the wheel's path
-  kSwivel,   ///< not at the job's angle
-  kJournal,  ///< does not contain the job yet; only before a job begins
+  kSpindle,  ///< the spindle is not at speed
+  kCoolant,  ///< the coolant is not flowing
+  kProbe,    ///< the probe is in the wheel's path
+  kSwivel,   ///< the swivel is not at the job's angle
+  kJournal,  ///< the journal does not contain the job yet; only before a job begins
 };
 
-/// The name says which interlock is open.
+/// Each interlock with its name, shown while it is open.
 inline constexpr EnumRow<Interlock> kInterlocks[]{
     {Interlock::kNone, ""},
     {Interlock::kNotHomed, "the axes are not homed"},
@@ -35,7 +35,7 @@ constexpr auto& rowsOf(Interlock) noexcept { return kInterlocks; }
 enum class FaultKind : std::uint8_t {
   kNone,
   kEmergencyStop,
-  kDriveFault,       ///< reported by the drive
+  kDriveFault,       ///< the drive reports a fault
   kPowerLost,        ///< the drive is no longer enabled
   kStaleFeedback,    ///< no fresh position feedback
   kInvalidFeedback,  ///< a position is not a number
@@ -48,13 +48,13 @@ enum class FaultKind : std::uint8_t {
   kInterlock,  ///< a job could not begin; the machine stays ready
 };
 
-/// What a fault is to a goal's client; each is a code of its result.
+/// The category of a fault for a goal's client; each is a code of its result.
 enum class FaultClass : std::uint8_t { kNone, kEmergencyStop, kHardware, kLinkLost, kTolerance, kLimit, kNotReady };
 
 struct FaultRow {
   FaultKind value{};
-  ReasonKind reason{};      ///< of kLimit, the violation determines it
-  Unit unit = Unit::kNone;  ///< of value and limit; kMetre is for positions, which are in rad for A
+  ReasonKind reason{};      ///< reason of the fault; for kLimit, the violation determines it
+  Unit unit = Unit::kNone;  ///< unit of value and limit; kMetre is for positions, which are in rad for A
   FaultClass fault_class = FaultClass::kHardware;
 };
 
@@ -80,11 +80,11 @@ struct LoopFault {
   FaultKind kind = FaultKind::kNone;
   int axis = 0;
   double value = 0;                        ///< the value that exceeded its limit
-  double limit = 0;                        ///< the limit it exceeded
-  std::uint64_t cycle = 0;                 ///< of the last setpoint written, for kUnderrun
-  LimitViolation violation;                ///< for kLimit
-  Interlock interlock = Interlock::kNone;  ///< for kInterlock
-  FaultText drive_text;                    ///< for kDriveFault, may be empty
+  double limit = 0;                        ///< limit that the value exceeded
+  std::uint64_t cycle = 0;                 ///< cycle of the last setpoint written, for kUnderrun
+  LimitViolation violation;                ///< violation, for kLimit
+  Interlock interlock = Interlock::kNone;  ///< open interlock, for kInterlock
+  FaultText drive_text;                    ///< text of the drive, for kDriveFault; may be empty
 
   /// The fault as text in SI units, e.g. "axis_x following error 0.0012 m is beyond its limit 0.001 m". Not real-time
   /// safe.

@@ -27,9 +27,9 @@ enum class MachineState : std::uint8_t {
   kJoggingRetracted,  ///< an axis is moved by hand in the middle of a job, with the wheel off the workpiece
 };
 
-/// What people see of a state at a glance.
+/// A rough classification of the states for people.
 enum class StateGroup : std::uint8_t {
-  kOff,      ///< and unknown states
+  kOff,      ///< power off, and unknown states
   kReady,    ///< a job may begin
   kActive,   ///< the axes move, or are about to
   kPausing,  ///< the axes stop or rest during a job
@@ -40,7 +40,7 @@ struct StateRow : EnumRow<MachineState> {
   StateGroup group = StateGroup::kOff;
   bool moves = true;          ///< whether axes may move
   bool holds_job = false;     ///< whether a job is held
-  const char* sentence = "";  ///< for people
+  const char* sentence = "";  ///< sentence for people
 };
 
 inline constexpr StateRow kMachineStates[]{
@@ -98,8 +98,8 @@ inline constexpr StateRow kMachineStates[]{
 };
 constexpr auto& rowsOf(MachineState) noexcept { return kMachineStates; }
 
-/// Events that may change the state: requests from outside, in the order in which they are offered to people, and
-/// events that the loop detects itself.
+/// Events that may change the state: requests from outside, in the order in which they are shown to people, and events
+/// that the loop detects itself.
 enum class MachineEvent : std::uint8_t {
   kEnable,
   kDisable,
@@ -131,12 +131,12 @@ enum class EventKind : std::uint8_t {
   kSwitch,   ///< a request without arguments that switches spindle or coolant by hand and changes no state
 };
 
-/// The name of a request is also its sub-command of `grind`; a name of two words, a command and its sub-command. Only
-/// the start's is `run`.
+/// An event with its name, which for a request is also its sub-command of `grind`; a name of two words is a command and
+/// its sub-command. Exception: the sub-command of the start is `run`.
 struct EventRow : EnumRow<MachineEvent> {
   EventKind kind = EventKind::kSeen;
-  const char* service = nullptr;  ///< name in the node's own namespace; null for none
-  const char* help = "";          ///< what the request does, for people
+  const char* service = nullptr;  ///< name of the service in the node's own namespace; null for none
+  const char* help = "";          ///< effect of the request, for people
 };
 
 inline constexpr EventRow kMachineEvents[]{

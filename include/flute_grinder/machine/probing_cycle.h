@@ -7,17 +7,17 @@
 
 namespace grinder {
 
-/// What the measuring probe measures by itself, once it was jogged near.
+/// An automatic measurement by the probe, after it was jogged near its target.
 enum class ProbingCycle : std::uint8_t { kEndFace, kDiameter, kTooth };
 
 struct ProbingCycleRow : EnumRow<ProbingCycle> {
-  int axis = kX;               ///< that searches, and whose work offset is set
-  bool always_for_job = true;  ///< as a command; else only to set the work offset, with a known diameter
-  double within = 0;           ///< the farthest way to a touch, unless another is asked for [m], A [rad]
+  int axis = kX;               ///< axis that searches, and whose work offset is set
+  bool always_for_job = true;  ///< a job is always needed; otherwise only to set an offset, with a known diameter
+  double within = 0;           ///< maximum travel to a touch, unless the request has another [m], A [rad]
   const char* help = "";
 };
 
-/// With the names used in messages; on the command line with a hyphen.
+/// Each cycle with its name in messages; on the command line with a hyphen.
 inline constexpr ProbingCycleRow kProbingCycles[]{
     {{ProbingCycle::kEndFace, "end_face"}, kX, true, 0.005, "X: print the stick-out and set the work offset"},
     {{ProbingCycle::kDiameter, "diameter"},

@@ -9,14 +9,15 @@ namespace grinder {
 
 struct GrindJob;
 
-/// Makes a goal start where a job was left, according to the journal.
+/// Makes a goal start where the journal says that a job was left.
 /// @param progress progress reported by the grinder.
 /// @param job the goal's job.
 /// @return why this is not possible; empty if it is.
 std::string continueFrom(const flute_grinder::JobProgress& progress, const GrindJob& job,
                          flute_grinder::GrindGoal& goal);
 
-/// How the last job ended, for display. @param progress of a job that no longer runs.
+/// How the last job ended, for display.
+/// @param progress progress of a job that no longer runs.
 std::string endText(const flute_grinder::JobProgress& progress);
 
 }  // namespace grinder

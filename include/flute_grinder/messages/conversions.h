@@ -10,7 +10,7 @@
 #include <vector>
 
 /// @file
-/// The only conversion between messages and core types. Both use SI units.
+/// Conversion of jobs, cutters, statistics and setpoints between messages and core types. Both use SI units.
 namespace grinder {
 
 struct GrindJob;
@@ -21,7 +21,7 @@ GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal);
 /// The goal of a job.
 flute_grinder::GrindGoal goalFromJob(const GrindJob& job);
 
-/// @param tooth_angles of every tooth [rad].
+/// @param tooth_angles angles of all teeth [rad].
 flute_grinder::Cutter toMessage(const CutterGeometry& cutter, const std::vector<double>& tooth_angles);
 
 /// Everything in a cutter's message except its teeth.

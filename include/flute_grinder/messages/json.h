@@ -20,20 +20,21 @@ using Json = nlohmann::json;
 #endif
 
 /// One number per axis, in mm and deg, with the units in the names.
-/// @param per_time what the names end in, e.g. "_s" for velocities.
+/// @param per_time end of the names, e.g. "_s" for velocities.
 Json toJson(const Axes& value, const std::string& per_time);
 
-/// What keeps the feed of a plan below the programmed one, and where.
+/// The causes that keep the feed of a plan below the programmed feed, and their places.
 Json toJson(const std::vector<FeedLimit>& limits);
 
-/// A job in the keys and units of a job file: as YAML it is one, and read as one it is the same job, to the last bit if
-/// the job has come from a file. A wheel that has a file of its own is written inline.
+/// A job in the keys and units of a job file. Written as YAML it is a job file, and reading that gives the same job, to
+/// the last bit if the job came from a file. A wheel that has a file of its own is written inline.
 Json toJson(const GrindJob& job);
 
-/// Has all its texts escaped().
+/// Replaces all texts by their escaped() form.
 void escapeTexts(Json& json);
 
-/// The text of it. Bytes that are not UTF-8 are replaced. @param indent of each level; -1 for all on one line.
+/// The text of a JSON value. Bytes that are not UTF-8 are replaced.
+/// @param indent indent of each level; -1 for a single line.
 std::string text(const Json& json, int indent = 2);
 
 }  // namespace grinder

@@ -7,10 +7,10 @@
 #include <string>
 
 /// @file
-/// A plan as the result of a goal, and the texts of it that command line and panel share.
+/// A plan as the result of a goal, and the texts about it that command line and panel share.
 namespace grinder {
 
-/// The result of a goal that is planned and not run. Its offsets and warnings are left to the caller.
+/// The result of a goal that is planned but not run. The caller adds offsets and warnings.
 flute_grinder::GrindResult resultOf(const PlannedJob& plan);
 
 GroundFigure fromMessage(const flute_grinder::ToolFigure& message);

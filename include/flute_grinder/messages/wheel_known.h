@@ -4,7 +4,7 @@
 
 namespace grinder {
 
-/// Whether `wheel_in_work` says only that the wheel may be in the work: the journal that would tell has not been read.
+/// Whether `wheel_in_work` is only a precaution, because the journal has not been read.
 inline bool isWheelUnknown(const flute_grinder::GrinderState& state) {
   return state.wheel_in_work != 0 && !state.journal_error.empty() && state.progress.job_digest.empty();
 }

@@ -21,11 +21,11 @@ struct AxisLimits {
 /// The machine data needed to plan a job.
 struct Machine {
   AxisLimits limits;
-  double period = 0;                              ///< control cycle T [s]
-  Axes park = Axes::Zero();                       ///< machine position at a job's end, clear of the work [m], A [rad]
-  double max_job_duration = 86400;                ///< longest job accepted [s]
-  double collision_clearance = 0;                 ///< minimum distance of what moves with the wheel from all else [m]
-  Range swivel{-units::kPi / 2, units::kPi / 2};  ///< to which the wheel's plane can be set [rad]
+  double period = 0;                ///< control cycle T [s]
+  Axes park = Axes::Zero();         ///< machine position at a job's end, clear of the work [m], A [rad]
+  double max_job_duration = 86400;  ///< maximum duration of a job [s]
+  double collision_clearance = 0;   ///< minimum distance of the wheel and its carriers from other parts [m]
+  Range swivel{-units::kPi / 2, units::kPi / 2};  ///< range to which the wheel's plane can be swivelled [rad]
 };
 
 }  // namespace grinder

@@ -8,21 +8,21 @@
 
 namespace grinder {
 
-/// Moves a single axis without a job, from rest to rest within its limits: a lift or a jog. Its setpoints are numbered
-/// from 0 and come in pairs, as in a job; setSpeed() and slowDown() take effect at the next pair. Real-time safe except
-/// for the constructor.
+/// Moves a single axis outside the program, from rest to rest within its limits: a lift or a jog. Its setpoints are
+/// numbered from 0 and come in pairs, as in a job; setSpeed() and slowDown() take effect at the next pair. Real-time
+/// safe except for the constructor.
 class AxisMove {
  public:
-  /// At rest, with the move finished.
+  /// The new object is at rest, with the move finished.
   /// @throw std::invalid_argument unless the limits of every axis are finite and positive.
   explicit AxisMove(const Machine& machine);
 
   /// Starts a new move.
-  /// @param kind of its setpoints.
+  /// @param kind kind of its setpoints.
   /// @param from position of the axes, at rest [m], A [rad].
   /// @param axis the axis that moves.
   /// @param to its position at the end, finite [m], A [rad]; if equal to `from`, nothing moves.
-  /// @param speed target speed, 0 to the axis's limit [m/s], A [rad/s].
+  /// @param speed target speed, 0 to the limit of the axis [m/s], A [rad/s].
   void begin(MoveKind kind, const Axes& from, int axis, double to, double speed) noexcept;
 
   /// The next setpoint; the first is the position at rest.
@@ -34,7 +34,7 @@ class AxisMove {
     if (speed >= 0 && speed <= law_.limits().velocity) speed_ = speed;
   }
 
-  /// Whether it stops, or was stopped.
+  /// Whether the axis is stopping or was stopped.
   bool stopping() const noexcept { return speed_ == 0; }
 
   /// See SetpointStream::slowDown().
@@ -46,24 +46,24 @@ class AxisMove {
   bool finished() const noexcept { return law_.finished(); }
 
   int axis() const noexcept { return axis_; }
-  double to() const noexcept { return to_; }  ///< where the axis is at the end [m], A [rad]
-  /// +1 or -1; +1 if nothing is to be moved.
+  double to() const noexcept { return to_; }  ///< position of the axis at the end [m], A [rad]
+  /// Sign of the motion; +1 if there is none.
   int direction() const noexcept { return to_ < from_ ? -1 : 1; }
 
  private:
   bool beginPair() noexcept;
-  double position() const noexcept;  ///< of the axis, never beyond its end [m], A [rad]
+  double position() const noexcept;  ///< position of the axis, never beyond its end [m], A [rad]
 
   std::array<MotionLimits, kAxisCount> limits_;
   double period_;
   SCurveProfile law_;
   Setpoint current_;
   int axis_ = kX;
-  double from_ = 0, to_ = 0;  ///< of the axis [m], A [rad]
+  double from_ = 0, to_ = 0;  ///< ends of the move [m], A [rad]
   double speed_ = 0;
   bool started_ = true;
   bool mid_pair_ = false;
-  double slow_down_ = 1;  ///< for the next pair
+  double slow_down_ = 1;  ///< factor for the next pair
 };
 
 }  // namespace grinder

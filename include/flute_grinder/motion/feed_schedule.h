@@ -15,9 +15,9 @@ constexpr double kMaxFeedOverride = 1.2;  ///< maximum feed override, as a fract
 
 /// What limits the feed to less than the requested feed, and where along the stroke.
 struct FeedLimit {
-  std::string cause;  ///< in words, e.g. "axis A velocity"
-  double from_x = 0;  ///< the end reached first in the direction of the stroke [m]
-  double to_x = 0;    ///< [m]
+  std::string cause;  ///< cause in words, e.g. "axis A velocity"
+  double from_x = 0;  ///< X of the end that the stroke reaches first [m]
+  double to_x = 0;    ///< X of the other end [m]
 };
 
 /// Where along a stroke the feed must be reduced so that no axis exceeds a limit, and the limits of the feed law there.
@@ -38,24 +38,24 @@ struct FeedLimit {
 ///       +-----+-------------------------------------> X
 ///         small end                          shank
 ///
-/// Y moves in proportion to X, and so does Z by the published law. With a correction, what the bending of Z takes of
-/// its limits is not there for the motion of X: (d2Z/dX2) v^2 of the acceleration, (d3Z/dX3) v^3 + 3 (d2Z/dX2) v dv/dt
-/// of the jerk. The feed remains that of the helix A(X) on the cone: a correction moves the ground edge round the cone
-/// by about as much as Z, some micrometres per millimetre of X, which changes the edge's length by a thousandth.
+/// Y moves in proportion to X, and so does Z by the published law. With a correction, the curvature of Z over X uses a
+/// part of Z's limits: (d2Z/dX2) v^2 of the acceleration, (d3Z/dX3) v^3 + 3 (d2Z/dX2) v dv/dt of the jerk. The feed
+/// remains the feed of the helix A(X) on the cone: a correction moves the ground edge round the cone by about as much
+/// as Z, some micrometres per millimetre of X, which changes the edge's length by a thousandth.
 class FeedSchedule {
  public:
   /// The requested stroke.
   struct Stroke {
-    double from = 0;          ///< X at the start [m]
-    double to = 0;            ///< X at the end, before or after the start [m]
-    double surface_feed = 0;  ///< along the cutting edge [m/s]
-    double tolerance = 0;     ///< maximum allowed deviation at the cutter's surface [m]
-    double taper = 0;         ///< maximum value, by magnitude, that passes add to the cone's dY/dX; they may add less
-    ZCorrection z_correction{};  ///< added to Z
+    double from = 0;             ///< X at the start [m]
+    double to = 0;               ///< X at the end, before or after the start [m]
+    double surface_feed = 0;     ///< feed along the cutting edge [m/s]
+    double tolerance = 0;        ///< maximum allowed deviation at the cutter's surface [m]
+    double taper = 0;            ///< maximum magnitude of the taper that passes add to the cone's dY/dX
+    ZCorrection z_correction{};  ///< correction added to Z
     double x_shift = 0;          ///< shift of A's curve along X, see LogCurve [m]
   };
 
-  /// @param cutter the cutter; its curve must exist over the whole stroke.
+  /// @param cutter its curve must exist over the whole stroke.
   /// @param stroke the stroke.
   /// @param machine limits and control period.
   FeedSchedule(const ConicalCutter& cutter, const Stroke& stroke, const Machine& machine);
@@ -63,8 +63,8 @@ class FeedSchedule {
   /// Length of the stroke in s [m]: equal to the travel in X, or longer if the feed is reduced.
   double length() const noexcept { return length_; }
 
-  /// Limits of the motion along s. The velocity limit is the speed at the job's feed, times as much of kMaxFeedOverride
-  /// as axes and tolerance allow; no override above 1 is possible if the feed is reduced [m/s].
+  /// Limits of the motion along s. The velocity limit is the speed at the job's feed, times kMaxFeedOverride or as much
+  /// of it as axes and tolerance allow; no override above 1 is possible if the feed is reduced [m/s].
   const MotionLimits& limits() const noexcept { return limits_; }
 
   /// Speed along s at the job's feed; equals the speed of X where A does not limit it [m/s].
@@ -83,7 +83,7 @@ class FeedSchedule {
   const std::vector<FeedLimit>& feedLimits() const noexcept { return feed_limits_; }
 
  private:
-  /// A limit of X, and the axis that it comes from.
+  /// A limit of X, and the axis that causes it.
   struct ForX {
     double limit;
     int axis;
@@ -96,12 +96,12 @@ class FeedSchedule {
   void placeOnCone(const LogCurve& curve);
 
   double parameterOf(double xi) const noexcept;  ///< inverse of distance()
-  double distance(double q) const noexcept;      ///< from the start of the blend toward the thick end [m]
+  double distance(double q) const noexcept;      ///< distance from the start of the blend toward the thick end [m]
   double slope(double q) const noexcept;         ///< derivative of distance()
 
   // Speeds: v = min(speed_, speed_per_radius_ * u).
   double feed_speed_ = 0;        ///< dX/dt at the job's feed, where A does not limit it [m/s]
-  double speed_ = 0;             ///< as feed_speed_, at the maximum override [m/s]
+  double speed_ = 0;             ///< dX/dt at the maximum override, where A does not limit it [m/s]
   double speed_per_radius_ = 0;  ///< c [m/s]
   double y_per_x_ = 0;           ///< maximum |dY/dX|
   double z_per_x_ = 0;           ///< maximum |dZ/dX|
@@ -118,7 +118,7 @@ class FeedSchedule {
   double length_ = 0;
   double from_ = 0, to_ = 0;
   double q_from_ = 0, xi_from_ = 0;
-  double q_direction_ = 1;  ///< +1 when s runs toward the thick end, -1 toward the thin one
+  double q_direction_ = 1;  ///< +1 if s runs toward the thick end, -1 toward the thin end
   double direction_ = 1;    ///< sign of dX/ds
 };
 

@@ -12,14 +12,14 @@
 
 namespace grinder {
 
-/// From where, with which work offset, and with which pass the run of a job begins.
+/// The position, work offset and pass with which a run of a job begins.
 struct RunStart {
   /// @param at machine position of the axes [m], A [rad].
   RunStart(const Axes& at = Axes::Zero(), const ToothPass& first = {}, const Axes& offset = Axes::Zero())
       : at(at), first(first), offset(offset) {}
 
   Axes at;          ///< machine position of the axes [m], A [rad]
-  ToothPass first;  ///< to grind
+  ToothPass first;  ///< first pass to grind
   Axes offset;      ///< machine position - work position, see WorkOffsets [m], A [rad]
 
   bool operator==(const RunStart& other) const {
@@ -32,9 +32,9 @@ struct Move {
   MoveKind kind = MoveKind::kLift;
   std::uint16_t tooth = 0;
   std::uint16_t pass = 0;
-  Axes to = Axes::Zero();  ///< [m], A [rad]
-  double wear = 0;         ///< of the wheel's radius, which Y of the infeed and the stroke compensates [m]
-  double taper = 0;        ///< of the stroke: added to the cone's dY/dX
+  Axes to = Axes::Zero();  ///< end position [m], A [rad]
+  double wear = 0;         ///< wear of the wheel's radius, compensated in Y of the infeed and the stroke [m]
+  double taper = 0;        ///< slope that the stroke adds to the cone's dY/dX
 };
 
 /// The path of a tooth's strokes before infeed and indexing, and its feed.
@@ -51,15 +51,15 @@ struct Helix {
 };
 
 /// The ordered moves of all teeth and passes of a job. If the wheel is lower than the park position, it first rises to
-/// that height. Then, for each pass: A is indexed, the wheel moves to above the start, descends to the clearance,
+/// that height. Then, for each pass, A is indexed, and the wheel moves above the start, descends to the clearance,
 /// plunges at feed, makes its stroke with overtravel, and retracts radially. At the end the wheel returns to the park
 /// position. The plunge compensates for wheel wear, so the compensation never changes within a pass. All positions are
 /// in work coordinates.
 class GrindProgram {
  public:
   /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
-  /// the park position is in the work, if the machine does not swivel as far as the job's set-up, if
-  ///        the feed would have to be reduced below kMinFeed, or as ValidJob::zCorrectionOf().
+  ///        the park position is in the work, if the machine cannot swivel to the job's set-up, if the feed would have
+  ///        to be reduced below kMinFeed, or like ValidJob::zCorrectionOf().
   GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run);
 
   const ValidJob& job() const noexcept { return job_; }
@@ -67,21 +67,21 @@ class GrindProgram {
   const RunStart& run() const noexcept { return run_; }
   /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
   const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
-  double swivel() const noexcept;                                ///< of the job's set-up [rad]
-  Axes start() const noexcept { return run_.at - run_.offset; }  ///< in work coordinates [m], A [rad]
+  double swivel() const noexcept;                                ///< swivel of the job's set-up [rad]
+  Axes start() const noexcept { return run_.at - run_.offset; }  ///< start position in work coordinates [m], A [rad]
   const std::vector<Move>& moves() const noexcept { return moves_; }
 
-  /// The path of a tooth's strokes; teeth with the same spiral angle have the same.
+  /// The path of a tooth's strokes; teeth with the same spiral angle share one.
   const Helix& helix(int tooth) const noexcept { return helices_[helix_of_tooth_[static_cast<std::size_t>(tooth)]]; }
-  /// Each path once.
+  /// The distinct paths.
   const std::vector<Helix>& helices() const noexcept { return helices_; }
   /// The feed schedule of a tooth's strokes, the same for all passes.
   const FeedSchedule& schedule(int tooth = 0) const noexcept { return helix(tooth).schedule; }
-  double strokeFrom() const noexcept { return stroke_.from; }  ///< X [m]
-  double strokeTo() const noexcept { return stroke_.to; }      ///< X [m]
+  double strokeFrom() const noexcept { return stroke_.from; }  ///< X at the start of the strokes [m]
+  double strokeTo() const noexcept { return stroke_.to; }      ///< X at the end of the strokes [m]
 
-  /// The size of the largest numbers from which the positions of strokes are computed, where these may be smaller: A is
-  /// a difference of turns, those up to X = 0 and the tooth's, and Y, Z and A are computed from X. [m], A [rad]
+  /// The magnitudes of the largest numbers from which positions of strokes are computed; the positions may be smaller.
+  /// A is a difference of angles (to X = 0, and of the tooth), and Y, Z and A are computed from X. [m], A [rad]
   const Axes& terms() const noexcept { return terms_; }
 
   /// Y at which the wheel is clear of the workpiece over the whole stroke [m].

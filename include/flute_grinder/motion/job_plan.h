@@ -16,14 +16,14 @@ struct PathStatistics {
   double duration = 0;                                 ///< [s]
   std::array<double, kMoveKindCount> move_duration{};  ///< per MoveKind [s]
   double max_odd_error = 0;                            ///< |theory - commanded| of A at odd points [rad]
-  double max_even_error = 0;                           ///< the same at even points [rad]
-  double max_deviation = 0;                            ///< normal to the helix at the cutter's surface [m]
-  double min_feed = 0, max_feed = 0;                   ///< for each pair while at feed; 0 if never at feed [m/s]
+  double max_even_error = 0;                           ///< |theory - commanded| of A at even points [rad]
+  double max_deviation = 0;                            ///< deviation at the cutter's surface, normal to the helix [m]
+  double min_feed = 0, max_feed = 0;                   ///< range of the feed of pairs at feed; 0 if never at feed [m/s]
   Axes max_velocity = Axes::Zero();                    ///< [m/s], A [rad/s]
-  Axes max_acceleration = Axes::Zero();                ///< at pair ends [m/s^2], A [rad/s^2]
-  Axes max_jerk = Axes::Zero();                        ///< at pair ends [m/s^3], A [rad/s^3]
-  Axes ripple_acceleration = Axes::Zero();  ///< over single cycles, from the odd-even steps [m/s^2], A [rad/s^2]
-  std::vector<FeedLimit> feed_limits;       ///< what limits the feed, and where
+  Axes max_acceleration = Axes::Zero();                ///< maximum at pair ends [m/s^2], A [rad/s^2]
+  Axes max_jerk = Axes::Zero();                        ///< maximum at pair ends [m/s^3], A [rad/s^3]
+  Axes ripple_acceleration = Axes::Zero();  ///< single-cycle acceleration of odd-even steps [m/s^2], A [rad/s^2]
+  std::vector<FeedLimit> feed_limits;       ///< causes and places of feed limits
 };
 
 /// Why a plan was refused.
@@ -32,21 +32,21 @@ enum class PlanFault {
   kInvalidJob,
   kLimit,
   kTolerance,
-  kTool,  ///< the ground cutter is not as the job asks
+  kTool,  ///< the ground cutter does not meet the job's requirements
   kCollision,
-  kTooLong,  ///< longer than Machine::max_job_duration
-  kGivenUp,  ///< because PlanWatch returned false
+  kTooLong,  ///< the job takes longer than Machine::max_job_duration
+  kGivenUp,  ///< PlanWatch returned false
 };
 
 /// Called about every millisecond while a plan is computed.
-/// @param done fraction of the job that has been generated and checked, 0..1.
+/// @param done fraction of the job generated and checked so far, 0..1.
 /// @return false to give up planning.
 using PlanWatch = std::function<bool(double done)>;
 
 /// The setpoints of a job, generated and checked as a whole.
 struct JobPlan {
   PlanFault fault = PlanFault::kNone;
-  std::vector<Reason> reasons;  ///< why the plan was refused: one for each field, axis and kind of limit
+  std::vector<Reason> reasons;  ///< reasons for refusing the plan: one for each field, axis and kind of limit
   PathStatistics statistics;
   std::vector<std::uint64_t> move_ends;         ///< last cycle of every move in the program
   std::shared_ptr<const GrindProgram> program;  ///< null if the job or its law of Z was refused
@@ -54,14 +54,14 @@ struct JobPlan {
   bool good() const { return fault == PlanFault::kNone; }
 };
 
-/// Checks every setpoint of a job, identical to those that the machine would receive, up to the machine's
-/// max_job_duration. For any job and machine, the result is either a good plan or one with reasons.
+/// Checks every setpoint of a job, up to the machine's max_job_duration. The setpoints are identical to those that the
+/// machine would receive. For any job and machine, the result is either a good plan or one with reasons.
 ///
-/// Moves that differ only by constant offsets of their axes, as the strokes of all teeth and passes do, are generated
-/// as a whole only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
-/// differ from those of all setpoints by rounding; nothing else differs.
-/// @param visit if given, every setpoint is generated, and this is called with it; all of them are finite.
-/// @param watch if given, may make the planner give up.
+/// Moves that differ only by constant offsets of their axes, such as the strokes of all teeth and passes, are generated
+/// completely only once, unless every setpoint is asked for or something is not allowed. The statistics of Y and A then
+/// differ by rounding from the statistics of all setpoints; nothing else differs.
+/// @param visit if given, every setpoint is generated and passed to it; all of them are finite.
+/// @param watch if given, it may stop the planner.
 JobPlan planJob(const ValidJob& job, const Machine& machine, const RunStart& run,
                 const std::function<void(const Setpoint&)>& visit = {}, const PlanWatch& watch = {});
 

@@ -16,7 +16,7 @@ enum class LimitedQuantity { kPosition, kVelocity, kAcceleration, kJerk, kNotFin
 struct LimitViolation {
   int axis = 0;
   LimitedQuantity quantity = LimitedQuantity::kPosition;
-  double value = 0;  ///< of a position, in machine coordinates
+  double value = 0;  ///< value of the quantity; positions in machine coordinates
   double limit = 0;
   std::uint64_t cycle = 0;
   double x = 0;  ///< position along the cutter, in work coordinates [m]
@@ -35,16 +35,15 @@ class LimitCheck {
  public:
   /// @param limits the axes' limits.
   /// @param period control cycle [s].
-  /// @param roundings how many times the rounding of a position is let pass; 1 where a motion is planned,
-  ///        kUnplannedRoundings where it is made.
+  /// @param roundings tolerance for a position, in multiples of its rounding; 1 for planning, kUnplannedRoundings for
+  ///        execution.
   LimitCheck(const AxisLimits& limits, double period, double roundings = 1) noexcept;
 
-  /// A plan generates and checks only the first of moves that differ by constant offsets, see planJob(). What passes
-  /// there may be above the limit by one rounding, thus the true motion by two, and another move's by three.
+  /// The plan checks one representative of each shape of move, so rounding may put another up to 3 ulp over the limit.
   static constexpr double kUnplannedRoundings = 3;
 
   /// Discards the history: the axes are assumed to be at rest before the next setpoint.
-  /// @param terms sizes of numbers from which the positions to come are computed, see GrindProgram::terms().
+  /// @param terms magnitudes of the numbers from which the next positions are computed, see GrindProgram::terms().
   void restart(const Axes& terms = Axes::Zero()) noexcept {
     low_ = limits_.min_position;
     high_ = limits_.max_position;
@@ -53,7 +52,7 @@ class LimitCheck {
     max_ = terms;
   }
 
-  /// Until the next restart, positions as far out as this one are let pass, for axes that are already there.
+  /// Until the next restart, allows positions as far out as this one, for axes that are already there.
   void widen(const Axes& position) noexcept {
     low_ = low_.min(position);
     high_ = high_.max(position);
@@ -62,19 +61,19 @@ class LimitCheck {
   /// The nearest position within the limits.
   Axes clamped(const Axes& position) const noexcept { return position.max(low_).min(high_); }
 
-  /// From now on, positions are also computed from numbers of these sizes.
+  /// Adds magnitudes of numbers from which positions are computed from now on.
   void addTerms(const Axes& terms) noexcept { max_ = max_.max(terms); }
 
-  /// For axes that stood still for a while and continue at a fraction of their speed, see SCurveProfile::slowDown().
-  /// The stored history is scaled to the same speed, from the next pair on.
-  /// @param factor above 0 and below 1; other values are ignored.
+  /// Continues at a fraction of the speed, after the axes stood still for a while, see SCurveProfile::slowDown(). The
+  /// stored history is scaled to the same speed, from the next pair on.
+  /// @param factor speed factor, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }
 
   /// @param offset machine position - position of the setpoint [m], A [rad]. Only positions depend on it: velocity,
-  ///        acceleration and jerk come from the setpoints, so that plan and machine find the same, bit for bit.
-  /// @return the first violation of the setpoint, if there is one; begin() and end() give all of them.
+  ///        acceleration and jerk come from the setpoints, so plan and machine compute the same values, bit for bit.
+  /// @return the first violation of the setpoint, if there is one; begin() to end() has all of them.
   std::optional<LimitViolation> check(const Setpoint& setpoint, const Axes& offset = Axes::Zero()) noexcept;
 
   /// All violations of the last setpoint checked.
@@ -89,26 +88,26 @@ class LimitCheck {
  private:
   void slowPastDown() noexcept;
   void checkPosition(const Setpoint& setpoint, const Axes& offset) noexcept;
-  double noise(int axis) const noexcept;  ///< of a position by its rounding
+  double noise(int axis) const noexcept;  ///< rounding error of a position
   void checkPairEnd(const Setpoint& setpoint) noexcept;
   void checkSize(const Setpoint& setpoint, LimitedQuantity quantity, const Axes& value, const Axes& limit,
                  double rounding) noexcept;
   void report(const Setpoint& setpoint, int axis, LimitedQuantity quantity, double value, double limit) noexcept;
 
   AxisLimits limits_;
-  Axes low_, high_;  ///< of positions
+  Axes low_, high_;  ///< limits of positions
   double inverse_period_;
   double roundings_;
   std::uint64_t seen_ = 0;
-  double slow_down_ = 1;  ///< for the next pair
+  double slow_down_ = 1;  ///< factor for the next pair
   Axes last_ = Axes::Zero();
-  Axes max_ = Axes::Zero();  ///< maximum magnitude of the position so far, and of its terms
+  Axes max_ = Axes::Zero();  ///< maximum magnitude of the positions so far, and of the numbers they are computed from
   Axes ends_[3];             ///< the last pair ends, newest first
   Axes velocity_ = Axes::Zero();
   Axes acceleration_ = Axes::Zero();
   Axes jerk_ = Axes::Zero();
 
-  /// One for each axis and each of position, velocity, acceleration and jerk.
+  /// One violation for each axis and each of position, velocity, acceleration and jerk.
   std::array<LimitViolation, std::size_t{kAxisCount} * 4> violations_;
   std::size_t violation_count_ = 0;
 };

@@ -20,13 +20,13 @@ constexpr auto& rowsOf(StepKind) noexcept { return kStepKinds; }
 
 /// The command to the axes for one control cycle.
 struct Setpoint {
-  std::uint64_t cycle = 0;       ///< since the start of the job, which is cycle 0; even cycles end a pair
+  std::uint64_t cycle = 0;       ///< number of the cycle; the job starts at 0, and even cycles end a pair
   Axes position = Axes::Zero();  ///< [m], A [rad]
-  Axes velocity = Axes::Zero();  ///< mean over the cycle that ends at this setpoint [m/s], A [rad/s]
-  double path_error = 0;         ///< in A: theory - commanded; 0 outside strokes [rad]
-  double feed = 0;               ///< along the cutting edge; outside strokes, of the linear axes [m/s]
+  Axes velocity = Axes::Zero();  ///< mean velocity over the cycle that ends at this setpoint [m/s], A [rad/s]
+  double path_error = 0;         ///< theory - commanded of A; 0 outside strokes [rad]
+  double feed = 0;               ///< feed along the cutting edge; outside strokes, speed of the linear axes [m/s]
   double move_fraction = 0;      ///< completed fraction of the program's move, 0..1; exactly 1 at its end
-  std::uint32_t move_index = 0;  ///< of the program's move; while the wheel is lifted, of the interrupted move
+  std::uint32_t move_index = 0;  ///< index of the program's move; while the wheel is lifted, of the interrupted move
   std::uint16_t tooth = 0;       ///< from 0
   std::uint16_t pass = 0;        ///< from 0
   MoveKind move = MoveKind::kLift;

@@ -9,12 +9,12 @@
 
 namespace grinder {
 
-/// What the setpoints of a move depend on, but for constant offsets of the axes.
+/// The properties that determine a move's setpoints except for constant offsets of the axes.
 struct MoveShape {
   MoveKind kind = MoveKind::kLift;
-  std::size_t helix = 0;    ///< of a stroke: which of the program's
-  double taper = 0;         ///< of a stroke, see Move
-  Axes way = Axes::Zero();  ///< of a straight move [m], A [rad]
+  std::size_t helix = 0;    ///< index of the stroke's helix in the program
+  double taper = 0;         ///< taper of the stroke, see Move
+  Axes way = Axes::Zero();  ///< travel of a straight move [m], A [rad]
 
   bool operator<(const MoveShape& other) const noexcept;
 };
@@ -30,7 +30,7 @@ class SetpointStream {
   /// Starts at the start of the program.
   explicit SetpointStream(GrindProgram program);
 
-  /// The same without copying the program, which must not be null.
+  /// Starts at the start of a shared program, which must not be null.
   explicit SetpointStream(std::shared_ptr<const GrindProgram> program);
 
   /// The next setpoint; the first is the program's start position, at rest. Real-time safe.
@@ -49,52 +49,52 @@ class SetpointStream {
   /// Whether hold() is in effect.
   bool holding() const noexcept { return holding_; }
 
-  /// For axes that stood still for a while: continues at reduced speed, then accelerates again. Real-time safe.
+  /// Continues at reduced speed, then accelerates again, after the axes stood still for a while. Real-time safe.
   /// @param factor speed factor, above 0 and below 1; other values are ignored.
   void slowDown(double factor) noexcept {
     if (factor > 0 && factor < slow_down_) slow_down_ = factor;
   }
 
-  /// Continues after hold() from the current position, or after retract(): the wheel then re-enters a stroke ahead of
-  /// the point where it left it, by the distance needed to reach the feed. Real-time safe.
+  /// Continues after hold() from the current position. After retract(), the wheel re-enters the stroke ahead of the
+  /// point where it left it, by the distance needed to reach the feed. Real-time safe.
   void resume() noexcept;
 
   /// Lifts the wheel radially off the workpiece, where it stays. Ignored unless the axes are at rest before the end of
   /// the program. Real-time safe.
   void retract() noexcept;
 
-  /// Whether the wheel rests lifted after retract(), so that the axes may be moved by other means.
+  /// Whether the wheel rests lifted after retract(), so that something else may move the axes.
   bool lifted() const noexcept { return leg_ == Leg::kLift && stay_lifted_ && !mid_pair_ && !lost_ && law_.finished(); }
 
-  /// Takes over a setpoint that moves the axes by other means, and numbers it as the stream's own. They must come in
-  /// pairs, and end at rest. After resume() the stream first returns to where retract() lifted the wheel to: up to at
-  /// least that height, across, then down; from there it continues as if the axes had not been moved. Ignored unless
-  /// lifted(). Real-time safe.
-  /// @param setpoint changed but for position, velocity, feed and kind of move.
+  /// Takes over a setpoint from another source of motion, and numbers it as the stream's own. Such setpoints must come
+  /// in pairs and end at rest. After resume() the stream first returns to the position to which retract() lifted the
+  /// wheel: up to at least that height, across, then down; from there it continues as if the axes had not been moved.
+  /// Ignored unless lifted(). Real-time safe.
+  /// @param setpoint changed except for position, velocity, feed and kind of move.
   void adopt(Setpoint& setpoint) noexcept;
 
   /// Whether the program has ended.
   bool finished() const noexcept;
 
-  /// Whether the axes are on the program's path, and not on a detour after retract().
+  /// Whether the axes are on the program's path, rather than on a detour after retract().
   bool onPath() const noexcept { return leg_ == Leg::kPath; }
 
   const GrindProgram& program() const noexcept { return *program_; }
 
-  /// The shape of the current move, which must be one of the program's.
+  /// The shape of the current move, which must be a move of the program.
   MoveShape shape() const noexcept;
 
-  /// Time to the end of the current move, or to a stop before [s].
+  /// Time to the end of the current move, or to an earlier stop [s].
   double timeLeft() const noexcept { return law_.timeLeft(); }
 
-  /// Continues where another stream is, as if the setpoints up to there had been taken. Both must be between two
-  /// pairs of a move of the same shape, of the same program, neither held nor slowed down.
-  /// @param cycles by which the other is further on in its move.
+  /// Continues at the state of another stream, as if the setpoints up to there had been taken. Both must be between two
+  /// pairs of moves with the same shape, in the same program, neither held nor slowed down.
+  /// @param cycles number of cycles by which the other stream is ahead in its move.
   void skip(const SetpointStream& later, std::uint64_t cycles) noexcept;
 
-  /// Between two pairs of a straight move that has run at constant speed for `cycles`: leaves out setpoints, up to
-  /// twice `cycles` before that speed ends.
-  /// @param at_most how many setpoints may be left out.
+  /// Leaves out setpoints of a straight move, up to twice `cycles` before its constant speed ends. Applies between two
+  /// pairs of a straight move that has run at constant speed for `cycles`.
+  /// @param at_most maximum number of setpoints to leave out.
   /// @return the number of setpoints left out; 0 at any other time.
   std::uint64_t skipCruise(std::uint64_t cycles, std::uint64_t at_most) noexcept;
 
@@ -118,10 +118,10 @@ class SetpointStream {
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;
 
   std::shared_ptr<const GrindProgram> program_;
-  const Helix* helix_;  ///< of the program, for the current tooth
+  const Helix* helix_;  ///< path of the current tooth in the program
   double period_;
   double override_ = 1;
-  double slow_down_ = 1;  ///< for the next pair
+  double slow_down_ = 1;  ///< factor for the next pair
   bool holding_ = false;
   bool stay_lifted_ = false;
   bool lost_ = false;  ///< the stream cannot continue
@@ -132,7 +132,7 @@ class SetpointStream {
   std::size_t next_move_ = 0;
   Leg leg_ = Leg::kPath;
   SCurveProfile law_;
-  double move_speed_ = 0;  ///< of the law, without override
+  double move_speed_ = 0;  ///< speed of the law without override
 
   // For a straight move: position = from_ + law * way_.
   Axes from_ = Axes::Zero();
@@ -145,7 +145,7 @@ class SetpointStream {
   CurvePoint even_point_;
   double stroke_from_ = 0;  ///< parameter at which the stroke was started or re-entered
   double y_offset_ = 0, a_offset_ = 0;
-  double taper_ = 0;  ///< added to the cone's dY/dX
+  double taper_ = 0;  ///< slope added to the cone's dY/dX
 
   double reentry_ = 0;          ///< parameter at which retract() left the stroke
   Axes lifted_ = Axes::Zero();  ///< position to which retract() lifts the wheel [m], A [rad]

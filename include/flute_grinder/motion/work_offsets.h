@@ -9,17 +9,18 @@
 
 namespace grinder {
 
-/// Maximum size of a work offset; farther than any axis goes, and with a rounding far below any encoder's [m], A [rad].
+/// Maximum magnitude of a work offset: beyond the travel of any axis, with a rounding far below the resolution of any
+/// encoder [m], A [rad].
 constexpr double kMaxOffset = 1000;
 
-/// By what a work offset was set.
+/// The way in which a work offset was set.
 enum class OffsetMethod { kUnknown, kTouchOff, kProbe, kByHand, kComputed };
 
 struct OffsetMethodRow : EnumRow<OffsetMethod> {
-  const char* done = "set";  ///< in a sentence: "Y was ..."
+  const char* done = "set";  ///< participle for a sentence: "Y was ..."
 };
 
-/// With the names used in files and messages.
+/// Each method with its name in files and messages.
 inline constexpr OffsetMethodRow kOffsetMethods[]{
     {{OffsetMethod::kUnknown, "unknown"}, "set"},        {{OffsetMethod::kTouchOff, "touch_off"}, "touched off"},
     {{OffsetMethod::kProbe, "probe"}, "probed"},         {{OffsetMethod::kByHand, "by_hand"}, "set by hand"},
@@ -27,28 +28,28 @@ inline constexpr OffsetMethodRow kOffsetMethods[]{
 };
 constexpr auto& rowsOf(OffsetMethod) noexcept { return kOffsetMethods; }
 
-/// What a work offset was set for: the figures of a job that zero points depend on.
+/// The job for which a work offset was set, by the values that zero points depend on.
 struct OffsetBasis {
   OffsetMethod method = OffsetMethod::kUnknown;
-  std::string job_name;       ///< the job file's; may be empty
-  std::string wheel_name;     ///< the wheel file's; profile and width if the job has the wheel's figures itself
-  std::string wheel_digest;   ///< of the wheel's figures but wear and width; empty if it was set for no particular job
-  double end_diameter = 0;    ///< of the cutter [m]
-  double wheel_diameter = 0;  ///< to which Y = 0 is set [m]
-  double wheel_width = 0;     ///< [m]
-  double swivel = 0;          ///< of the job's set-up [rad]
-  double height = 0;          ///< of the job's set-up [m]
-  std::string tool_digest;    ///< toolDigest() of the job; empty if it was set for no particular job
-  int operation = 0;          ///< of the job, as GrindJob::operation
+  std::string job_name;       ///< name of the job file; may be empty
+  std::string wheel_name;     ///< name of the wheel file; profile and width if the job describes the wheel itself
+  std::string wheel_digest;   ///< digest of the wheel except wear and width; empty if set for no particular job
+  double end_diameter = 0;    ///< end diameter of the cutter [m]
+  double wheel_diameter = 0;  ///< wheel diameter to which Y = 0 is set [m]
+  double wheel_width = 0;     ///< width of the wheel [m]
+  double swivel = 0;          ///< swivel of the job's set-up [rad]
+  double height = 0;          ///< height of the job's set-up [m]
+  std::string tool_digest;    ///< toolDigest() of the job; empty if the offset was set for no particular job
+  int operation = 0;          ///< the job's GrindJob::operation
 
   bool hasJob() const noexcept { return !wheel_digest.empty(); }
 };
 
-/// Where the work stands on an axis, who said so, and for which job.
+/// The work offset of an axis, with who set it and for which job.
 struct WorkOffset {
   double value = 0;    ///< machine position - work position; NaN if it is unknown, see OffsetStore [m], A [rad]
-  std::string set_by;  ///< for people; empty if it was never set
-  double set_at = 0;   ///< since the epoch; 0 if it was never set [s]
+  std::string set_by;  ///< who set it, for people; empty if it was never set
+  double set_at = 0;   ///< time of setting since the epoch; 0 if it was never set [s]
   OffsetBasis basis{};
   std::uint32_t mounting = 0;  ///< MountedWheel::mounting when it was set
 
@@ -57,22 +58,22 @@ struct WorkOffset {
 
 /// The wheel on the spindle, as an operator has confirmed it.
 struct MountedWheel {
-  std::string name;            ///< as OffsetBasis::wheel_name
-  std::string digest;          ///< as OffsetBasis::wheel_digest; empty until one is confirmed
-  double diameter = 0;         ///< nominal [m]
-  std::uint32_t mounting = 0;  ///< grows with every change of the wheel: X, Y and Z count for one mounting alone
+  std::string name;            ///< name, see OffsetBasis::wheel_name
+  std::string digest;          ///< digest, see OffsetBasis::wheel_digest; empty until a wheel is confirmed
+  double diameter = 0;         ///< nominal diameter [m]
+  std::uint32_t mounting = 0;  ///< number that grows with every wheel change; X, Y and Z count for one mounting
 
   bool isKnown() const noexcept { return !digest.empty(); }
 };
 
-/// Why the place of the teeth is not known.
+/// Why the position of the teeth is unknown.
 enum class TeethUnknown { kNeverGround, kClamped, kHomed, kSet };
 
 struct TeethUnknownRow : EnumRow<TeethUnknown> {
   const char* reason = "";  ///< a sentence for people
 };
 
-/// With the names used in files and messages.
+/// Each reason with its name in files and messages.
 inline constexpr TeethUnknownRow kTeethUnknown[]{
     {{TeethUnknown::kNeverGround, "never_ground"}, "no flutes were ground"},
     {{TeethUnknown::kClamped, "clamped"}, "the tool was clamped anew"},
@@ -81,30 +82,30 @@ inline constexpr TeethUnknownRow kTeethUnknown[]{
 };
 constexpr auto& rowsOf(TeethUnknown) noexcept { return kTeethUnknown; }
 
-/// The tool in the collet: whose teeth stand where the work offset of A says, and what is ground on it.
+/// The tool in the collet: the tool whose teeth the work offset of A refers to, and the operations ground on it.
 struct ClampedTool {
-  std::string digest;        ///< toolDigest(); empty if the place of its teeth is not known
-  std::string job_name;      ///< of the job that ground or probed them; may be empty
-  std::uint32_t ground = 0;  ///< a bit for each of the tool's operations that is finished, from the lowest
-  TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< why, without a digest
-  std::uint32_t clamping = 0;  ///< grows whenever a tool is clamped: an unfinished job goes on in one clamping alone
+  std::string digest;                                 ///< toolDigest(); empty if the position of its teeth is unknown
+  std::string job_name;                               ///< name of the job that ground or probed the teeth; may be empty
+  std::uint32_t ground = 0;                           ///< finished operations of the tool, one bit each from the lowest
+  TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< cause of an empty digest
+  std::uint32_t clamping = 0;  ///< grows with every clamping; an unfinished job continues only in the same one
 
-  /// @param operation of any size: a message may ask for one that there is not.
+  /// @param operation any number: a message may name an operation that does not exist.
   bool isGround(int operation) const noexcept {
     return operation >= 0 && operation < 32 && ((ground >> operation) & 1U) != 0;
   }
-  /// Its teeth are where nobody knows.
+  /// Records that the position of the teeth is unknown.
   void forget(TeethUnknown why) { *this = {"", "", 0, why, clamping}; }
 };
 
-/// The work offset of every axis. The coordinates of a job are the work's; those of limits, park position, homing and
-/// drive are the machine's. With the offsets goes what they depend on and only an operator or a job knows.
+/// The work offsets of all axes. Jobs use work coordinates; limits, park position, homing and drive use machine
+/// coordinates. Stored together with the state that the offsets depend on and that only an operator or a job knows.
 struct WorkOffsets {
   std::array<WorkOffset, kAxisCount> axes;
   MountedWheel wheel{};
   ClampedTool tool{};
 
-  /// [m], A [rad]
+  /// Machine position - work position of every axis [m], A [rad].
   Axes values() const noexcept {
     Axes values;
     for (int axis = 0; axis < kAxisCount; ++axis) values[axis] = axes[static_cast<std::size_t>(axis)].value;

@@ -6,7 +6,7 @@
 
 namespace grinder {
 
-/// Wheel in the frame `wheel` and blank in the frame `cutter`. The first marker deletes what was shown before.
+/// The wheel in the frame `wheel` and the blank in the frame `cutter`. The first marker deletes the earlier ones.
 /// @throw std::invalid_argument for a wheel that WheelProfile refuses.
 visualization_msgs::MarkerArray firstViewMarkers(const FirstView& view);
 

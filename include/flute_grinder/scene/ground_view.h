@@ -12,9 +12,9 @@
 
 namespace grinder {
 
-/// Shows the ground cutter in rviz on `~ground_cutter`, latched. It is computed in a thread of its own, at low
-/// priority: a plan at once, what is being ground at most once a second and in a twentieth of a core. Of several
-/// requests the latest counts. Thread safe; the calls do not wait for the computation.
+/// Shows the ground cutter in rviz on `~ground_cutter`, latched. It is computed in a separate thread at low priority: a
+/// plan at once, a running job at most once a second and with a twentieth of a core. Only the latest request counts.
+/// Thread safe; the calls do not wait for the computation.
 class GroundView {
  public:
   /// @param private_nh the node's own namespace.
@@ -23,15 +23,15 @@ class GroundView {
   GroundView(const GroundView&) = delete;
   GroundView& operator=(const GroundView&) = delete;
 
-  /// @param reached how far the job is ground; nothing for what it will be.
+  /// @param reached progress of the job; nothing for the finished tool.
   void show(const std::optional<ValidJob>& job, const std::optional<Reached>& reached);
 
-  /// Takes back what is shown.
+  /// Removes the cutter from rviz.
   void clear() { show(std::nullopt, std::nullopt); }
 
  private:
   struct Request {
-    std::optional<ValidJob> job;  ///< nothing to show nothing
+    std::optional<ValidJob> job;  ///< job to show; nothing to clear the view
     std::optional<Reached> reached;
   };
 
@@ -43,7 +43,7 @@ class GroundView {
   std::condition_variable changed_;
   std::optional<Request> request_;
   bool ended_ = false;
-  std::thread thread_;  ///< last member, so that it finds the others
+  std::thread thread_;  ///< last member, so that the others exist when it starts
 };
 
 }  // namespace grinder

@@ -17,31 +17,31 @@ geometry_msgs::Point point(double x, double y, double z);
 /// Red, green, blue and opacity, 0 to 1 each.
 std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1);
 
-/// From blue at 0 through green and yellow to red at 1.
+/// A colour from blue at 0 through green and yellow to red at 1.
 std_msgs::ColorRGBA heat(double fraction);
 
 /// An array whose first marker deletes everything shown on its topic before.
 visualization_msgs::MarkerArray clearedArray();
 
 /// Appends a white marker with a unique id, at the origin of its frame and moving with it.
-/// @param type as visualization_msgs::Marker::LINE_STRIP.
-/// @return the marker; valid until the next is appended.
+/// @param type type, e.g. visualization_msgs::Marker::LINE_STRIP.
+/// @return the marker; valid until the next one is appended.
 visualization_msgs::Marker& append(visualization_msgs::MarkerArray& array, const char* ns, int type, const char* frame);
 
-/// The same for lines.
+/// Appends a marker for lines.
 /// @param type visualization_msgs::Marker::LINE_STRIP or LINE_LIST.
-/// @param width of the lines [m].
+/// @param width width of the lines [m].
 visualization_msgs::Marker& appendLines(visualization_msgs::MarkerArray& array, const char* ns, int type,
                                         const char* frame, double width);
 
 /// A corner of the outline of a solid of revolution.
 struct OutlinePoint {
-  double x;       ///< along the axis [m]
-  double radius;  ///< [m]
+  double x;       ///< distance along the axis [m]
+  double radius;  ///< distance from the axis [m]
 };
 
-/// Appends a solid of revolution about the frame's X axis, as triangles that face outward where the outline goes
-/// toward +X outside of the axis. In a single colour, since rviz does not light markers with a colour per point.
+/// Appends a solid of revolution about the frame's X axis, as triangles that face outward where the outline runs toward
+/// +X away from the axis. In a single colour, since rviz does not light markers with a colour per point.
 visualization_msgs::Marker& appendSolid(visualization_msgs::MarkerArray& array, const char* ns, const char* frame,
                                         const std::vector<OutlinePoint>& outline, const std_msgs::ColorRGBA& colour);
 

@@ -10,57 +10,56 @@
 
 namespace grinder {
 
-/// The edges of all teeth, where the wheel grinds them, as line strips in the frame `cutter`, so that they turn with A:
-/// a planned one is grey, the one being ground bright, and a finished one coloured point by point by the error measured
-/// in its last pass, red at the job's tolerance.
+/// The ground edges of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned edge is
+/// grey, the one being ground bright, and a finished one coloured point by point by the error measured in its last
+/// pass, red at the job's tolerance.
 class ToolPath {
  public:
-  /// @param edges of the teeth; one that is empty is not shown, like all that is about it.
+  /// @param edges edges of the teeth; an empty edge and its measurements are not shown.
   ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges);
 
   /// Adds a measured position; positions off the stroke are ignored.
-  /// @param setpoint that reached the axes; its tooth is active until the end of the stroke.
+  /// @param setpoint setpoint that reached the axes; its tooth is active until the end of the stroke.
   /// @param actual position read from the drive [m], A [rad].
   /// @return whether the appearance of a flute has changed.
   bool add(const Setpoint& setpoint, const Axes& actual);
 
-  /// No tooth is active any more; measurements of an unfinished pass are discarded.
+  /// Ends the active state of a tooth; measurements of an unfinished pass are discarded.
   void deactivate();
 
   /// The maximum error measured so far, normal to the helix on the cutter's surface [m].
   double maxMeasured() const { return max_; }
 
-  /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes what was shown
-  /// before.
+  /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes the earlier ones.
   visualization_msgs::MarkerArray markers() const;
 
  private:
   struct Flute {
-    double angle;    ///< that its strokes add to the curve [rad]
+    double angle;    ///< angle that the strokes add to the curve [rad]
     LogCurve curve;  ///< A over X
     GroundEdge edge;
-    std::vector<float> errors;  ///< per point of the strip [m]; empty until a pass is finished
+    std::vector<float> errors;  ///< error per point of the strip [m]; empty until a pass is finished
   };
 
-  double x(const GroundEdge& edge, std::size_t i) const;  ///< of a point of its strip [m]
+  double x(const GroundEdge& edge, std::size_t i) const;  ///< X of a point of the edge's strip [m]
   void measure(const Setpoint& setpoint, const Axes& actual);
   void finishPass(Flute& flute);
   void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
   FormedEdge formed_;
-  double tolerance_;   ///< where the colour scale ends [m]
-  std::size_t steps_;  ///< between the points of a strip
+  double tolerance_;   ///< error at the end of the colour scale [m]
+  std::size_t steps_;  ///< number of steps between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
-  std::vector<float> measured_;  ///< in the current pass, as in Flute; negative where not yet measured
+  std::vector<float> measured_;  ///< errors measured in the current pass, as in Flute; negative where not yet measured
   double max_ = 0;               ///< [m]
 };
 
-/// Where the wheel has gone along the edge in the current stroke, from measured positions, as a line strip in the frame
-/// `cutter`: below the edge by the depth of the pass. Thinned out as it grows.
+/// The measured path of the wheel along the edge in the current stroke, as a line strip in the frame `cutter`, below
+/// the edge by the depth of the pass. Thinned out as it grows.
 class ExecutedPath {
  public:
-  /// @param edges of the teeth.
+  /// @param edges edges of the teeth.
   ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges);
 
   /// Adds a measured position; the first of a stroke starts a new path, and positions off the stroke are ignored.
@@ -72,7 +71,7 @@ class ExecutedPath {
  private:
   ConicalCutter cutter_;
   std::vector<GroundEdge> edges_;
-  std::vector<double> wear_of_move_;  ///< of the wheel's radius, by the program's moves [m]
+  std::vector<double> wear_of_move_;  ///< wear of the wheel's radius, by the program's moves [m]
   std::optional<std::uint32_t> move_;
   std::vector<geometry_msgs::Point> points_;
   geometry_msgs::Point last_;
@@ -84,22 +83,22 @@ class ExecutedPath {
 /// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
 class PathErrorMarkers {
  public:
-  /// @param edges of the teeth.
+  /// @param edges edges of the teeth.
   PathErrorMarkers(const ValidJob& job, std::vector<GroundEdge> edges);
 
-  /// Adds a setpoint; the first of another stroke starts again, and setpoints off the stroke are ignored.
+  /// Adds a setpoint; the first of another stroke restarts the markers, and setpoints off the stroke are ignored.
   void add(const Setpoint& setpoint);
 
-  /// How many times longer the arrows are than the deviations; 0 if there are none.
+  /// The ratio of the arrows' length to the deviations; 0 if there are none.
   double scale() const;
 
-  /// @return markers of namespace "path_error"; the first deletes what was shown before.
+  /// @return markers of namespace "path_error"; the first deletes the earlier ones.
   visualization_msgs::MarkerArray markers() const;
 
  private:
   struct Point {
-    double x;          ///< of the edge [m]
-    double a;          ///< its angle [rad]
+    double x;          ///< X of the edge [m]
+    double a;          ///< angle of the edge [rad]
     double deviation;  ///< commanded - theory, normal to the helix [m]
   };
   void thinOut();

@@ -7,7 +7,7 @@
 
 namespace grinder {
 
-/// The figures of a tool and those that its job asks for; null where there is no figure or nothing is asked.
+/// The figures of a tool, and the figures that its job asks for; null where there is no figure or nothing is asked.
 Json toJson(const CutterFigures& figures);
 
 /// The output of `grind plan --json`: whether the job can be ground, why not, and its statistics.

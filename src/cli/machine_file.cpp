@@ -23,7 +23,7 @@ class Parameters {
  public:
   explicit Parameters(std::string name) : name_(std::move(name)) {}
 
-  /// Adds a file's values to those of the files before it.
+  /// Adds a file's values, which override the values of earlier files.
   void addTo(XmlRpc::XmlRpcValue& value, const YAML::Node& node, const std::string& key) const {
     if (node.IsMap()) return addMap(value, node, key);
     if (node.IsSequence()) {

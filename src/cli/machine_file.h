@@ -13,7 +13,7 @@ struct MachineFiles {
 };
 
 /// Reads the machine from the files that roslaunch loads, without ROS running.
-/// @param parameters YAML, the node's parameters; those of a file override those of the files before it.
+/// @param parameters YAML, the node's parameters; each file overrides the files before it.
 /// @param urdf the robot description.
 /// @throw JobFileError if a file cannot be read, has a key twice, or a number that roslaunch would read differently;
 ///        ParameterError or std::invalid_argument if the machine cannot be used.

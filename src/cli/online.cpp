@@ -268,7 +268,7 @@ int lift(const std::string& node) {
   return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
 
-/// Cancels the running job, whoever started it, and waits for the end.
+/// Cancels the running job of any client, and waits for the end.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);

@@ -38,7 +38,7 @@ void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
 }
 
 ros::Duration ControlLoop::awaitCycle(Clock::time_point last) noexcept {
-  constexpr std::int32_t kLongest = 3600;  // a period after the computer was suspended [s]
+  constexpr std::int32_t kLongest = 3600;  // such as after a suspension of the computer [s]
   const ros::Duration nominal(config_.machine.period);
   ros::Duration period = nominal;
   bool waited = false;
@@ -244,7 +244,7 @@ void ControlLoop::publish() {
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
 
-  // Both are filled in before they are copied: a copy of what was just written has to wait for it.
+  // Both are filled in before they are copied, because a copy right after a write stalls.
   if (samples_.push(sample_)) {
     sample_.job_ended = false;
   } else {

@@ -7,7 +7,7 @@ namespace grinder {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;  ///< [ns]
+constexpr std::int64_t kSecond = 1000000000;  ///< a second [ns]
 
 /// The monotonic clock [ns].
 std::int64_t monotonicNow() {

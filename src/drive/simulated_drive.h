@@ -26,16 +26,16 @@ class SimulatedDrive : public Drive {
   struct AxisModel {
     double time_constant = 0;    ///< time constant of the lag [s]
     double counts_per_unit = 1;  ///< resolution of the encoder [1/m or 1/rad]
-    double start_position = 0;   ///< [m or rad]
-    double home_position = 0;    ///< [m or rad]
-    double homing_velocity = 1;  ///< [m/s or rad/s]
+    double start_position = 0;   ///< true position at the start [m or rad]
+    double home_position = 0;    ///< position at which homing ends [m or rad]
+    double homing_velocity = 1;  ///< speed of homing [m/s or rad/s]
   };
   using Model = std::array<AxisModel, kAxisCount>;
 
   /// Model of encoders, spindle and swivel.
   struct Equipment {
     bool absolute_encoders = true;   ///< the axes are homed from the start
-    double spindle_run_up_time = 0;  ///< [s]
+    double spindle_run_up_time = 0;  ///< time to full speed [s]
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
     /// Ratio of simulated time to the clock's, limited by the use of half a core. Unless it is 1, every cycle reports
@@ -51,7 +51,7 @@ class SimulatedDrive : public Drive {
   /// What the measuring probe touches: a cylinder in the work spindle.
   struct Blank {
     double end_face = 0;  ///< X of the end face in machine coordinates [m]
-    double diameter = 0;  ///< [m]
+    double diameter = 0;  ///< diameter of the cylinder [m]
     double run_out = 0;   ///< total run-out [m]
     std::optional<RakeFace> rake_face;
     double ball_diameter = 0;  ///< diameter of the probe's ball [m]

@@ -124,7 +124,7 @@ def like(value, model):
 class Records:
     """The sums over all records of a folder, including records since removed.
 
-    The node removes the oldest records. If the counters fell with them, Prometheus would count all others once more. So the sums are
+    The node removes the oldest records. If the counters fell with them, Prometheus would count all others again. So the sums are
     kept in a file of the same folder, with the names of the records counted."""
 
     def __init__(self, folder):
@@ -217,7 +217,7 @@ class Records:
     def save(self):
         new = self.file.with_suffix('.new')
         try:
-            # A file that a power failure left is removed, like anything else of this name, such as a FIFO, which must not be opened.
+            # Removes a file that a power failure left, or anything else of this name, such as a FIFO, which must not be opened.
             if os.path.lexists(str(new)):
                 new.unlink()
             with new.open('x') as file:

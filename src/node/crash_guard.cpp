@@ -12,7 +12,7 @@ constexpr int kSignals[]{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr int kMaxChecks = 1000;                   ///< checks of the loop's status before giving up
 constexpr timespec kCheckInterval{0, 10'000'000};  ///< interval between checks [s, ns]
 /// Time for the telemetry, which publishes every 0.05 s, after the axes are off.
-constexpr timespec kReportTime{0, 200'000'000};  ///< [s, ns]
+constexpr timespec kReportTime{0, 200'000'000};  ///< 0.2 s [s, ns]
 
 std::atomic<ControlLoop*> guarded{nullptr};
 

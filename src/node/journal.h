@@ -14,7 +14,7 @@ namespace grinder {
 /// The progress of a job.
 struct Progress {
   std::string job_digest;            ///< see jobDigest(); empty if there has been no job
-  std::string job_name;              ///< as given in the goal, for display
+  std::string job_name;              ///< name given in the goal, for display
   std::string operation;             ///< text of GrindJob::operationText()
   CutterGeometry cutter;             ///< cutter of the job, for display
   std::vector<double> tooth_angles;  ///< angles of the job's teeth, for display [rad]

@@ -68,7 +68,7 @@ std::string wheelRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis
          " once it is mounted: grind confirm-wheel JOB";
 }
 
-/// Sets an offset and whatever depends on it. @param offset the offset, without its mounting.
+/// Sets an offset and the state that depends on it. @param offset the offset, without its mounting.
 void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
   offset.mounting = offsets.wheel.mounting;
   const OffsetBasis& basis = offset.basis;

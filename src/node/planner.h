@@ -12,7 +12,7 @@
 
 namespace grinder {
 
-/// Shared between the planner and whoever waits for the plan. Thread safe.
+/// State shared by the planner and the thread that waits for the plan. Thread safe.
 struct PlanControl {
   std::atomic<bool> give_up{false};  ///< set to abandon the plan
   std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1

@@ -209,7 +209,7 @@ void JobBox::setFile(const QString& file) {
   readAnew();
 }
 
-/// Reads the file anew, and looks anew for a job to continue.
+/// Reads the file again, and looks again for a job to continue.
 void JobBox::readAnew() {
   where_left_.reset();
   continue_->setChecked(false);

@@ -84,7 +84,7 @@ class JobBox : public QWidget {
   void startWanted(const flute_grinder::GrindGoal& goal);
   /// The operator has set the swivel for the job to be started. @param angle [rad].
   void swivelConfirmed(double angle);
-  /// The operator has mounted the wheel of a goal, which is then to be planned anew.
+  /// The operator has mounted the wheel of a goal, which is then to be planned again.
   void wheelConfirmed(const flute_grinder::GrindGoal& goal);
   /// The work offsets that can be computed are to be fitted to a goal.
   void offsetFitWanted(const flute_grinder::GrindGoal& goal);

@@ -24,8 +24,8 @@ constexpr double kContinuous = 0;                                 ///< entry for
 constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< steps [mm], A [deg]
 
 /// Initial speeds; the operator's changes are not saved.
-constexpr double kLinearSpeed = 600;   ///< [mm/min]
-constexpr double kRotarySpeed = 1800;  ///< [deg/min]
+constexpr double kLinearSpeed = 600;   ///< speed of X, Y and Z [mm/min]
+constexpr double kRotarySpeed = 1800;  ///< speed of A [deg/min]
 constexpr double kMaxSpeed = 99999;
 constexpr int kSpeedDecimals = 3;
 

@@ -43,7 +43,7 @@ class SectionView : public QWidget {
     std::shared_ptr<const CutterSection> section;  ///< null if the section cannot be computed
     QString text;                                  ///< figures of the section, or why there is none
     Clock::duration took{};
-    std::optional<ValidJob> with_law;  ///< as in Wanted
+    std::optional<ValidJob> with_law;  ///< see Wanted::with_law
   };
 
   static Computed computed(const Wanted& wanted);
@@ -54,7 +54,7 @@ class SectionView : public QWidget {
   void show(const std::shared_ptr<const CutterSection>& section, const QString& text);
 
   Job job_;
-  std::optional<ValidJob> with_law_;  ///< as in Wanted
+  std::optional<ValidJob> with_law_;  ///< see Wanted::with_law
   std::string digest_;                ///< digest of the job
   std::optional<Wanted> wanted_;
   NumberBox* x_;

@@ -10,7 +10,7 @@
 
 namespace grinder {
 
-/// The progress of a job: the setpoints that were written, or those that reached the axes.
+/// The progress of a job: the setpoints that were written, or that reached the axes.
 struct JobTrack {
   std::uint64_t job = 0;        ///< number of the job; 0 for none
   std::uint64_t setpoints = 0;  ///< setpoints counted so far
@@ -30,7 +30,7 @@ struct JobTrack {
 class CommandHistory {
  public:
   struct Entry {
-    Axes command = Axes::Zero();  ///< [m], A [rad]
+    Axes command = Axes::Zero();  ///< command to the axes [m], A [rad]
     JobTrack track;
   };
 

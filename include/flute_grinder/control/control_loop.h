@@ -206,7 +206,7 @@ class ControlLoop : public RequestBox {
   DriveCommand drive_command_;
   bool spindle_ = false;           ///< the spindle is commanded, by a job or by hand
   bool coolant_ = false;           ///< the coolant is commanded, by a job or by hand
-  bool switched_by_hand_ = false;  ///< spindle or coolant was, since the job began or was resumed
+  bool switched_by_hand_ = false;  ///< spindle or coolant, since the job began or was resumed
   double waited_ = 0;              ///< time waited for power, the reference, or a job's interlocks [s]
   bool awaiting_power_ = false;
   bool preparation_begun_ = false;  ///< prepare() was called for the power awaited

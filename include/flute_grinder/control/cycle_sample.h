@@ -22,9 +22,9 @@ struct CycleSample {
   DriveStatus drive;
   bool power_stays = false;      ///< the drive still reports power enable_timeout after it was commanded off
   double feedback_age = 0;       ///< time since the drive last delivered fresh positions [s]
-  Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
-  Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
-  Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
+  Axes position = Axes::Zero();  ///< positions read in this cycle [m], A [rad]
+  Axes velocity = Axes::Zero();  ///< velocities read in this cycle [m/s], A [rad/s]
+  Axes command = Axes::Zero();   ///< command written in this cycle [m], A [rad]
   /// The command that the positions should follow; older than `command` if the drive buffers commands [m], A [rad].
   Axes command_in_effect = Axes::Zero();
   bool has_setpoint = false;
@@ -34,7 +34,7 @@ struct CycleSample {
   bool wheel_in_work = false;
   bool spindle_commanded = false;
   bool coolant_commanded = false;
-  Axes distance_to_go = Axes::Zero();      ///< from the positions to the end of the running move [m], A [rad]
+  Axes distance_to_go = Axes::Zero();      ///< distance from the positions to the end of the running move [m], A [rad]
   Swivel swivel;                           ///< angle of the swivel, as far as it is known
   LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed

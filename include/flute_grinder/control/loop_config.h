@@ -30,8 +30,8 @@ struct LoopConfig {
   double jog_timeout = 0;               ///< longest allowed time between the messages of a continuous jog [s]
   Axes jog_velocity = Axes::Zero();     ///< speed of a jog that names none [m/s], A [rad/s]
   ProbingConfig probing;
-  double late_slow_down = 2;  ///< cycle from which the axes are slowed down, then accelerated again [periods]
-  double late_fault = 10;     ///< cycle from which it is a fault, unless the drive had buffered commands [periods]
+  double late_slow_down = 2;  ///< cycle length from which the axes are slowed down, then accelerated again [periods]
+  double late_fault = 10;     ///< cycle length that is a fault, unless the drive had buffered commands [periods]
 };
 
 }  // namespace grinder

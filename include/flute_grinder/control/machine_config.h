@@ -12,7 +12,7 @@
 
 namespace grinder {
 
-/// The parameters in a machine's file, without those that its drive reads.
+/// The parameters in a machine's file, without the drive's.
 struct MachineConfig {
   LoopConfig loop;
   Axes offset_change_limit;         ///< largest change of a work offset [m], A [rad]

@@ -104,7 +104,7 @@ class Drive {
   virtual void prepare() {}
 
   /// Reads the hardware. Real-time. An exception from read(), write() or wait() is a drive fault.
-  /// @param feedback readings to update: those that the last call left, at first the defaults.
+  /// @param feedback readings to update, as left by the last call; at first the defaults.
   virtual void read(const DriveCycle& cycle, DriveFeedback& feedback) = 0;
 
   /// Sends the command. Real-time. The first call comes after all positions have been finite at least once.
@@ -114,7 +114,7 @@ class Drive {
   /// never made up, because the axes would then move faster than planned. A drive with its own clock overrides this
   /// function. Real-time.
   /// @param nominal control period.
-  /// @return time since the last cycle, which all time-outs and stamps of the loop follow.
+  /// @return time since the last cycle, which all timeouts and stamps of the loop follow.
   virtual ros::Duration wait(const ros::Duration& nominal);
 
   /// Switches the power off at once, in place of write(), because read(), write() or wait() has not returned for 0.25

@@ -9,8 +9,8 @@
 /// against.
 namespace grinder {
 
-/// Binary version of the drive interface: the layout of everything declared in flute_grinder/drive/, in
-/// flute_grinder/job/axes.h and in fault_text.h, and the order of Drive's virtual functions. Increase it whenever one
+/// Binary version of the drive interface: the layout of everything declared in flute_grinder/drive/, and in
+/// axes.h and fault_text.h in flute_grinder/job/, and the order of Drive's virtual functions. Increase it whenever one
 /// of them changes. The node refuses plugins that were built against another version.
 constexpr std::uint32_t kDriveAbi = 4;
 

@@ -57,7 +57,7 @@ std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* too
 /// The criteria of the run: path, following error, feed, late cycles.
 std::vector<Criterion> criteriaOfRun(const RunFacts& run, const Tolerances& tolerances);
 
-/// Judges again those criteria that depend on Tolerances alone.
+/// Judges again the criteria that depend on Tolerances alone.
 void judgeAgain(std::vector<Criterion>& criteria, const Tolerances& tolerances);
 
 struct Verdict {

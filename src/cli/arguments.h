@@ -12,9 +12,9 @@
 
 namespace grinder {
 
-// Arguments that several commands have.
+// Arguments that several commands share.
 
-/// A check that a number is from min to max, in the unit.
+/// A check that a number is from `min` to `max`, in `unit`.
 inline auto within(double min, double max, const char* unit) {
   return [=](const std::string& text) {
     const double value = parseNumber(text.c_str());
@@ -22,34 +22,34 @@ inline auto within(double min, double max, const char* unit) {
   };
 }
 
-/// The job file, required.
+/// Adds the required job file.
 void addJob(CLI::App& command, std::string& job);
 
-/// Which of a job file's operations: `--operation`.
+/// Adds `--operation`, which chooses one of a job file's operations.
 void addOperation(CLI::App& command, std::string& operation);
 
-/// `--csv`, a file to write.
+/// Adds `--csv`, a file to write.
 void addCsv(CLI::App& command, std::string& csv, const char* description);
 
-/// `--json`.
+/// Adds `--json`.
 void addJson(CLI::App& command, bool& json);
 
-/// `--yes`, in place of the question before a large change of a work offset.
+/// Adds `--yes`, which skips the question before a large change of a work offset.
 CLI::Option* addYes(CLI::App& command, bool& yes);
 
-/// Which of a bag's jobs, from 1. @param name of the option.
+/// Adds the choice of one of a bag's jobs, from 1. @param name name of the option.
 void addCountedJob(CLI::App& command, const char* name, int& number);
 
-/// The files that describe the machine; by default the package's own.
+/// Adds the files that describe the machine; by default the package's own.
 void addMachine(CLI::App& command, std::string& parameters, std::string& urdf);
 
-/// The letter of an axis, required.
+/// Adds the required letter of an axis.
 void addAxis(CLI::App& command, std::string& axis);
 
-/// `--flange`.
+/// Adds `--flange`.
 void addFlange(CLI::App& command, std::optional<double>& flange_mm);
 
-/// An option whose argument is the name of an enum's value.
+/// Adds an option whose argument is the name of an enum's value.
 template <typename Enum>
 void addChoice(CLI::App& command, const char* name, std::optional<Enum>& choice, const char* description) {
   std::map<std::string, Enum> values;
@@ -65,7 +65,7 @@ void addChoice(CLI::App& command, const char* name, std::optional<Enum>& choice,
       ->type_name("{" + names + "}");
 }
 
-/// A length in mm. @param zero whether it may be 0.
+/// Adds a length in mm. @param zero whether it may be 0.
 template <typename Length>
 CLI::Option& addLength(CLI::App& command, const char* name, Length& length_mm, const char* description, bool zero) {
   return *command.add_option(name, length_mm, description)->type_name("MM")->check([zero](const std::string& text) {

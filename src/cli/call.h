@@ -12,8 +12,9 @@
 
 namespace grinder {
 
-/// Asks a service of the grinder, and prints why if it is not answered.
-/// @param patience for the answer. @param give_up ends the wait for it earlier. @return nothing without an answer.
+/// Calls a service of the grinder, and prints why if there is no answer.
+/// @param patience longest wait for the answer. @param give_up ends the wait earlier. @return nothing without an
+/// answer.
 template <typename Service>
 std::optional<typename Service::Response> ask(
     ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
@@ -36,8 +37,8 @@ std::optional<typename Service::Response> ask(
   return response;
 }
 
-/// The same for a service that may refuse, and prints why if it does.
-/// @param answer if given, gets the response, if there is one. @return the exit status.
+/// Calls a service that may refuse, and prints why if it refuses or does not answer.
+/// @param answer gets the response, if there is one; may be null. @return the exit status.
 template <typename Service>
 int call(
     ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,

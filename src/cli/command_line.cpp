@@ -41,7 +41,7 @@ std::optional<int> CommandLine::parse(int argc, const char* const* argv) {
     app_.parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    // A word that nobody knows is named before what is missing, which it may have been meant for.
+    // An unknown word is named before a missing argument, for which it may have been meant.
     const std::string unknown = error.get_exit_code() == 0 ? "" : unknownWord(app_);
     const std::string wrong = unknown.empty() ? wrongNumber(error) : unknown;
     if (wrong.empty()) return app_.exit(error) == 0 ? 0 : kUsage;

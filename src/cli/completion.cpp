@@ -67,7 +67,7 @@ std::vector<const CLI::App*> subcommands(const CLI::App& app) {
 
 bool takesValue(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
 
-/// `--csv`, or `-h --help`.
+/// The names of an option, e.g. `-h` and `--help`.
 std::vector<std::string> namesOf(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
@@ -87,7 +87,7 @@ std::string completer(const CLI::Option& option) {
   return "_grind_words '" + type.substr(1, type.size() - 2) + "' \"$cur\"";
 }
 
-/// The patterns of the arguments of a command's options, each with what completes it.
+/// Writes the patterns of the arguments of a command's options, each with its completion.
 void writeValues(const CLI::App& app, const std::string& command, std::ostream& script) {
   for (const CLI::Option* option : app.get_options()) {
     if (!takesValue(*option)) continue;
@@ -97,10 +97,10 @@ void writeValues(const CLI::App& app, const std::string& command, std::ostream& 
   }
 }
 
-/// What completes a word of a command that is no option's argument.
+/// Writes the completion of a command's words other than arguments of options.
 void writeWords(const CLI::App& app, const std::string& command, std::ostream& script) {
   std::string options, words;
-  std::string positional;  // the first one
+  std::string positional;  // the first positional argument
   for (const CLI::Option* option : app.get_options()) {
     for (const std::string& name : namesOf(*option)) options += (options.empty() ? "" : " ") + name;
     if (option->get_positional() && positional.empty()) positional = completer(*option);

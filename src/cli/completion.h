@@ -13,7 +13,7 @@ constexpr const char* kUrdfFile = "FILE.urdf";
 constexpr const char* kFolder = "FOLDER";
 
 /// A script for bash that completes a program's sub-commands, options and their arguments, for `grind` and for
-/// `rosrun flute_grinder grind`. All other uses of rosrun keep the existing completion.
+/// `rosrun flute_grinder grind`. Other uses of rosrun keep the existing completion.
 std::string bashCompletion(const CLI::App& app);
 
 }  // namespace grinder

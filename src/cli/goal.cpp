@@ -18,7 +18,7 @@ int writeGoal(const std::string& job, const std::string& operation) {
         "'grind goal JOB > FILE'");
   }
   const ros::SerializedMessage goal = ros::serialization::serializeMessage(goalFromFile(job, operation));
-  // Without the length that a connection puts ahead.
+  // Without the length, which a connection sends ahead.
   const std::size_t ahead = static_cast<std::size_t>(goal.message_start - goal.buf.get());
   std::fwrite(goal.message_start, 1, goal.num_bytes - ahead, stdout);
   return 0;

@@ -24,7 +24,7 @@ int run(int argc, char** argv) {
   const std::vector<char*> arguments =
       initRos(argc, argv, "grind",
               ros::init_options::AnonymousName | ros::init_options::NoSigintHandler | ros::init_options::NoRosout);
-  // If the master goes away during a call, wait for it as long as for one that is missing.
+  // If the master goes away during a call, wait for it as long as for a missing master.
   ros::master::setRetryTimeout(kMasterPatience);
   CommandLine line;
   const std::optional<int> refused = line.parse(static_cast<int>(arguments.size()) - 1, arguments.data());
@@ -41,13 +41,13 @@ void occupyStandardStreams() {
   }
 }
 
-/// Whether stdout is a pipe whose reader has gone, as of `| head -1`.
+/// Whether stdout is a pipe whose reader has gone, as with `| head -1`.
 bool isLeftPipe() {
   pollfd output{STDOUT_FILENO, 0, 0};
   return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
 }
 
-/// @param status of the command. @return the exit status: failure if the output could not be written.
+/// @param status exit status of the command. @return `status`, or failure if the output could not be written.
 int closeOutput(int status) {
   std::fflush(stdout);
   if (std::ferror(stdout) == 0) return status;
@@ -55,7 +55,7 @@ int closeOutput(int status) {
   return status == 0 ? 1 : status;
 }
 
-/// @return the exit status, whatever happens.
+/// Runs the command and catches every exception. @return the exit status.
 int runToTheEnd(int argc, char** argv) {
   try {
     return run(argc, argv);

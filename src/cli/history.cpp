@@ -37,14 +37,14 @@ namespace grinder {
 
 namespace {
 
-/// What is listed of a record.
+/// The data of a record to list.
 struct Entry {
   std::string file;
-  std::string grinder;  ///< its folder, as given
+  std::string grinder;  ///< folder of the grinder, as given
   RecordHead head;
 };
 
-/// Which records are listed.
+/// Selects the records to list.
 class Filter {
  public:
   explicit Filter(const HistoryOptions& options)
@@ -57,7 +57,7 @@ class Filter {
     }
   }
 
-  /// By the start in its file's name.
+  /// Whether the start in the file's name is within the dates asked for.
   bool takes(std::string_view path) const { return first_ <= startOf(path) && startOf(path) <= last_; }
   bool takesTool(const RecordHead& head) const {
     return options_.tool.empty() || contains(head.job) || contains(head.tool);
@@ -67,7 +67,7 @@ class Filter {
   }
 
  private:
-  /// Upper or lower case.
+  /// Whether a text contains the one asked for, in any case.
   bool contains(const std::string& text) const {
     const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
     return std::search(text.begin(), text.end(), options_.tool.begin(), options_.tool.end(), same) != text.end();
@@ -84,7 +84,7 @@ Json toJson(const Entry& entry) {
   return json;
 }
 
-/// In short; what failed is named.
+/// The verdict in short, with the figures that failed.
 std::string verdictText(const RecordHead& head) {
   if (head.verdict == "incomplete") return "passed as far as measured";
   if (head.verdict != "failed") return head.verdict;
@@ -93,8 +93,7 @@ std::string verdictText(const RecordHead& head) {
   return "FAILED" + reasons;
 }
 
-/// The rows of the table, which are held until all are read: of a hundred thousand records, in as little memory as can
-/// be.
+/// The rows of the table, which are held until all are read; compact, for a hundred thousand records.
 class Table {
  public:
   using Row = std::array<std::string, 9>;
@@ -106,7 +105,7 @@ class Table {
     }
   }
 
-  /// @param grinders whether it has a column for them.
+  /// @param grinders whether to print a column for them.
   void print(bool grinders) const {
     std::string cell;
     std::size_t column = 0;
@@ -125,7 +124,7 @@ class Table {
 
  private:
   std::array<std::size_t, std::tuple_size_v<Row>> widths_{};
-  std::deque<char> text_;  ///< of the cells, each with a 0 at its end
+  std::deque<char> text_;  ///< texts of the cells, each with a 0 at its end
 };
 
 Table::Row rowOf(const Entry& entry) {
@@ -141,7 +140,7 @@ Table::Row rowOf(const Entry& entry) {
           verdictText(head)};
 }
 
-/// The fields of a CSV line; a list is one field. @param take of an entry's member what the line has.
+/// The fields of a CSV line; a list is one field. @param take makes a field from a member of the entry.
 template <typename Take>
 std::string csvLine(const Json& entry, const Take& take) {
   std::string line;
@@ -161,7 +160,7 @@ std::string csvField(const Json& value) {
   return field + '"';
 }
 
-/// A line for each record, with the keys of the JSON as the first.
+/// A CSV file with a line for each record; the first line has the keys of the JSON.
 class HistoryCsv : public CsvFile {
  public:
   explicit HistoryCsv(const std::string& path)
@@ -175,8 +174,8 @@ struct Lines {
   std::string json, csv;
 };
 
-/// Prints entries as they come, as JSON, or all at the end as a table, whose columns are as wide as they need; and
-/// writes them as CSV if asked to.
+/// Prints entries as JSON, at once, or as a table, at the end, when the columns' widths are known; and writes them as
+/// CSV if asked to.
 class Listing {
  public:
   explicit Listing(const HistoryOptions& options) : json_(options.json), grinders_(options.folders.size() > 1) {
@@ -184,7 +183,7 @@ class Listing {
     table_.add({"start", "grinder", "job", "tool", "outcome", "strokes", "duration", "holds", "verdict"});
   }
 
-  /// What add() needs of an entry. Thread safe.
+  /// The lines of an entry for add(). Thread safe.
   Lines linesOf(const Entry& entry) const {
     Lines lines;
     if (!json_) lines.row = rowOf(entry);
@@ -202,7 +201,7 @@ class Listing {
     ++count_;
   }
 
-  /// @param none what is said in place of an empty table; empty to print that.
+  /// @param none text in place of an empty table; empty to print the empty table.
   void end(const std::string& none) {
     if (csv_) csv_->close();
     if (json_) {
@@ -221,7 +220,7 @@ class Listing {
   Table table_;
 };
 
-/// Of the records, the newest last. Prints what is skipped.
+/// The paths of the records in a folder, the newest last. Prints the names of skipped files.
 std::vector<std::string> pathsIn(const std::string& folder) {
   try {
     const RecordFiles files = recordFilesIn(folder);
@@ -238,8 +237,8 @@ std::vector<std::string> pathsIn(const std::string& folder) {
 /// A record to read.
 struct Listed {
   std::string path;
-  const std::string* grinder;  ///< outlives this
-  std::string_view place;      ///< its start, or that of one written after it by the same grinder, if that is earlier
+  const std::string* grinder;  ///< the grinder's name; outlives this object
+  std::string_view place;  ///< sorting key: start of this record, or of a later one of the grinder if that is earlier
 };
 
 struct Folder {
@@ -247,7 +246,7 @@ struct Folder {
   std::string grinder;
 };
 
-/// @throw std::exception if there is no folder of the grinder that is asked for.
+/// The folders to list. @throw std::exception if the grinder asked for has no folder among them.
 std::vector<Folder> foldersOf(const std::string& node, const HistoryOptions& options) {
   if (options.folders.empty()) return {{historyFolder(node), node}};
   std::vector<Folder> folders;
@@ -266,15 +265,15 @@ std::vector<Folder> foldersOf(const std::string& node, const HistoryOptions& opt
   return folders;
 }
 
-/// The records of all folders, the newest last: those of a folder in their order, also if the clock was once ahead.
-/// Prints why a folder cannot be read. @return whether all could.
+/// Finds the records of all folders, the newest last. Records of a folder keep their order, even if the clock was once
+/// ahead. Prints why a folder cannot be read. @return whether all folders could be read.
 bool findRecords(const std::vector<Folder>& folders, std::vector<Listed>& records) {
   bool good = true;
   for (const Folder& folder : folders) {
     try {
       const std::size_t first = records.size();
       for (std::string& path : pathsIn(folder.path)) records.push_back({std::move(path), &folder.grinder, {}});
-      // The texts stay where they are when their paths move.
+      // Moving a path does not move its text, which is on the heap.
       for (std::size_t i = first; i < records.size(); ++i) records[i].place = startOf(records[i].path);
       for (std::size_t i = records.size(); i-- > first + 1;) {
         records[i - 1].place = std::min(records[i - 1].place, records[i].place);
@@ -289,13 +288,13 @@ bool findRecords(const std::vector<Folder>& folders, std::vector<Listed>& record
   return good;
 }
 
-/// What has become of a record.
+/// The result of reading a record.
 struct Read {
   std::optional<Lines> lines;  ///< nothing if it is filtered out
   std::string error;           ///< why it could not be read; empty if it could
 };
 
-/// Nothing if it was measured before, or cannot be: `grind report` says why.
+/// The tool of a record; nothing if it was measured before or cannot be measured: `grind report` says why.
 std::optional<GroundTool> toolOf(const Record& record, const std::string& path) {
   if (record.head.outcome != "done" || isToolMeasured(record)) return std::nullopt;
   try {
@@ -318,7 +317,7 @@ void judgeAgain(const std::string& path, const Tolerances& tolerances) {
   }
 }
 
-/// @param tolerances by which it is judged again; nothing: not again.
+/// Reads a record. @param tolerances tolerances by which to judge it again; nothing to keep its verdict.
 Read readOne(const Listed& record, const std::optional<Tolerances>& tolerances, const Filter& filter,
              const Listing& listing) {
   try {
@@ -332,7 +331,7 @@ Read readOne(const Listed& record, const std::optional<Tolerances>& tolerances, 
   }
 }
 
-/// Reads records on all cores, and forgets their paths. @param read a record. @param take what has become of each, in
+/// Reads records on all cores, and forgets their paths. @param read reads a record. @param take takes each result, in
 /// order.
 template <typename ReadOne, typename Take>
 void readAll(std::vector<Listed> records, const ReadOne& read, const Take& take) {
@@ -391,7 +390,7 @@ std::string doneOperations(const std::string& node, const std::string& job) {
       const RecordHead head = readHead(path);
       if (head.outcome == "done") ended[head.digest] = head.ended;
     } catch (const std::exception&) {
-      // `grind history` names it.
+      // `grind history` names the unreadable record.
     }
   }
   std::string done;
@@ -422,7 +421,7 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
   for (const Folder& folder : folders) none += (&folder == &folders.front() ? " " : ", ") + folder.path;
   const auto is_other = [&](const Listed& record) { return !filter.takes(record.path); };
   records.erase(std::remove_if(records.begin(), records.end(), is_other), records.end());
-  // None of them is written over.
+  // The CSV file must not overwrite a record.
   for (const Listed& record : records) {
     if (!options.csv.empty()) requireRegularFile(record.path);
   }

@@ -6,13 +6,13 @@ namespace grinder {
 /// SIGHUP stays ignored if it was, as under nohup.
 void catchInterrupts();
 
-/// How many there have been.
+/// The number of signals caught by catchInterrupts().
 int interrupts();
 
 /// From now on SIGTSTP (Ctrl-Z) is counted instead of suspending the program.
 void catchHolds();
 
-/// How many there have been.
+/// The number of signals caught by catchHolds().
 int holds();
 
 }  // namespace grinder

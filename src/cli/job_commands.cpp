@@ -17,7 +17,7 @@ namespace grinder {
 
 namespace {
 
-/// What a grinder has recorded: a file, or its newest record. @param words what the file may be.
+/// Adds the choice of a recorded run: a file, or the grinder's newest record. @param words description of the file.
 template <typename Options>
 void addRecorded(CLI::App& command, const char* words, Options& options) {
   auto* file = command.add_option("FILE", options.file, words)->type_name(kAnyFile);
@@ -135,7 +135,7 @@ void addReport(Commands& commands) {
   addCountedJob(command, "--job", options->job);
 }
 
-/// A day or a time of `grind history`. @param last as of timeOfDate().
+/// Adds a day or time of `grind history`. @param last see timeOfDate().
 void addDate(CLI::App& command, const char* name, std::string& date, bool last, const char* description) {
   const auto check = [last](const std::string& text) {
     try {

@@ -41,7 +41,7 @@ Json lastJobObject(const flute_grinder::JobProgress& progress) {
           {"end", progress.end}};
 }
 
-/// What each was set for; null if it was never set.
+/// The basis of each work offset; null if it was never set.
 Json zeroPoints(const flute_grinder::WorkOffsets& offsets) {
   Json json = Json::object();
   for (std::size_t i = 0; i < offsets.basis.size(); ++i) {

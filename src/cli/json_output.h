@@ -7,18 +7,19 @@
 
 namespace grinder {
 
-/// What a tool gets, and what its job asks for; null where there is none, or nothing is asked.
+/// The figures of a tool, and the figures that its job asks for; null where there is no figure or nothing is asked.
 Json toJson(const CutterFigures& figures);
 
-/// For `grind plan`: whether the job can be ground, why not, and its statistics.
+/// The output of `grind plan --json`: whether the job can be ground, why not, and its statistics.
 Json toJson(const PlannedJob& plan);
 
-/// For `grind status`. Teeth and passes count from 1, as on the operator's screens. @param node resolved name.
-/// @param offsets null if they are not known.
+/// The output of `grind status --json`. Teeth and passes count from 1, as on the operator's screens. @param node
+/// resolved name.
+/// @param offsets null if unknown.
 Json toJson(const std::string& node, const flute_grinder::GrinderState& state,
             const flute_grinder::WorkOffsets::ConstPtr& offsets);
 
-/// Prints it to stdout.
+/// Prints JSON to stdout.
 void print(const Json& json);
 
 }  // namespace grinder

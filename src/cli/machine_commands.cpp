@@ -60,7 +60,7 @@ void addStatus(Commands& commands) {
           *json);
 }
 
-/// What the command adds to the request.
+/// The text in the help on what the command waits for.
 std::string waiting(MachineEvent event) {
   switch (event) {
     case MachineEvent::kHome: return "; waits for the end, and Ctrl-C switches the power off";
@@ -70,7 +70,7 @@ std::string waiting(MachineEvent event) {
   }
 }
 
-/// The requests without arguments.
+/// Adds the requests without arguments.
 void addRequests(Commands& commands) {
   for (const EventRow& row : kMachineEvents) {
     if (isSwitch(row.value) || (!isTrigger(row.value) && !isStop(row.value))) continue;
@@ -79,7 +79,7 @@ void addRequests(Commands& commands) {
   }
 }
 
-/// `spindle on` and the like: a command of each first word, with the second as its sub-command.
+/// Adds `spindle on` and the like: a command for each first word, with the second as its sub-command.
 void addSwitches(Commands& commands) {
   std::map<std::string, CLI::App*> parents;
   for (const EventRow& row : kMachineEvents) {

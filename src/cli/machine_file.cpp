@@ -18,12 +18,12 @@ namespace grinder {
 
 namespace {
 
-/// Types the values of a file as rosparam does, and refuses what the readers of YAML type differently.
+/// Types the values of a file as rosparam does, and refuses values that readers of YAML type differently.
 class Parameters {
  public:
   explicit Parameters(std::string name) : name_(std::move(name)) {}
 
-  /// Adds a file's values to those of the files before it.
+  /// Adds a file's values, which override the values of earlier files.
   void addTo(XmlRpc::XmlRpcValue& value, const YAML::Node& node, const std::string& key) const {
     if (node.IsMap()) return addMap(value, node, key);
     if (node.IsSequence()) {
@@ -80,7 +80,7 @@ class Parameters {
   std::string name_;
 };
 
-/// rosbag writes over whatever is there, and ends only once it has started.
+/// Refuses a bag that exists: rosbag would overwrite it. Checked here because rosbag fails only after it has started.
 void requireNewBag(const std::string& path) {
   const std::filesystem::path bag(path);
   if (!bag.is_absolute()) throw FileError("bag = " + path + "; allowed: an absolute path, or one that begins with ~/");

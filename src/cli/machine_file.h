@@ -13,9 +13,9 @@ struct MachineFiles {
 };
 
 /// Reads the machine from the files that roslaunch loads, without ROS running.
-/// @param parameters YAML, the node's parameters; those of a file override those of the files before it.
+/// @param parameters YAML, the node's parameters; each file overrides the files before it.
 /// @param urdf the robot description.
-/// @throw JobFileError if a file cannot be read, has a key twice, or a number that roslaunch would read otherwise;
+/// @throw JobFileError if a file cannot be read, has a key twice, or a number that roslaunch would read differently;
 ///        ParameterError or std::invalid_argument if the machine cannot be used.
 MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const std::string& urdf);
 
@@ -23,14 +23,15 @@ MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const 
 struct MachineOptions {
   std::vector<std::string> parameters;
   std::string urdf;
-  std::string bag;  ///< file that the launch will have written; empty for none
+  std::string bag;  ///< bag that the launch is going to write; empty for none
 };
 
-/// Reads and checks the files, and prints in a line where they are. @return the exit status. @throw FileError if the
+/// Reads and checks the files, and prints their paths in a line. @return the exit status. @throw FileError if the
 /// bag cannot be written, or would replace another.
 int runMachine(const MachineOptions& options);
 
-/// A file of this package, as `config/grinder.yaml`. @throw JobFileError if the shell does not know the package.
+/// The path of a file of this package, e.g. `config/grinder.yaml`. @throw JobFileError if the shell does not know the
+/// package.
 std::string packageFile(const std::string& path);
 
 }  // namespace grinder

@@ -12,7 +12,7 @@ namespace grinder {
 struct TableOptions {
   std::string job;
   double step_length_mm = 0;
-  std::optional<EvenStepRule> even_step;  ///< instead of the job's
+  std::optional<EvenStepRule> even_step;  ///< rule instead of the job's
   std::string csv;                        ///< file, or empty
   bool json = false;
 };
@@ -20,7 +20,7 @@ struct TableOptions {
 /// Arguments of `grind plan`.
 struct PlanOptions {
   std::string job;
-  std::string operation;   ///< which of several; empty for the only one
+  std::string operation;   ///< one of several operations; empty for the only one
   std::string csv;         ///< file, or empty
   std::string parameters;  ///< YAML of the machine
   std::string urdf;
@@ -33,9 +33,9 @@ int runTable(const TableOptions& options);
 /// Plans and checks a whole job without a machine, from the park position. @return the exit status.
 int runPlan(const PlanOptions& options);
 
-/// Prints a job's statistics, what the tool gets beside what is asked, where along X the flutes are complete, which two
-/// bodies come closest to each other, and what the first pass of a flute cuts out of the shank, in the operator's
-/// units; what is not known, or nothing, is left out.
+/// Prints, in the operator's units, a job's statistics, the tool's figures beside those asked for, the range of X in
+/// which the flutes are complete, the two bodies that come closest to each other, and the cut of the first pass into
+/// the shank. Unknown and empty values are left out.
 void printPlan(const flute_grinder::PlanReport& plan);
 
 }  // namespace grinder

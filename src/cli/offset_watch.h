@@ -20,7 +20,7 @@ class OffsetWatch {
         };
     subscriber_ = nh.subscribe<flute_grinder::WorkOffsets>("offsets", 10, on_offsets);
   }
-  /// Null before the first.
+  /// The newest work offsets; null before the first.
   flute_grinder::WorkOffsets::ConstPtr newest() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return newest_;

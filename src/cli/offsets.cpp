@@ -36,7 +36,7 @@ int axisOf(const std::string& text) {
 
 double toShop(int axis, double si) { return si / shopScale(unitOf(axis, 0)); }
 
-/// Whether Y and Z have a job, on which their zero points depend. @throw std::invalid_argument if not.
+/// Requires a job for Y and Z, whose zero points depend on it. @throw std::invalid_argument if there is none.
 void requireJob(int axis, const std::string& job, const std::string& command) {
   if ((axis == kY || axis == kZ) && job.empty()) {
     throw std::invalid_argument(command +
@@ -44,7 +44,8 @@ void requireJob(int axis, const std::string& job, const std::string& command) {
   }
 }
 
-/// What an offset is set for. @param options with a job file, or none for no particular job. @throw JobFileError
+/// The basis of an offset. @param options options with a job file, or without one for no particular job.
+/// @throw JobFileError
 template <typename Options>
 OffsetBasis basisFor(const Options& options, OffsetMethod method) {
   if (!options.job.empty()) return basisOf(goalFromFile(options.job, options.operation), method);
@@ -53,7 +54,7 @@ OffsetBasis basisFor(const Options& options, OffsetMethod method) {
   return basis;
 }
 
-/// Whether who sits at the terminal wants a large change. Without a terminal nobody is asked.
+/// Asks at the terminal whether to make a large change; false without a terminal.
 bool confirmed() {
   if (isatty(STDIN_FILENO) == 0) {
     std::fprintf(stderr, "--yes sets it all the same\n");
@@ -65,8 +66,8 @@ bool confirmed() {
   return answer == "y" || answer == "Y";
 }
 
-/// Prints why an offset was not set. @param set_it_all_the_same carried out if the change was only too large, and is
-/// confirmed. @return the exit status.
+/// Prints why an offset was not set. @param set_it_all_the_same carried out if the change was refused only because
+/// it was large, and is confirmed. @return the exit status.
 template <typename Response, typename Set>
 int settle(const std::optional<Response>& response, const Set& set_it_all_the_same) {
   if (!response) return 1;
@@ -125,16 +126,16 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
   if (!offsets.error.empty()) std::printf("%s\n", escaped(offsets.error).c_str());
 }
 
-/// Whether a state is not from before the last change of the offsets, which it would contradict.
+/// Whether a state was computed with these offsets, and not before their last change.
 bool agree(const flute_grinder::GrinderState& state, const flute_grinder::WorkOffsets& offsets) {
   for (std::size_t i = 0; i < offsets.values.size(); ++i) {
-    // As the grinder computes it; an axis may have no position.
+    // The same arithmetic as in the grinder; NaN, for an axis without a position, passes.
     if (std::abs(state.position[i] - offsets.values[i] - state.work_position[i]) > 0) return false;
   }
   return true;
 }
 
-/// Waits for a state that has the work offsets of now. @return the exit status.
+/// Waits for a state computed with the present work offsets. @return the exit status.
 int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const OffsetWatch& offsets) {
   if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
   if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
@@ -153,7 +154,7 @@ int show(ros::NodeHandle& nh, bool json) {
   return 0;
 }
 
-/// Computes the offsets of Y and Z that do not fit a job, from what they were set for: all of them, or none.
+/// Computes, from their bases, the offsets of Y and Z that do not fit a job, and sets either all of them or none.
 /// @return the exit status; 1 if an offset must be set anew.
 int fit(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, bool large_change_ok) {
   const std::optional<flute_grinder::WorkOffsets> message = workOffsets(nh);
@@ -268,7 +269,7 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   }
   const std::optional<flute_grinder::TouchOff::Response> response =
       ask<flute_grinder::TouchOff>(nh, "touch_off", request);
-  // The value that was confirmed: the axis may have moved since.
+  // Sets the value that was confirmed, because the axis may have moved since.
   if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
     return status;
   }

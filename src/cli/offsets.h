@@ -11,47 +11,47 @@
 
 namespace grinder {
 
-/// On the command line.
+/// The axes' letters on the command line.
 constexpr const char* kAxisLetters = "xyza";
 
 /// Arguments of `grind offsets`.
 struct OffsetsOptions {
   std::vector<std::string> set;  ///< AXIS=VALUE, in mm or deg
-  std::string job;               ///< job file, for which they are set
-  std::string fit;               ///< job file, to which those that can be computed are fitted
-  std::string operation;         ///< of either; empty for the only one
-  bool yes = false;              ///< sets them even if they change by much, without a question
+  std::string job;               ///< job file for which the offsets are set
+  std::string fit;               ///< job file to which the computable offsets are fitted
+  std::string operation;         ///< operation of that job file; empty for the only one
+  bool yes = false;              ///< large changes are made without a question
   bool json = false;
 };
 
 /// Arguments of `grind touch-off`.
 struct TouchOffOptions {
   std::string axis;          ///< a letter of kAxisLetters
-  std::optional<double> at;  ///< of Y, diameter of the blank that the wheel touches; else the work position [mm or deg]
-  std::string job;           ///< job file, for which the offset is set
-  std::string operation;     ///< of that; empty for the only one
-  bool yes = false;          ///< sets it even if it changes by much, without a question
+  std::optional<double> at;  ///< for Y, diameter of the blank touched; else the work position [mm or deg]
+  std::string job;           ///< job file for which the offset is set
+  std::string operation;     ///< operation of the job file; empty for the only one
+  bool yes = false;          ///< a large change is made without a question
 };
 
 /// Arguments of `grind confirm-wheel`.
 struct ConfirmWheelOptions {
-  std::string job;        ///< job file, whose wheel it is
-  std::string operation;  ///< of that; empty for the only one
-  bool again = false;     ///< it was taken off and mounted anew
+  std::string job;        ///< job file whose wheel is confirmed
+  std::string operation;  ///< operation of the job file; empty for the only one
+  bool again = false;     ///< the wheel was taken off and mounted anew
 };
 
-/// Confirms which wheel is on the spindle. @param node the grinder's. @return the exit status.
+/// Confirms which wheel is on the spindle. @param node name of the grinder's node. @return the exit status.
 /// @throw JobError if the job file is refused.
 int confirmWheel(const std::string& node, const ConfirmWheelOptions& options);
 
-/// Says that a tool was clamped. @param node the grinder's. @return the exit status.
+/// Reports that a tool was clamped. @param node name of the grinder's node. @return the exit status.
 int sayReclamped(const std::string& node);
 
-/// Sets a work offset in the name of who runs this command. A change beyond the parameter offset_change_limit is
-/// confirmed at the terminal; without one it is refused.
+/// Sets a work offset in the name of this command's user. A change beyond the parameter offset_change_limit is
+/// confirmed at the terminal; without a terminal it is refused.
 /// @param nh the grinder's namespace.
-/// @param value [m], A [rad]. @param basis what it is set for.
-/// @param large_change_ok it may change by any amount, and nobody is asked. @return the exit status.
+/// @param value [m], A [rad]. @param basis job and wheel for which it is set.
+/// @param large_change_ok whether it may change by any amount without a question. @return the exit status.
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok);
 
 /// The work offsets; nothing if the grinder does not publish them in time.
@@ -60,13 +60,13 @@ std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh);
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);
 
-/// Sets work offsets as asked, and prints all. @param node the grinder's. @return the exit status; 1 if some do not fit
-/// the job of options.fit, after it has printed why. @throw std::invalid_argument for arguments that do not fit each
-/// other. @throw JobError if a job file is refused.
+/// Sets work offsets as asked, and prints all. @param node name of the grinder's node. @return the exit status; 1 if
+/// some do not fit the job of options.fit, with the reason printed. @throw std::invalid_argument for contradictory
+/// arguments. @throw JobError if a job file is refused.
 int runOffsets(const std::string& node, const OffsetsOptions& options);
 
-/// Sets the work offset of an axis from where it stands. @param node the grinder's. @return the exit status.
-/// @throw std::invalid_argument for arguments that do not fit each other. @throw JobError if the job file is refused.
+/// Sets the work offset of an axis from its present position. @param node name of the grinder's node. @return the exit
+/// status. @throw std::invalid_argument for contradictory arguments. @throw JobError if the job file is refused.
 int runTouchOff(const std::string& node, const TouchOffOptions& options);
 
 }  // namespace grinder

@@ -38,11 +38,11 @@ namespace grinder {
 namespace {
 
 const ros::WallDuration kSettling(1);    ///< longest time for an axis to stand still after a jog
-const ros::WallDuration kQuiet(1);       ///< without a word, while the ROS master does not answer
+const ros::WallDuration kQuiet(1);       ///< time without a message while the ROS master does not answer
 const ros::WallDuration kFreshness(1);   ///< longest wait for the present state, once the last one is known
-constexpr double kJogTolerance = 10e-6;  ///< within which a jog has reached its end [m], A [rad]
+constexpr double kJogTolerance = 10e-6;  ///< distance within which a jog has reached its end [m], A [rad]
 
-/// Whether there is something to cancel.
+/// Whether a cancel is allowed in a state.
 bool takesCancel(const flute_grinder::GrinderState& state) {
   return after(static_cast<MachineState>(state.state), MachineEvent::kCancel).has_value();
 }
@@ -51,7 +51,7 @@ int noMaster() {
   return fail("no ROS master answers at " + ros::master::getURI() + "; launch the grinder, or correct ROS_MASTER_URI");
 }
 
-/// What there is in place of a grinder that does not answer, as the ROS master knows it: "; ...", or nothing.
+/// The other grinders that the ROS master knows, for the error that one does not answer: "; ...", or empty.
 std::string otherGrinders(const std::string& node) {
   ros::master::V_TopicInfo topics;
   ros::master::getTopics(topics);
@@ -66,7 +66,7 @@ std::string otherGrinders(const std::string& node) {
 
 int noNode(const std::string& node) { return fail("no grinder answers as " + node + otherGrinders(node)); }
 
-/// Whether the ROS master knows a grinder's node, which may still be starting, or what publishes a grinder's state.
+/// Whether the ROS master knows a grinder's node, which may still be starting, or a publisher of its state.
 bool isKnown(const std::string& node) {
   XmlRpc::XmlRpcValue arguments, response, payload;
   arguments[0] = ros::this_node::getName();
@@ -78,8 +78,8 @@ bool isKnown(const std::string& node) {
   return std::any_of(topics.begin(), topics.end(), is_state);
 }
 
-/// Whether the ROS master knows no more than its own log: it was just started, and nodes that outlived another one have
-/// yet to find it.
+/// Whether the ROS master knows only its own log: it was just started, and nodes that outlived the previous master have
+/// not registered yet.
 bool isNew() {
   ros::master::V_TopicInfo topics;
   ros::master::getTopics(topics);
@@ -87,7 +87,7 @@ bool isNew() {
   return std::all_of(topics.begin(), topics.end(), is_log);
 }
 
-/// @param text from a peer.
+/// @param text text from a peer, printed escaped.
 void printLine(const char* name, const std::string& text) { std::printf("%-15s %s\n", name, escaped(text).c_str()); }
 
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
@@ -100,7 +100,7 @@ std::string swivelText(const flute_grinder::GrinderState& state) {
   return text(Quantity{state.swivel, Unit::kRadian}) + (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
-/// What the work offsets were set for. @param offsets null if they are not known.
+/// Prints the bases of the work offsets. @param offsets null if unknown.
 void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const WorkOffsets all = offsets ? fromMessage(*offsets) : WorkOffsets();
   for (int axis = 0; axis < kAxisCount; ++axis) {
@@ -111,7 +111,7 @@ void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   printLine("tool", offsets ? toolText(all.tool) : "not known");
 }
 
-/// @param node resolved name. @param offsets null if they are not known.
+/// @param node resolved name. @param offsets null if unknown.
 void printState(const std::string& node, const flute_grinder::GrinderState& state,
                 const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   printLine("grinder", node);
@@ -143,8 +143,8 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
 }
 
 /// Waits until the machine leaves the state of a motion that was started.
-/// @param status exit status of the start; if it failed, nothing is awaited.
-/// @param moves whether the motion lasts in a state.
+/// @param status exit status of the start; after a failure nothing is awaited.
+/// @param moves whether the motion continues in a given state.
 /// @param wait_more called meanwhile; returns false to stop waiting.
 /// @return the exit status of the start, or of a lost connection.
 int awaitMotion(int status, const StateWatch& watch, const std::function<bool(std::uint8_t)>& moves,
@@ -188,9 +188,9 @@ bool joinRos(const std::string& node) {
     noNode(name);
     return false;
   }
-  // By itself, so that the last NodeHandle does not end with ros::shutdown(), which takes 0.1 to 0.3 s.
+  // Called here, so that the end of the last NodeHandle does not call ros::shutdown(), which takes 0.1 to 0.3 s.
   ros::start();
-  // Never stopped, which would wait for its thread: the end of the process does it.
+  // Never stopped, because that would wait for its thread; it ends with the process.
   static ros::AsyncSpinner spinner(1);
   spinner.start();
   return true;
@@ -198,7 +198,7 @@ bool joinRos(const std::string& node) {
 
 void leaveRos() {
   for (const int signal : {SIGINT, SIGTSTP}) std::signal(signal, SIG_DFL);  // a master may hang
-  // Topics are unregistered by whoever uses them. The services are those of every roscpp node.
+  // Topics are unregistered by their owners. The services are the ones of every roscpp node.
   if (ros::isStarted()) ros::ServiceManager::instance()->shutdown();
 }
 
@@ -207,7 +207,7 @@ int printStatus(const std::string& node, bool json) {
   const StateWatch watch(nh);
   const OffsetWatch offsets(nh);
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
-  // Both only for a while: the last that is known is better than nothing.
+  // A limited wait: the last known state is better than none.
   await(kFreshness, [&] { return watch.fresh() && offsets.newest(); });
   if (json) {
     print(toJson(nh.getNamespace(), watch.newest(), offsets.newest()));
@@ -219,7 +219,7 @@ int printStatus(const std::string& node, bool json) {
 
 namespace {
 
-/// The success of a request that is answered when it is done, or has begun.
+/// The success message of a request that is answered when it is done or has begun.
 std::string doneText(MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return "the power is on";
@@ -268,14 +268,14 @@ int lift(const std::string& node) {
   return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
 
-/// Cancels the running job, whoever started it, and waits for the end.
+/// Cancels the running job of any client, and waits for the end.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
   if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
   const flute_grinder::GrinderState before = watch.newest();
-  // In any state, since a job may be in planning, which the state does not show. An empty id cancels every goal.
+  // Sent in any state, because the state does not show a job in planning. An empty id cancels every goal.
   cancel.publish(actionlib_msgs::GoalID());
   if (!takesCancel(before)) {
     return fail("cancel refused: the machine is in state " + before.state_name + "; allowed: " +
@@ -296,7 +296,7 @@ class PositionWatch {
     subscriber_ = around.subscribe("joint_states", 10, &PositionWatch::onJointState, this);
   }
 
-  /// As read by the drive [m], A [rad]; nothing before the first message.
+  /// The position read by the drive [m], A [rad]; nothing before the first message.
   std::optional<double> newest() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return position_;
@@ -308,8 +308,8 @@ class PositionWatch {
   }
 
  private:
-  static constexpr int kSettled = 5;          ///< messages
-  static constexpr double kEncoder = 0.5e-6;  ///< by which the position of an axis at rest may change [m], A [rad]
+  static constexpr int kSettled = 5;          ///< messages without motion after which the axis stands still
+  static constexpr double kEncoder = 0.5e-6;  ///< change of the position of an axis at rest [m], A [rad]
 
   void onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
     const auto found = std::find(joints->name.begin(), joints->name.end(), joint_);
@@ -324,7 +324,7 @@ class PositionWatch {
   const std::string joint_;
   mutable std::mutex mutex_;
   std::optional<double> position_;
-  int still_ = 0;  ///< messages
+  int still_ = 0;  ///< messages without motion
   ros::Subscriber subscriber_;
 };
 

@@ -17,9 +17,9 @@ namespace grinder {
 
 namespace {
 
-std::set<std::string> open_files;  // to be replaced
+std::set<std::string> open_files;  // files that OutputFile is to replace
 
-/// A file has one name here, however it is given.
+/// The unique name of a file, however its path is given.
 std::string nameOf(const FileReplacement& replacement) {
   return std::filesystem::absolute(replacement.file()).lexically_normal();
 }

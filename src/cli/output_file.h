@@ -13,12 +13,12 @@ namespace grinder {
 /// @throw FileError if the command has read this file, by whatever name.
 void requireNotRead(const std::string& path);
 
-/// A file that a command writes: the one way to do it. Opened before the work begins; what was in it stays until
-/// close(), which replaces it in one step. A FIFO, a device and the program's own standard output are written to as
-/// they are.
+/// A file that a command writes; all commands write through this class. It is opened before the work begins, and keeps
+/// its old contents until close() replaces them in one step. A FIFO, a device and the program's own standard output are
+/// written directly.
 class OutputFile {
  public:
-  /// @throw FileError if it cannot be written, or is another file of the command: one that it has read, or writes.
+  /// @throw FileError if the file cannot be written, or if the command has read it or writes it already.
   explicit OutputFile(std::string path);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -26,7 +26,7 @@ class OutputFile {
 
   const std::string& path() const { return path_; }
   std::FILE* stream() const { return stream_.get(); }
-  /// As an argument of a program that writes into it, once that has inherited its descriptor: `DESCRIPTOR:PATH`.
+  /// The argument `DESCRIPTOR:PATH` for a program that inherits the descriptor and writes the file.
   std::string forProgram() const;
 
   /// @param error errno of a write that failed; 0 if none did.
@@ -42,7 +42,7 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> stream_;
 };
 
-/// Null for an empty path. @throw FileError
+/// Opens a file; null for an empty path. @throw FileError
 std::unique_ptr<OutputFile> openOutput(const std::string& path);
 
 }  // namespace grinder

@@ -27,15 +27,15 @@ namespace {
 // SimpleActionClient loses an answer that comes before its sendGoal() returns.
 using ProbeClient = actionlib::ActionClient<flute_grinder::ProbeAction>;
 
-const ros::WallDuration kAgain(0.05);  ///< between messages that this program is alive
+const ros::WallDuration kAgain(0.05);  ///< time between messages that this program is alive
 
-/// To 0.1 um, or as much of a degree: a probe is no better.
+/// A figure in mm to 0.1 um or in deg to 0.0001, the resolution of a probe.
 std::string shown(double si, bool angle) {
   const double scale = shopScale(angle ? Unit::kRadian : Unit::kMetre);
   return format("%.4f %s", si / scale, angle ? "deg" : "mm");
 }
 
-/// @throw std::invalid_argument for arguments that do not fit each other. @throw JobFileError
+/// @throw std::invalid_argument for contradictory arguments. @throw JobFileError
 flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
   flute_grinder::ProbeGoal goal;
   goal.cycle = static_cast<std::uint8_t>(row.value);
@@ -79,8 +79,7 @@ void printFigures(const flute_grinder::ProbeResult& result) {
   }
 }
 
-/// Of the offset, which the grinder has set, or which is set now if a large change is confirmed. @return the exit
-/// status.
+/// Prints the offset that the grinder has set, or sets it now if a large change is confirmed. @return the exit status.
 int settleOffset(ros::NodeHandle& nh, int axis, const flute_grinder::ProbeGoal& goal,
                  const flute_grinder::ProbeResult& result) {
   const int status = result.large_change

@@ -10,16 +10,16 @@ namespace grinder {
 /// Arguments of `grind probe`.
 struct ProbeOptions {
   std::string job;
-  std::string operation;            ///< of the job file; empty for the only one
-  double within = 0;                ///< the farthest way to a touch [mm], of A [deg]
-  std::optional<double> at_mm;      ///< the diameter of the blank, if it is known
-  std::optional<double> flange_mm;  ///< instead of the wheel file's
-  bool yes = false;                 ///< sets an offset even if it changes by much, without a question
+  std::string operation;            ///< operation of the job file; empty for the only one
+  double within = 0;                ///< longest way to a touch [mm], A [deg]
+  std::optional<double> at_mm;      ///< diameter of the blank, if known
+  std::optional<double> flange_mm;  ///< flange length instead of the wheel file's
+  bool yes = false;                 ///< a large change of an offset is made without a question
 };
 
 /// Has the grinder run a probing cycle, and prints what it measured and the work offset that it set.
-/// @param node the grinder's. @return the exit status. @throw std::invalid_argument for arguments that do not fit each
-/// other. @throw JobError if the job file is refused.
+/// @param node name of the grinder's node. @return the exit status. @throw std::invalid_argument for contradictory
+/// arguments. @throw JobError if the job file is refused.
 int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& options);
 
 }  // namespace grinder

@@ -18,8 +18,8 @@ namespace grinder {
 
 namespace {
 
-constexpr std::size_t kMinBar = 12, kMaxBar = 32;  ///< with its brackets
-constexpr std::size_t kAnyWidth = 1000;            ///< of a line in a file
+constexpr std::size_t kMinBar = 12, kMaxBar = 32;  ///< width of the bar with its brackets
+constexpr std::size_t kAnyWidth = 1000;            ///< width of a line in a file
 constexpr const char* kSeparator = "  ";
 constexpr const char* kClearLine = "\r\x1b[K";
 
@@ -62,7 +62,7 @@ std::size_t length(const std::vector<Part>& parts) {
 
 bool planning(const flute_grinder::GrindFeedback& f) { return f.state == "planning"; }
 
-/// What the bar shows: the fraction ground or, before that, planned.
+/// The fraction shown by the bar: ground or, before that, planned.
 double fraction(const flute_grinder::GrindFeedback& f) { return planning(f) ? f.planned : f.job_fraction; }
 
 constexpr int kBarRank = 5;
@@ -102,7 +102,7 @@ ProgressBar::~ProgressBar() { end(); }
 void ProgressBar::show(const flute_grinder::GrindFeedback& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (ended_) return;
-  // Of the percentage as it is shown, rounded: no tenth has two lines.
+  // Tenths of the percentage as shown, rounded, so that no tenth has two lines.
   const int tenths = static_cast<int>(std::nearbyint(fraction(feedback) * 100)) / 10;
   const bool changed = tenths != tenths_ || feedback.state != last_.state;
   tenths_ = tenths;

@@ -12,8 +12,8 @@ namespace grinder {
 /// Thread safe.
 class ProgressBar {
  public:
-  /// @param teeth of the job.
-  /// @param passes of a tooth.
+  /// @param teeth number of teeth of the job.
+  /// @param passes number of passes of a tooth.
   ProgressBar(int teeth, int passes);
   /// Ends the line.
   ~ProgressBar();
@@ -25,7 +25,7 @@ class ProgressBar {
   /// Prints a separate line above the bar.
   void printLine(const std::string& text);
 
-  /// Whether it shows the end of the job, or nothing beyond planning was to be shown.
+  /// Whether the end of the job is shown, or there was nothing to show beyond planning.
   bool complete();
 
   /// Ends the line; later feedback is not shown.

@@ -35,7 +35,7 @@ std::filesystem::path ownPath() {
   return self;
 }
 
-/// The report program, which is beside this one both in the build and where it is installed.
+/// The path of the report program, which is beside this one both in the build and installed.
 std::filesystem::path programPath() { return ownPath().parent_path() / "report"; }
 
 std::vector<char*> pointersTo(std::vector<std::string>& arguments) {
@@ -46,7 +46,7 @@ std::vector<char*> pointersTo(std::vector<std::string>& arguments) {
   return argv;
 }
 
-/// A file of the program's own, open to be read from its beginning. @throw FileError
+/// A temporary file with a text, positioned at its beginning. @throw FileError
 std::unique_ptr<std::FILE, int (*)(std::FILE*)> temporaryFile(const std::string& text) {
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
   if (!file || std::fputs(text.c_str(), file.get()) < 0 || std::fseek(file.get(), 0, SEEK_SET) != 0)
@@ -54,7 +54,7 @@ std::unique_ptr<std::FILE, int (*)(std::FILE*)> temporaryFile(const std::string&
   return file;
 }
 
-/// @return why an action failed, for the reader; empty if it did not.
+/// Carries out an action. @return why it failed, for the reader; empty if it did not.
 template <typename Action>
 std::string reasonWhyNot(const Action& action) {
   try {
@@ -65,7 +65,7 @@ std::string reasonWhyNot(const Action& action) {
   }
 }
 
-/// What a person waits for: a report takes some ten seconds.
+/// Prints what the user waits for: a report takes some ten seconds.
 void say(const char* what) {
   if (::isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "%s ...\n", what);
 }
@@ -76,8 +76,8 @@ void measureTool(const RunStrokes& strokes, const std::string& place, ReportCont
   context.tool_json = toJson(*context.tool);
 }
 
-/// Goes through the rows of a bag for the report, and for the tool if it has the job and the positions read.
-/// @param job of the run, with its laws.
+/// Goes through the rows of a bag for the report, and for the tool if the bag has the job and the positions read.
+/// @param job job of the run, with its laws.
 void surveyRun(const std::string& path, const BagRun& run, const std::optional<ValidJob>& job, Survey& survey,
                ReportContext& context) {
   std::optional<RunStrokes> strokes;
@@ -94,7 +94,7 @@ void surveyRun(const std::string& path, const BagRun& run, const std::optional<V
   });
 }
 
-/// What a report says of a job in a bag, with the points of its pictures if they are wanted.
+/// The contents of a report on a job in a bag, with the points of its pictures if `draws`.
 Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& context) {
   say("reading the bag");
   const BagRun run(path, job);
@@ -128,10 +128,10 @@ Json documentOf(const std::string& path, const ReportOptions& options, bool draw
   return documentOfRecord(path, context);
 }
 
-/// Runs a program that draws. @param words it and its arguments. @param document on its standard input.
-/// @return its exit status; the reason is on stderr.
+/// Runs a program that draws. @param words the program and its arguments. @param document its standard input.
+/// @return its exit status, with the reason on stderr.
 int drawBy(std::vector<std::string> words, const std::string& document) {
-  // By a file, so that nothing waits for the other end of a pipe.
+  // Through a file, because a pipe could block.
   const auto input = temporaryFile(document);
   say("drawing");
   words.insert(words.begin(), PYTHON_EXECUTABLE);
@@ -154,7 +154,7 @@ struct ReportFiles {
   std::unique_ptr<OutputFile> html, pdf;
 };
 
-/// @return the exit status.
+/// Draws a report into its files. @return the exit status.
 int draw(const Json& document, const ReportFiles& files) {
   std::vector<std::string> words{programPath()};
   if (files.html) words.push_back("--output=" + files.html->forProgram());
@@ -184,14 +184,14 @@ int writeReport(const std::string& node, const ReportOptions& options) {
   add("serial", options.serial);
   const std::string path = options.last ? lastRecord(node, options.folder) : options.file;
   context.file = std::filesystem::path(path).filename();
-  isBag(path);  // before the files are opened, none of which may be this one
+  isBag(path);  // before the output files are opened, none of which may be this file
   const ReportFiles files{openOutput(options.html), openOutput(options.pdf)};
   Json document = documentOf(path, options, draws, context);
   if (options.json) {
     Json data = document;
     data.erase("plots");
     print(data);
-    if (std::fflush(stdout) != 0) return 1;  // which the program itself reports
+    if (std::fflush(stdout) != 0) return 1;  // main() reports the error
   }
   return draws ? draw(document, files) : 0;
 }

@@ -10,26 +10,26 @@ namespace grinder {
 struct ReportOptions {
   std::string file;           ///< a bag, or a record of the grinder
   bool last = false;          ///< the newest record of the grinder instead
-  std::string folder;         ///< of these records; empty for the default folder of the grinder
+  std::string folder;         ///< folder of the records; empty for the grinder's default folder
   std::string html;           ///< file to write; empty for none
   std::string pdf;            ///< file to write; empty for none
-  bool json = false;          ///< print the data
-  std::string note;           ///< the operator's, for the first page
-  std::string operator_name;  ///< name of who ground the tool
-  std::string serial;         ///< of the tool
-  std::string tolerances;     ///< YAML of what the tool is passed by; empty for the package's own
-  int job = 0;                ///< which of a bag's jobs, from 1; 0 for the last
+  bool json = false;          ///< print the data as JSON
+  std::string note;           ///< operator's note for the first page
+  std::string operator_name;  ///< name of the operator who ground the tool
+  std::string serial;         ///< serial number of the tool
+  std::string tolerances;     ///< YAML of the tolerances; empty for the package's own
+  int job = 0;                ///< number of a bag's job, from 1; 0 for the last
 };
 
-/// Writes a report: works out what it says, and has a Python program draw it, if it is to be drawn.
-/// @param node the grinder's name, as for historyFolder().
-/// @throw JobFileError if the tolerances cannot be read, FileError if the file cannot, there is no record, or the
-/// program is missing, std::invalid_argument if nothing is asked for.
+/// Writes a report: computes its contents, and has a Python program draw it if a file is asked for.
+/// @param node name of the grinder, see historyFolder().
+/// @throw JobFileError if the tolerances cannot be read, FileError if the file cannot be read, there is no record, or
+/// the program is missing, std::invalid_argument if no output is asked for.
 /// @return the exit status.
 int writeReport(const std::string& node, const ReportOptions& options);
 
-/// Draws a tool into an SVG file. @param json what `grind simulate --json` prints. @return the exit status; the reason
-/// is on stderr. @throw FileError if the program is missing.
+/// Draws a tool into an SVG file. @param json output of `grind simulate --json`. @return the exit status, with the
+/// reason on stderr. @throw FileError if the program is missing.
 int drawTool(const std::string& json, OutputFile& svg);
 
 }  // namespace grinder

@@ -25,10 +25,10 @@ namespace grinder {
 
 namespace {
 
-// SimpleActionClient knows no answer that comes before its sendGoal() returns, and says so in the progress bar.
+// SimpleActionClient loses an answer that comes before its sendGoal() returns, and logs that into the progress bar.
 using Client = actionlib::ActionClient<flute_grinder::GrindAction>;
 
-/// State of a goal. Shown by another thread than the one that receives it, so that a blocked terminal cannot stop
+/// The state of a goal. It is received by one thread and shown by another, so that a blocked terminal cannot stop
 /// reception. Thread safe.
 class GoalWatch {
  public:
@@ -42,7 +42,7 @@ class GoalWatch {
     succeeded_ = succeeded;
     result_ = result;
   }
-  /// Null if there is none since the last call.
+  /// The feedback since the last call; null if there is none.
   flute_grinder::GrindFeedbackConstPtr takeFeedback() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(newest_, nullptr);
@@ -55,7 +55,7 @@ class GoalWatch {
     const std::lock_guard<std::mutex> lock(mutex_);
     return succeeded_;
   }
-  /// Null until there is one, and if the grinder no longer knows the goal.
+  /// The result; null before it arrives, and if the grinder no longer knows the goal.
   flute_grinder::GrindResultConstPtr result() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     return result_;
@@ -111,14 +111,14 @@ bool showProgress(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
     ros::WallDuration(0.01).sleep();
   }
   messages.update(watch.newest());
-  // The last feedback may come after the result, by another connection.
+  // The last feedback may come after the result, over another connection.
   if (goal.succeeded()) {
     await(ros::WallDuration(1), [&] { return show(), bar.complete(); });
   }
   return true;
 }
 
-/// @param written to the drive, as the goal's result says; 0 if unknown.
+/// @param written number of setpoints written to the drive, from the goal's result; 0 if unknown.
 void printStream(const StreamWatch& stream, std::uint64_t written) {
   stream.awaitAll(written);
   if (stream.received() == 0 && stream.lost() == 0) return;
@@ -147,7 +147,8 @@ int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& strea
   return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
 }
 
-/// Closes the CSV file, after everything about the job has been printed. @param status so far. @return the exit status.
+/// Closes the CSV file, after everything about the job has been printed. @param status exit status so far. @return the
+/// exit status.
 int closeStream(StreamWatch& stream, const std::string& csv, int status) {
   try {
     stream.close();

@@ -49,7 +49,7 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   return json;
 }
 
-/// What a plan has against a job that grinds the asked tool: its motion, and what is hit.
+/// The plan's refusals of a job that grinds the tool as asked: its motion, and collisions.
 std::string otherRefusals(const GrindJob& job, const MachineFiles& files) {
   const Machine& machine = files.config.loop.machine;
   const PlannedJob plan = planWholeJob(ValidJob(job), machine, MachineShapes(files.model), machine.park);

@@ -10,9 +10,9 @@ namespace grinder {
 /// Arguments of `grind setup`.
 struct SetupOptions {
   std::string job;
-  std::string operation;  ///< which of several; empty for the only one
+  std::string operation;  ///< one of several operations; empty for the only one
   std::optional<SetupFigure> keep;
-  bool write = false;      ///< into the job's file
+  bool write = false;      ///< writes the set-up into the job's file
   std::string parameters;  ///< YAML of the machine
   std::string urdf;
   bool json = false;

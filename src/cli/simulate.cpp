@@ -30,7 +30,7 @@ namespace {
 
 using units::kMillimetre;
 
-/// Where the wheel can have been on the cutter.
+/// The range of X in which the wheel can have touched the cutter.
 Range reach(const GrindJob& job) {
   const GrindProcess& p = job.process;
   double to = job.cutter.flute_length + p.overtravel_shank + p.wheel_diameter / 2;
@@ -39,7 +39,7 @@ Range reach(const GrindJob& job) {
   return {0, to};
 }
 
-/// X of the sections that are asked for. @throw std::out_of_range for one that is not on the cutter.
+/// The X of the sections asked for. @throw std::out_of_range for one off the cutter.
 std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& job) {
   std::vector<double> at;
   const Range range = reach(job);
@@ -55,7 +55,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
   return at.empty() ? evenSections(job, options.sections) : at;
 }
 
-/// The cutter as a solid, with as much of the shank as the flutes run out into and a diameter more.
+/// Writes the cutter as a solid, with the part of the shank into which the flutes run out and one diameter more.
 void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
   const GrindProcess& p = job.process;
@@ -70,10 +70,10 @@ void writeStlFile(const GroundTool& tool, OutputFile& file) {
   file.close(good ? 0 : errno);
 }
 
-/// What is simulated: the job alone, or a run of it.
+/// The source of a simulation: a job alone, or a run of it.
 struct Source {
   ValidJob job;
-  std::string name;  ///< for the reader
+  std::string name;  ///< name for the reader
   std::string file;
   std::optional<BagRun> bag;
   std::optional<ToolRecords> records;
@@ -102,7 +102,7 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
   return {job, name, file, {}, std::move(records)};
 }
 
-/// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or is not of this job.
+/// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or does not belong to this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
   if (source.records) return measure(source.name, source.records->strokes(source.records->last()), at);
   const ValidJob job = withLaws(source.job);
@@ -113,7 +113,7 @@ GroundTool simulate(const Source& source, const std::vector<double>& at) {
   return measure(source.name, strokes, at);
 }
 
-/// @return the exit status.
+/// Prints a measured tool. @return the exit status.
 int show(const GroundTool& tool, bool json) {
   if (json) {
     print(toJson(tool));

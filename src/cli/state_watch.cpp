@@ -27,7 +27,7 @@ StateWatch::StateWatch(ros::NodeHandle& nh) {
 }
 
 bool StateWatch::awaitNext() const {
-  // The first two may have been sent before the call.
+  // The first two states may have been sent before the call.
   const std::uint64_t enough = heard() + 3;
   return await(kTimeout, [&] { return heard() >= enough; });
 }

@@ -22,8 +22,8 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
   return condition();
 }
 
-const ros::WallDuration kPatience(10);       ///< with a node that is still starting
-const ros::WallDuration kMasterPatience(2);  ///< with a ROS master that does not answer
+const ros::WallDuration kPatience(10);       ///< longest wait for a node that is still starting
+const ros::WallDuration kMasterPatience(2);  ///< longest wait for a ROS master that does not answer
 
 /// Receives the grinder's state, 20 times a second, and 10 times while the machine is at rest.
 class StateWatch {
@@ -33,7 +33,7 @@ class StateWatch {
 
   /// Whether a state has been received.
   bool begun() const { return heard() > 0; }
-  /// Whether one has been received that was published after this object was made. The first may be an old one.
+  /// Whether a state was received that was published after this object was made: the first may be old.
   bool fresh() const { return heard() > 1; }
   /// Waits for a state sent after this call. @return false if the connection is lost.
   bool awaitNext() const;
@@ -46,7 +46,7 @@ class StateWatch {
 
   mutable std::mutex mutex_;
   flute_grinder::GrinderState newest_;
-  ros::SteadyTime time_;  ///< when the newest was received
+  ros::SteadyTime time_;  ///< time at which the newest state was received
   std::uint64_t heard_ = 0;
   ros::Subscriber subscriber_;
 };

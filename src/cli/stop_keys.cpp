@@ -37,7 +37,7 @@ void StopKeys::run(const std::function<void()>& on_interrupt) const {
     const bool job = inJob(watch_.newest());
     if (pressed || (hold_pending && job)) {
       hold();
-      // During planning there is no job to hold yet; repeat the hold once there is, so that it does not start to move.
+      // During planning there is no job to hold yet: the hold is repeated once there is one, before it moves.
       hold_pending = !job;
     }
     if (pressed) holds_seen = holds();

@@ -16,7 +16,7 @@ namespace grinder {
 class StopKeys {
  public:
   /// @param nh the grinder's namespace.
-  /// @param watch of the same grinder; must outlive this.
+  /// @param watch watch of the same grinder; must outlive this object.
   StopKeys(ros::NodeHandle& nh, const StateWatch& watch);
   StopKeys(const StopKeys&) = delete;
   StopKeys& operator=(const StopKeys&) = delete;

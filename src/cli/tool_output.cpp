@@ -18,14 +18,14 @@ namespace {
 using namespace units;
 
 constexpr std::size_t kOutlineRings = 32;
-constexpr std::size_t kOutlineColumns = 180;  ///< of the lands of all teeth together
+constexpr std::size_t kOutlineColumns = 180;  ///< columns of the lands of all teeth together
 
-/// A tooth in a section, with what is measured for a report alone.
+/// A tooth in a section, with a figure that only the output needs.
 struct Place : FigurePlace {
   Place(const ValidJob& job, const MeasuredSection& section, std::size_t tooth)
       : FigurePlace{job, section.ground, tooth}, area_removed(section.area_removed) {}
 
-  double area_removed;  ///< of the section [m^2]
+  double area_removed;  ///< area removed from the section [m^2]
 };
 using Value = FigureValue;
 
@@ -36,17 +36,17 @@ Value onOuterCircle(const Place& p, Value angle) {
 
 /// A figure of a tooth in a section.
 struct Figure {
-  std::string key;    ///< in files, ends in the unit
-  std::string title;  ///< in the table of extremes
-  std::string head;   ///< in the table of sections; empty for a figure that is not in either table
+  std::string key;    ///< name in files, ending in the unit
+  std::string title;  ///< name in the table of extremes
+  std::string head;   ///< name in the table of sections; empty for a figure in neither table
   double unit = 1;
   std::function<Value(const Place&)> value;
-  std::function<Value(const Place&)> asked{};  ///< none if no job asks for it
-  bool of_section = false;                     ///< the same for all teeth
-  std::optional<ToolFigure> row{};             ///< if it is one of the table of figures
+  std::function<Value(const Place&)> asked{};  ///< value asked for; empty if no job asks for the figure
+  bool of_section = false;                     ///< the figure is the same for all teeth
+  std::optional<ToolFigure> row{};             ///< row in the table of figures, if it has one
 };
 
-/// One of the table of figures.
+/// A figure from the table of figures.
 Figure askedFigure(ToolFigure figure) {
   const ToolFigureRow& row = rowOf(figure);
   const std::string unit = row.unit == Unit::kRadian ? "deg" : "mm", words = row.words;
@@ -118,7 +118,7 @@ std::vector<Figure> figuresOf(const ValidJob& job) {
 
 bool isShown(const Figure& figure) { return !figure.head.empty(); }
 
-/// In the figure's unit.
+/// A value in the figure's unit.
 Value shown(const Figure& figure, Value value) {
   if (value) *value /= figure.unit;
   return value;
@@ -144,7 +144,7 @@ std::string rowOf(const Place& place) {
   return row;
 }
 
-/// Neighbouring teeth with the same figures share a line.
+/// Prints a section; neighbouring teeth with the same figures share a line.
 void printSection(const ValidJob& job, const MeasuredSection& section) {
   const std::size_t teeth = section.ground.teeth.size();
   std::string row;
@@ -156,7 +156,7 @@ void printSection(const ValidJob& job, const MeasuredSection& section) {
   }
 }
 
-/// The minimum and maximum of a figure and where they are, with the range of what is asked and of the difference.
+/// The minimum and maximum of a figure and their places, with the ranges of the value asked for and of the difference.
 struct Extremes {
   struct At {
     double value, x;
@@ -212,7 +212,7 @@ std::string text(const Range& range) {
   return format("X %.3f to %.3f mm", range.from / kMillimetre, range.to / kMillimetre);
 }
 
-/// Of a run, the strokes of each tooth; that there are none is printed as well. Passes as long share a line.
+/// Prints the strokes of each tooth in a run, even if there are none. Passes of equal length share a line.
 void printStrokes(const GroundTool& tool) {
   for (std::size_t i = 0; i < tool.job->tooth_angles.size(); ++i) {
     std::vector<RunStroke> strokes;
@@ -267,7 +267,7 @@ Json gouges(const GroundTool& tool) {
 
 Json number(Value value) { return value ? Json(*value) : Json(nullptr); }
 
-/// The figures of the section, or of the tooth.
+/// Appends the figures of the section, or of the tooth.
 void append(Json& json, const Place& place, bool of_section) {
   for (const Figure& figure : figuresOf(place.job)) {
     if (figure.of_section != of_section) continue;
@@ -276,7 +276,7 @@ void append(Json& json, const Place& place, bool of_section) {
   }
 }
 
-/// Which figures are drawn over X. Of a relieved land, its width on the blank says nothing.
+/// The figures that are drawn over X. The width of a land on the blank means nothing once the land is relieved.
 Json curves(const GroundTool& tool) {
   Json curves = Json::array();
   const Place first{tool.job, tool.sections.front(), 0};
@@ -293,7 +293,7 @@ Json curves(const GroundTool& tool) {
   return curves;
 }
 
-/// Null where the core is cut through.
+/// The outline of a section; null where the core is cut through.
 Json outline(const GroundTool& tool, double x) {
   const std::size_t teeth = tool.cutter.teeth().size();
   const OutlineGrid grid{teeth, kOutlineRings, kOutlineColumns / teeth + 1};

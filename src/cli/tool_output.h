@@ -11,10 +11,11 @@ namespace grinder {
 /// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.
 void printText(const GroundTool& tool);
 
-/// For `--json`, with the outlines of the sections. Teeth count from 0.
+/// The output of `--json`, with the outlines of the sections. Teeth count from 0.
 Json toJson(const GroundTool& tool);
 
-/// A line for each section and tooth, which count from 0. What does not exist is an empty field.
+/// A CSV file with a line for each section and tooth, which count from 0. A figure that does not exist is an empty
+/// field.
 class GroundToolCsv : public CsvFile {
  public:
   GroundToolCsv(const std::string& path, const ValidJob& job);

@@ -26,7 +26,7 @@ std::vector<std::string> optionsOf(const CLI::App& app) {
   return names;
 }
 
-/// @param path of the command, e.g. "grind wheel". @param word that it does not know.
+/// @param path path of the command, e.g. "grind wheel". @param word word that the command does not know.
 std::string refusal(const CLI::App& app, const CLI::App& command, const std::string& path, const std::string& word) {
   const std::string name = word.substr(0, word.find('='));
   const std::vector<std::string> commands = commandsOf(command);

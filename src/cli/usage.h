@@ -10,7 +10,7 @@ namespace grinder {
 /// @return empty if there is no such word.
 std::string unknownWord(const CLI::App& app);
 
-/// What is said of an argument that is no number where one is needed; empty for any other error.
+/// The message for an argument that should be a number and is not; empty for any other error.
 std::string wrongNumber(const CLI::ParseError& error);
 
 }  // namespace grinder

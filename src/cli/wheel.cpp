@@ -24,16 +24,16 @@ namespace {
 
 using namespace units;
 
-/// The maximum difference that is no change of a size [m].
+/// The maximum difference that does not count as a change of a size [m].
 constexpr double kRounding = 1e-9;
 
-/// To a picometre, so that rounding does not show.
+/// A length in mm, to a picometre, so that rounding does not show.
 std::string millimetres(double metres) {
   constexpr double per_millimetre = 1e9;
   return format("%.10g", std::round(metres / kMillimetre * per_millimetre) / per_millimetre + 0.0);
 }
 
-/// userAtHost(), without what YAML might take for something else.
+/// userAtHost(), without characters that have a meaning in YAML.
 std::string whoami() {
   std::string name = userAtHost();
   std::replace_if(
@@ -84,7 +84,7 @@ Json toJson(const WheelFile& wheel) {
           {"measured", wheel.measured ? Json{{"date", wheel.date}, {"by", wheel.by}} : Json(nullptr)}};
 }
 
-/// Whether a size may be what was measured. Says why not.
+/// Whether a measured size is plausible. Prints why if it is not.
 bool isPlausible(const char* option, double measured, double before, bool force) {
   if (force || measured <= before + kRounding) return true;
   std::fprintf(stderr,
@@ -94,8 +94,8 @@ bool isPlausible(const char* option, double measured, double before, bool force)
   return false;
 }
 
-/// Writes what a wheel has become into its file, if the file may say so.
-/// @param old the file's text, from which `before` was read. @param dressed whether it was, not only measured.
+/// Writes the new sizes of a wheel into its file, if they are allowed.
+/// @param old text of the file, from which `before` was read. @param dressed whether it was dressed, not only measured.
 int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width,
            bool dressed) {
   const std::string date = timeText(static_cast<double>(std::time(nullptr)), true);

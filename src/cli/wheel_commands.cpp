@@ -46,7 +46,7 @@ void addZeros(Commands& commands) {
   auto* set_flag = command.add_flag("--set", options->set,
                                     "by the geometry of the running grinder, and set them as its work offsets");
   addMachine(command, options->parameters, options->urdf);
-  // The machine is the one that runs.
+  // --set uses the geometry of the running machine.
   for (const char* file : {"--machine", "--urdf"}) set_flag->excludes(command.get_option(file));
   addYes(command, options->yes)->needs(set_flag);
   addJson(command, options->json);

@@ -20,7 +20,7 @@ namespace {
 
 using units::kMillimetre;
 
-/// [m]; nothing, and a reason on stderr, if the cutter does not stand out far enough.
+/// The zero point [m]; nothing, with the reason on stderr, if the cutter does not stand out far enough.
 std::optional<Eigen::Vector3d> zeroOf(const ZerosOptions& options, const MachineGeometry& geometry) {
   const GrindJob job = readJobFile(options.job, {}, options.operation);
   const double flange = flangeOf(options.job, job.operation, options.flange_mm);

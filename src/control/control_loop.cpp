@@ -38,7 +38,7 @@ void ControlLoop::callDrive(const char* function, const Call& call) noexcept {
 }
 
 ros::Duration ControlLoop::awaitCycle(Clock::time_point last) noexcept {
-  constexpr std::int32_t kLongest = 3600;  // a computer that was suspended may count that [s]
+  constexpr std::int32_t kLongest = 3600;  // such as after a suspension of the computer [s]
   const ros::Duration nominal(config_.machine.period);
   ros::Duration period = nominal;
   bool waited = false;
@@ -53,7 +53,7 @@ ros::Duration ControlLoop::awaitCycle(Clock::time_point last) noexcept {
     thrown_ += " s; allowed: 0 to 3600 s";
     has_thrown_ = true;
   }
-  // What that returns is the time since it was called last, maybe many cycles ago.
+  // Its result is unused: it is the time since its last call, perhaps many cycles ago.
   drive_.Drive::wait(nominal);
   return ros::Duration().fromNSec(std::chrono::nanoseconds(Clock::now() - last).count());
 }
@@ -107,7 +107,7 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   sample_.feedback_age = sample_.drive.feedback_count == last_feedback ? sample_.feedback_age + sample_.period : 0;
   std::copy(feedback_.position.begin(), feedback_.position.end(), sample_.position.data());
   std::copy(feedback_.velocity.begin(), feedback_.velocity.end(), sample_.velocity.data());
-  // Before its first reading the feedback is 0, as it has been made.
+  // Before the first reading the feedback still has its initial value 0.
   const bool finite = sample_.position.isFinite().all();
   has_positions_ = has_positions_ || (sample_.drive.feedback_count > 0 && finite);
   next_status_.position_valid = has_positions_ && finite && sample_.feedback_age <= config_.feedback_timeout;
@@ -125,7 +125,7 @@ void ControlLoop::readDrive(const DriveCycle& cycle) {
   readSwivel();
 }
 
-/// Axes whose commands never arrive would never rest.
+/// Limits the drive's count of waiting commands to its buffer: with a false count the axes would never come to rest.
 void ControlLoop::boundCommandsWaiting() {
   DriveStatus& drive = sample_.drive;
   const std::uint32_t reported = drive.commands_waiting;
@@ -139,7 +139,7 @@ void ControlLoop::boundCommandsWaiting() {
   append(drive.fault_text, capabilities_.buffer);
 }
 
-/// The watchdog has called powerOff(): whatever the drive reports, that is a fault, until the call has returned.
+/// Reports a drive fault if the watchdog has called powerOff(), whatever the drive says, until the call has returned.
 void ControlLoop::observeHang() {
   PowerOff power_off = power_off_;
   has_hung_ = power_off != PowerOff::kNotCalled;
@@ -147,29 +147,30 @@ void ControlLoop::observeHang() {
   sample_.drive.fault = true;
   sample_.drive.fault_text = "it has returned to the control loop too late";
   if (power_off == PowerOff::kCalled) sample_.drive.fault_text += "; its powerOff() has not returned";
-  // Unless it is called again meanwhile.
+  // A second call may have begun meanwhile: it stays.
   if (power_off == PowerOff::kReturned) power_off_.compare_exchange_strong(power_off, PowerOff::kNotCalled);
 }
 
-/// Whether the axes can have come where they are read. If not, that is of a new reference, or wrong: the next reading
-/// shows which.
-/// @param last reading [m], A [rad]. @param elapsed since then [s].
+/// Whether each axis can have moved to its reading. If not, the axis has a new reference or the reading is wrong; the
+/// next reading shows which.
+/// @param last previous reading [m], A [rad]. @param elapsed time since then [s].
 ControlLoop::AxisFlags ControlLoop::credibleFrom(const Axes& last, double elapsed) const {
-  // What moved unseen for longer is not believed.
+  // A motion without feedback is believed for no longer than feedback_timeout.
   const Axes most =
       config_.following_error + config_.machine.limits.max_velocity * std::min(elapsed, config_.feedback_timeout);
-  return (sample_.position - last).abs() <= most;  // not of NaN
+  return (sample_.position - last).abs() <= most;  // false for NaN
 }
 
-/// Once Y was read where it cannot have come to, it counts as not homed until it is: where the axis is, nobody knows.
-/// @param credible whether it can have come there without power.
+/// After a reading of Y that the axis cannot have reached, Y counts as not homed until it is homed: its position is
+/// unknown.
+/// @param credible whether Y can have moved to its reading without power.
 void ControlLoop::judgeY(bool credible) {
   const bool was_homed = y_homed_;
   y_homed_ = state_ != MachineState::kHoming && sample_.drive.homed && has_positions_;
   if (state_ == MachineState::kHoming) return;
-  // A drive that does not home gives no better reading than the one after a lift.
+  // With a drive that cannot home, Y is trusted again after a lift, because no better reading will come.
   if (!capabilities_.homing && !wheel_.wheel().in_work) wheel_.doubtY(false);
-  const bool right = isPowered(state_) ? sample_.followingError(kY) <= config_.following_error[kY]  // not of NaN
+  const bool right = isPowered(state_) ? sample_.followingError(kY) <= config_.following_error[kY]  // false for NaN
                                        : !was_homed || credible;
   if (y_homed_ && !right) wheel_.doubtY(true);
   sample_.drive.homed = sample_.drive.homed && !wheel_.wheel().y_doubted;
@@ -179,7 +180,7 @@ void ControlLoop::readSwivel() {
   if (std::isfinite(sample_.drive.swivel)) {
     sample_.swivel = {sample_.drive.swivel, true};
   } else if (sample_.swivel.measured) {
-    sample_.swivel = {};  // an encoder that fails leaves nothing to rely on
+    sample_.swivel = {};  // without its encoder the swivel's angle is unknown
   }
 }
 
@@ -200,7 +201,7 @@ void ControlLoop::trackMotion() {
 }
 
 void ControlLoop::checkDrive() {
-  if (has_hung_) {  // from which late cycle, underruns and lost power come
+  if (has_hung_) {  // also the cause of the late cycle, underruns and lost power
     LoopFault fault;
     fault.kind = FaultKind::kDriveFault;
     fault.drive_text = sample_.drive.fault_text;
@@ -210,16 +211,16 @@ void ControlLoop::checkDrive() {
 }
 
 void ControlLoop::writeDrive(const DriveCycle& cycle) {
-  // Put together here and copied as a whole, like sample and status.
+  // Assembled here and copied as a whole, like sample and status.
   DriveCommand drive_command = drive_command_;
   drive_command.home = state_ == MachineState::kHoming;
-  // Without a job, a fault, a lost power, homing and a lift switch off what was switched on by hand.
+  // Without a job, a fault, lost power, homing or a lift switches off a spindle or coolant that was on by hand.
   if (!stream_ && !after(state_, MachineEvent::kSpindleOn)) spindle_ = coolant_ = false;
   if (!stream_ && !sample_.drive.probe_free) spindle_ = false;
   sample_.spindle_commanded = drive_command.spindle = spindle_;
   sample_.coolant_commanded = drive_command.coolant = coolant_;
   std::copy(command_.data(), command_.data() + kAxisCount, drive_command.position.begin());
-  // Before the first positions there is nothing that a command could follow.
+  // Before the first positions there is no command to write.
   if (has_positions_) callDrive("write()", [&] { drive_.write(cycle, drive_command); });
   history_.add({command_, written_});
 }
@@ -243,7 +244,7 @@ void ControlLoop::publish() {
   next_status_.setpoints_written = written_.setpoints;
   next_status_.wheel = wheel_.wheel();
 
-  // Both are filled in before they are copied: a copy of what was just written has to wait for it.
+  // Both are filled in before they are copied, because a copy right after a write stalls.
   if (samples_.push(sample_)) {
     sample_.job_ended = false;
   } else {
@@ -252,7 +253,7 @@ void ControlLoop::publish() {
   status_.store(next_status_);
 }
 
-/// Of a job, in the program's move; the place is that of the setpoint that has reached the axes.
+/// For a job, the distance to the end of the program's move that contains the setpoint in effect.
 Axes ControlLoop::distanceToGo() const {
   if (jogging_ || state_ == MachineState::kLifting) {
     Axes to_go = Axes::Zero();
@@ -270,7 +271,7 @@ void ControlLoop::awaitHoming() {
   homing_of_before_ &= sample_.drive.homing;
   homing_seen_ |= sample_.drive.homing && !homing_of_before_;
   const bool over = homing_seen_ && !sample_.drive.homing, is_fresh = sample_.feedback_age == 0;
-  // With the reference the readings may jump, once.
+  // Finding the reference may make the readings jump, but only once.
   const bool jumps_again = homing_over_ && is_fresh && !settled_;
   homing_over_ = over && (homing_over_ || is_fresh);
   const bool failed = over && (jumps_again || !sample_.drive.homed);
@@ -287,7 +288,7 @@ void ControlLoop::awaitHoming() {
   fail(fault);
 }
 
-/// @return whether the job begins in this cycle. Its first setpoint moves nothing: the axes stand there.
+/// @return whether the job begins in this cycle. Its first setpoint is where the axes stand.
 bool ControlLoop::awaitInterlocks() {
   const Interlock open = openInterlock();
   if (open == Interlock::kNone) {
@@ -332,7 +333,7 @@ void ControlLoop::slowDownIfLate() {
 
 void ControlLoop::advanceJob() {
   if (state_ == MachineState::kStarting && !awaitInterlocks()) return;
-  // Nothing has moved yet, so there is nothing to stop.
+  // Before its first setpoint the job has not moved the axes.
   if (state_ == MachineState::kCanceling && written_.setpoints == 0) return restJob();
   checkInterlocks();
   stream_->setFeedOverride(feed_override_);
@@ -364,7 +365,7 @@ bool ControlLoop::advanceAxisMove() {
     setpoint.position -= job_offset_;
     stream_->adopt(setpoint);
     commandOfJob();
-    // Not rounded on the way to work coordinates and back: an end at a limit is reached exactly.
+    // Without the rounding of the conversion to work coordinates and back, an end at a limit is reached exactly.
     if (sample_.has_setpoint) command_ = at;
     return false;
   }
@@ -384,7 +385,7 @@ Interlock ControlLoop::openInterlock() const {
 void ControlLoop::checkInterlocks() {
   if (state_ == MachineState::kCanceling) return;
   const Interlock open = openInterlock();
-  // What an operator switches is not lost; while it is off, the job is not resumed.
+  // A spindle or coolant that the operator has switched off is no failure; while it is off, the job is not resumed.
   const bool by_hand = switched_by_hand_ && (open == Interlock::kSpindle || open == Interlock::kCoolant);
   if (open != Interlock::kNone && !by_hand && sample_.interlock == Interlock::kNone) {
     sample_.interlock = open;
@@ -412,13 +413,14 @@ void ControlLoop::command(const Axes& offset) {
     fault.violation = *violation;
     return fail(fault);
   }
-  // The check lets pass what rounding adds to a limit; it is not commanded.
+  // The check allows for rounding beyond a limit; the command does not.
   command_ = limit_check_.clamped(setpoint.position + offset);
   rested_ = 0;
   sample_.has_setpoint = true;
 }
 
-/// A drive whose buffer does not empty delays that by its buffer, since the last setpoint is written again and again.
+/// Whether the last setpoint has reached the axes. It is written in every cycle, so with a buffer
+/// that never empties, this is the case once it has been written as often as commands wait.
 bool ControlLoop::allReachedAxes() { return sample_.drive.commands_waiting <= rested_++; }
 
 void ControlLoop::restJob() {

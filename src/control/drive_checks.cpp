@@ -7,12 +7,12 @@ namespace grinder {
 
 namespace {
 
-constexpr double kAveraged = 1;  ///< over which the time of a cycle is averaged [s]
-/// The longest time of a cycle on average, of the time from which the axes are slowed down. By default that is two
-/// periods, and the next fraction of the rate, a half, is well beyond it.
+constexpr double kAveraged = 1;  ///< time over which the cycles' periods are averaged [s]
+/// The longest average cycle, as a fraction of the cycle from which the axes are slowed down. By default this is 1.6
+/// periods, well below the 2 periods of a loop that runs at half its rate.
 constexpr double kLongest = 0.8;
 
-/// @param value,limit what is beyond which limit, at which axis.
+/// @param value value that exceeds `limit`. @param axis axis to which it belongs.
 LoopFault faultOf(FaultKind kind, double value = 0, double limit = 0, int axis = 0) noexcept {
   LoopFault fault;
   fault.kind = kind;
@@ -29,7 +29,7 @@ void DriveChecks::observe(const CycleSample& sample) noexcept {
   was_reset_ = was_reset_ && sample.drive.fault;
   time_ += sample.period;
   bounded_time_ +=
-      std::min(sample.period, config_.late_slow_down * config_.machine.period);  // a stall of the computer passes
+      std::min(sample.period, config_.late_slow_down * config_.machine.period);  // limits the weight of a stall
   ++cycles_;
   if (bounded_time_ < kAveraged) return;
   slow_ = bounded_time_ > cycles_ * longestOnAverage() ? time_ / cycles_ : 0;

@@ -9,7 +9,7 @@ namespace grinder {
 
 namespace {
 
-/// The loop wakes no thread, since that is a system call: the thread looks.
+/// Interval at which the thread polls: the loop wakes no thread, because that takes a system call.
 constexpr std::chrono::milliseconds kLook{5};
 
 }  // namespace

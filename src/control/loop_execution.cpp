@@ -69,7 +69,7 @@ bool ControlLoop::driveCan(MachineEvent event) const {
     case MachineEvent::kHome: return capabilities_.homing;
     case MachineEvent::kSpindleOn: return capabilities_.spindle;
     case MachineEvent::kCoolantOn: return capabilities_.coolant;
-    // What nobody could switch on again would keep the job from going on.
+    // During a job nothing is switched off that could not be switched on again, or the job could not go on.
     case MachineEvent::kSpindleOff: return capabilities_.spindle || !stream_;
     case MachineEvent::kCoolantOff: return capabilities_.coolant || !stream_;
     default: return true;
@@ -115,7 +115,7 @@ Refusal ControlLoop::spindleOn() {
   return sample_.drive.probe_free ? switchByHand(spindle_, true) : Refusal::kInterlock;
 }
 
-/// @param commanded spindle_ or coolant_. A wheel that starts in the work breaks.
+/// Refuses to switch on in the workpiece, where a starting wheel breaks. @param commanded spindle_ or coolant_.
 Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
   if (const Refusal refusal = refusalOfWheel(); on && refusal != Refusal::kNone) return refusal;
   commanded = on;
@@ -126,7 +126,7 @@ Refusal ControlLoop::switchByHand(bool& commanded, bool on) {
 void ControlLoop::awaitPower() {
   if (!awaiting_power_) return;
   waited_ += sample_.period;
-  // Of two readings that do not agree, nobody knows which is where the axes are: neither is commanded with power.
+  // While two readings disagree, the position of the axes is unknown, and no power is commanded.
   drive_command_.enable &= settled_;
   const bool on = drive_command_.enable && sample_.drive.enabled;
   Refusal refusal = drive_checks_.powerRefusal(sample_);
@@ -142,8 +142,8 @@ void ControlLoop::awaitPower() {
   }
 }
 
-/// Once the power of before has gone, which would be taken for the new, the drive is prepared, and the command is where
-/// the axes are.
+/// Commands the power once the earlier power is off, which could be taken for the new, the drive is prepared and the
+/// command is where the axes are.
 Refusal ControlLoop::commandPower() {
   if (drive_command_.enable || sample_.drive.enabled) return Refusal::kNone;
   if (preparation_ && !preparation_begun_) {
@@ -194,7 +194,7 @@ Refusal ControlLoop::home() {
   return Refusal::kNone;
 }
 
-/// @return why nothing but the lift may move the wheel; kNone if anything may.
+/// @return why only a lift may move the wheel; kNone if any motion may.
 Refusal ControlLoop::refusalOfWheel() const {
   if (!wheel_.wheel().in_work) return Refusal::kNone;
   return wheel_.wheel().known ? Refusal::kInWork : Refusal::kMayBeInWork;
@@ -254,7 +254,7 @@ Refusal ControlLoop::lift() {
   wheel_.beginLift(to);
   axis_move_.begin(MoveKind::kLift, command_, kY, to, config_.machine.limits.max_velocity[kY]);
   limit_check_.restart();
-  // Up is the way out wherever the other axes have come to rest, and without the reference their limits mean nothing.
+  // A lift is allowed wherever the other axes have come to rest; without the reference their limits mean nothing.
   limit_check_.widen(command_);
   apply(MachineEvent::kLift);
   return Refusal::kNone;
@@ -265,7 +265,7 @@ Refusal ControlLoop::setSwivel(double angle) {
   const Swivel confirmed{angle, false};
   if (stream_ && !confirmed.isAt(job_swivel_)) return Refusal::kSwivelInUse;
   sample_.swivel = next_status_.swivel = confirmed;
-  // Before the answer, so that the goal that follows it finds the angle; the cycle may still wait for the drive.
+  // Before the answer, so that a goal sent right after it finds the angle; the cycle may still wait for the drive.
   status_.store(next_status_);
   return Refusal::kNone;
 }

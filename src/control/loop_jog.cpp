@@ -10,9 +10,9 @@ namespace grinder {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-/// A cycle that is later than this, in periods, has heard nobody meanwhile.
+/// Length of a cycle from which the whole process counts as stalled [periods].
 constexpr double kStall = 20;
-/// As silence of a client, one that is late counts at most so many periods.
+/// A late cycle counts as at most this many periods of a client's silence.
 constexpr double kMostPeriods = 2;
 
 }  // namespace
@@ -36,7 +36,7 @@ Refusal ControlLoop::jogOn(const JogRequest& jog, Answer& answer) {
   if (!jogging_) return beginJog(jog, answer);
   if (!continuous_ || jog.axis != axis_move_.axis()) return Refusal::kJogging;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
-  // What has been stopped, and for the other direction, first rests; the messages that follow then begin a new jog.
+  // A jog that is stopping, or is to reverse, first comes to rest; the messages that follow then begin a new jog.
   const bool onward = !axis_move_.stopping() && jog.velocity * axis_move_.direction() > 0;
   axis_move_.setSpeed(onward ? std::abs(jog.velocity) : 0);
   return Refusal::kNone;
@@ -62,7 +62,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   answer.limit = way < 0 ? lowestJog(jog.axis) : config_.machine.limits.max_position[jog.axis];
   answer.value = jog.continuous ? answer.limit : from + jog.distance;
   if (jog.continuous && (way < 0 ? from <= answer.limit : from >= answer.limit)) return Refusal::kAtLimit;
-  // The distance to a limit is rounded, by no more than its ends are, and so is the sum.
+  // The distance to the limit was rounded by the client, and the sum is rounded here.
   const double rounding = kEpsilon / 2 * (std::abs(from) + 2 * std::abs(answer.limit));
   if (std::abs(answer.value - answer.limit) <= rounding) answer.value = answer.limit;
   const bool within = way < 0 ? answer.value >= answer.limit : answer.value <= answer.limit;
@@ -113,8 +113,8 @@ double ControlLoop::lowestJog(int axis) const {
 }
 
 void ControlLoop::watchClients() {
-  // A loop that comes late has not heard them meanwhile. After a stall of the whole process what they sent still waits
-  // to be read, by threads that have to get a processor first.
+  // A late loop has not heard the clients meanwhile. After a stall of the whole process, their messages still wait to
+  // be read by threads that need a processor first.
   const double periods = sample_.period / config_.machine.period;
   if (periods > kStall) {
     dead_man_.forgive();
@@ -141,12 +141,12 @@ void ControlLoop::advanceJog() {
   if (released || !sample_.drive.homed) axis_move_.setSpeed(0);
   if (!advanceAxisMove()) return;
   endJog();
-  // A job that was canceled meanwhile ends by itself.
+  // A job that was canceled meanwhile comes to rest by itself.
   if (state_ != MachineState::kCanceling) comeToRest();
 }
 
 void ControlLoop::stopJogOnContact() {
-  // From a contact, the probe may be moved away.
+  // A jog that begins in contact moves the probe away: only a new contact stops it.
   const bool begins = sample_.drive.probe_contact && !touched_;
   if (!begins || next_status_.contact.made) return;
   next_status_.contact.made = true;
@@ -155,9 +155,9 @@ void ControlLoop::stopJogOnContact() {
   axis_move_.setSpeed(0);
 }
 
-/// As a stop does, so that the series ends too.
+/// Counts as a stop, so that the series ends too.
 void ControlLoop::stopJogWithoutClient() {
-  hearClient();  // again: a jog may have been requested since, and its client heard before that
+  hearClient();  // again: a jog may have been requested in this cycle, after its client was heard
   if (!for_client_ || !client_.expired()) return;
   for_client_ = false;
   next_status_.client_lost = true;

@@ -6,12 +6,12 @@ namespace grinder {
 
 namespace {
 
-constexpr int kSwivelDigits = 10;  ///< so that a job's angle appears as entered
+constexpr int kSwivelDigits = 10;  ///< digits with which a job's angle appears as entered
 
-/// Of an angle, as operators read it. @param angle [rad].
+/// An angle in degrees, as text. @param angle [rad].
 std::string degrees(double angle, int digits = 6) { return grinder::text(Quantity{angle, Unit::kRadian}, digits); }
 
-/// What a drive would do. @param event that not every drive executes.
+/// What the drive would have to do. @param event an event that not every drive can execute.
 const char* offer(MachineEvent event) {
   if (event == MachineEvent::kHome) return "home the axes";
   const bool spindle = event == MachineEvent::kSpindleOn || event == MachineEvent::kSpindleOff;

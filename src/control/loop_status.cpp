@@ -7,8 +7,8 @@ namespace grinder {
 Wheel wheelOf(const GrindProgram& program) {
   double deepest = program.clearanceHeight();
   for (const Move& move : program.moves()) deepest = std::min(deepest, move.to[kY]);
-  // The same sum as the command's, so that the wheel counts as clear exactly where the program leaves it. At the limit
-  // of the axis the sum may be rounded up, but no lift may lead beyond.
+  // The sum is rounded as in the command, so that the wheel counts as clear exactly where the program leaves it. At the
+  // axis limit it may be rounded up, but no lift may exceed the limit.
   const double clear_y =
       std::min(program.clearanceHeight() + program.run().offset[kY], program.machine().limits.max_position[kY]);
   return {false, clear_y, program.clearanceHeight() - deepest};

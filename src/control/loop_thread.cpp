@@ -13,7 +13,7 @@ namespace grinder {
 
 namespace {
 
-/// A stamp, as far as there are any: up to 2106. @param period not negative.
+/// time + period, at most the last stamp that ROS can represent, in 2106. @param period not negative.
 ros::Time after(const ros::Time& time, const ros::Duration& period) noexcept {
   const ros::Time last(std::numeric_limits<std::uint32_t>::max(), 0);
   const bool is_last = last.toNSec() - time.toNSec() < static_cast<std::uint64_t>(period.toNSec());
@@ -58,7 +58,7 @@ void ControlLoop::run() {
   realtime_scheduling_ = becomeRealtime();
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
-  // The first wait returns a period that has not passed; no stamp is to be ahead of the clock.
+  // The first wait returns the nominal period at once; no stamp may be ahead of the clock.
   const ros::Duration nominal(config_.machine.period);
   ros::Time time = ros::Time(wall.sec, wall.nsec) - nominal;
   Clock::time_point begin = Clock::now() - std::chrono::nanoseconds(nominal.toNSec());

@@ -6,7 +6,7 @@ namespace grinder {
 
 namespace {
 
-/// What the drive throws counts as not switched off.
+/// Calls the drive's powerOff(). @return whether the power is off; false if the drive throws.
 bool powerOff(Drive& drive) noexcept {
   try {
     return drive.powerOff();

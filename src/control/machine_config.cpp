@@ -13,8 +13,8 @@ constexpr double kMin = kMinFigure;
 constexpr double kMax = kMaxFigure;
 /// Twice the period at which the panel repeats its messages [s].
 constexpr double kMinJogTimeout = 0.05;
-constexpr double kMaxHistory = 1e12;                ///< [bytes]
-constexpr double kMinBall = 1e-4, kMaxBall = 0.02;  ///< diameter of a probe's [m]
+constexpr double kMaxHistory = 1e12;                ///< largest history_limit [bytes]
+constexpr double kMinBall = 1e-4, kMaxBall = 0.02;  ///< diameter of a probe's ball [m]
 
 /// One kind of limit, with its names in ros_control.
 struct LimitName {
@@ -150,7 +150,7 @@ LoopConfig readLoopConfig(const MachineModel& model, const ParameterReader& p) {
   config.jog_timeout = p.number("jog_timeout", kMinJogTimeout, 1);
   config.geometry = readMachineGeometry(p);
   config.probing.slow = p.number("probing/slow", kMin, 1);
-  // Of one touch alone there is no spread.
+  // A spread needs two touches.
   config.probing.touches = p.whole("probing/touches", 2, 100);
   config.late_slow_down = p.number("late_cycle/slow_down", 2, kMax);
   config.late_fault = p.number("late_cycle/fault", config.late_slow_down, kMax);

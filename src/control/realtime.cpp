@@ -16,12 +16,12 @@ namespace grinder {
 
 namespace {
 
-/// Above all ordinary threads, below the kernel's own threads.
+/// Priority above all ordinary threads, below the kernel's threads.
 constexpr int kRealtimePriority = 80;
 
-/// Far more than the loop uses.
+/// Stack to make resident, far more than the loop uses.
 constexpr std::size_t kStack = std::size_t{256} * 1024;
-/// Far more than any thread of the node uses.
+/// Stack of a thread, far more than any thread of the node uses.
 constexpr std::size_t kThreadStack = std::size_t{512} * 1024;
 constexpr std::size_t kPage = 4096;
 constexpr std::size_t kSpare = std::size_t{2} << 30;
@@ -45,7 +45,7 @@ void boundThreadStacks() {
 }
 
 void boundAddressSpace() {
-#ifndef __SANITIZE_ADDRESS__  // which has terabytes of them
+#ifndef __SANITIZE_ADDRESS__  // which uses terabytes of addresses
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   rlimit limit{};
@@ -61,7 +61,7 @@ bool lockMemory() {
   rlimit limit{};
   const bool unlimited = geteuid() == 0 || (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
   // Memory allocated so far belongs to the loop and becomes resident now. Later allocations come from ROS: an
-  // allocation of 2 GB, which a few bytes from a peer can cause, must not occupy memory before it is filled.
+  // allocation of 2 GB, which a few bytes from a peer can cause, must not take up memory before it is filled.
   return unlimited && mlockall(MCL_CURRENT) == 0 && mlockall(MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 

@@ -44,7 +44,7 @@ RequestReply ask(const char* name, double timeout, RequestSlot<Request>& slot, c
     posted = slot.post(request);
     return std::nullopt;
   });
-  // Nothing moves later that nobody waits for.
+  // A request that nobody waits for any more must not be executed later.
   slot.withdraw();
   return reply;
 }

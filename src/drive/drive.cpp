@@ -7,9 +7,9 @@ namespace grinder {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;  ///< [ns]
+constexpr std::int64_t kSecond = 1000000000;  ///< a second [ns]
 
-/// [ns]
+/// The monotonic clock [ns].
 std::int64_t monotonicNow() {
   timespec now;
   clock_gettime(CLOCK_MONOTONIC, &now);

@@ -58,14 +58,14 @@ class HalHardware : public Drive {
   std::unique_ptr<HalComponent> component_;
   std::unique_ptr<HalFifo> fifo_;
   Pins* pins_ = nullptr;
-  DriveCapabilities can_;   ///< as far as HAL has the signals
+  DriveCapabilities can_;   ///< capabilities for which HAL has the signals
   std::uint32_t kept_ = 0;  ///< commands to keep in the FIFO
 
-  std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false
+  std::atomic<bool> power_off_{false};  ///< powerOff() was called, and `enable` has not been false since
 
-  bool enabled_ = false;    ///< at the last read()
+  bool enabled_ = false;    ///< HAL reported power at the last read()
   std::uint32_t sent_ = 0;  ///< number of the last command
-  bool overflow_ = false;   ///< the FIFO was as full as it may be when a command was to be written
+  bool overflow_ = false;   ///< the FIFO was full when a command was to be written
   double servo_cycles_ = 0;
   int reset_cycles_ = 0;       ///< remaining cycles of the reset pulse
   bool homing_ = false;        ///< HAL was homing in the previous cycle

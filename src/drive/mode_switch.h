@@ -4,20 +4,19 @@
 
 namespace grinder {
 
-/// Switches hardware over to the grinder's commands and back, as ros_control's controller manager does with a
-/// controller: once for every change, and then waits for the result. Real-time safe as far as the hardware's functions
-/// are.
+/// Switches hardware over to the grinder's commands and back, as ros_control's controller manager does for a
+/// controller: once per change, and then waits for the result. Real-time safe if the hardware's functions are.
 class ModeSwitch {
  public:
   enum class Result { kDone, kOngoing, kError };
 
   /// To be called in every cycle, before the command is written.
   /// @param wanted whether the hardware is to take the commands.
-  /// @param hardware with doSwitch(bool on) and Result switchResult(), which is asked while it switches on.
+  /// @param hardware object with doSwitch(bool on) and Result switchResult(), polled while the hardware switches on.
   template <typename Hardware>
   void update(bool wanted, Hardware&& hardware) {
     if (!wanted) {
-      // First, since the hardware may throw.
+      // The state changes first, because the hardware may throw.
       if (std::exchange(state_, State::kOff) != State::kOff) hardware.doSwitch(false);
       return;
     }
@@ -32,7 +31,7 @@ class ModeSwitch {
   }
 
   bool isOn() const noexcept { return state_ == State::kOn; }
-  /// The hardware has not switched on, and is not asked again until it has been switched off.
+  /// Whether the hardware failed to switch on; it is asked again only after it has been switched off.
   bool isRefused() const noexcept { return state_ == State::kRefused; }
 
  private:

@@ -16,7 +16,7 @@ namespace grinder {
 
 namespace {
 
-/// A value as it stands in a YAML file, a text in quotes.
+/// A value as written in a YAML file, with a text in quotes.
 std::string shown(const XmlRpc::XmlRpcValue& value) {
   if (value.getType() == XmlRpc::XmlRpcValue::TypeBoolean) return static_cast<bool>(value) ? "true" : "false";
   std::ostringstream text;

@@ -7,9 +7,9 @@ namespace grinder {
 
 namespace {
 
-constexpr std::chrono::milliseconds kLook{1};    ///< the control loop wakes no thread
-constexpr std::chrono::milliseconds kRetry{50};  ///< after a failure
-constexpr std::chrono::milliseconds kEnd{500};   ///< for the last command, when the program ends
+constexpr std::chrono::milliseconds kLook{1};    ///< polling interval; the control loop wakes no thread
+constexpr std::chrono::milliseconds kRetry{50};  ///< delay after a failure
+constexpr std::chrono::milliseconds kEnd{500};   ///< time for the last command when the program ends
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void SwitchOutput::run() {
     bool taken = false;
     try {
       taken = send_(on, [&] { return wanted_ == on && !ends(); });
-    } catch (const std::exception&) {  // of a name or a type; said by what throws
+    } catch (const std::exception&) {  // a wrong name or type, already logged
     }
     if (taken) {
       passed_ = on ? Passed::kOn : Passed::kOff;
@@ -81,7 +81,7 @@ void TriggerOutput::run() {
     bool taken = false;
     try {
       taken = send_([&] { return given_up_ != number && !ends_; });
-    } catch (const std::exception&) {  // as above
+    } catch (const std::exception&) {  // a wrong name or type, already logged
     }
     failed_ = !taken;
     done_ = number;

@@ -27,16 +27,16 @@ using Clock = SignalInput::Clock;
 
 constexpr std::chrono::milliseconds kPowerOff{200};  ///< longest wait for the power's service
 constexpr std::chrono::milliseconds kPoll{1};
-constexpr double kSwitchTimeout = 2;    ///< for the answer of a service that switches [s]
-constexpr double kHomingTimeout = 1e5;  ///< none but the machine's own [s]
-constexpr double kFast = 0.7;           ///< a cycle shorter than that comes too soon [periods]
-constexpr int kMostFast = 100;          ///< of them in a row
-constexpr int kMostUnused = 100;        ///< cycles between prepare() and the power
-/// A limit that a command just reaches may round it by this [m], A [rad].
+constexpr double kSwitchTimeout = 2;    ///< longest wait for the answer of a service that switches [s]
+constexpr double kHomingTimeout = 1e5;  ///< practically none: the machine's homing_timeout applies [s]
+constexpr double kFast = 0.7;           ///< length below which a cycle comes too soon [periods]
+constexpr int kMostFast = 100;          ///< cycles in a row that may come too soon
+constexpr int kMostUnused = 100;        ///< cycles after prepare() without a command for power until a stop is prepared
+/// Change of a command at a limit that counts as rounding by the RobotHW [m], A [rad].
 constexpr double kRounding = 1e-9;
 
-/// Calls a service, and gives up when the call is no longer wanted, or after a time-out; the log says what is wrong.
-/// @param timeout [s]. @return whether it was done.
+/// Calls a service, and gives up when the call is no longer wanted or after a timeout; failures are logged.
+/// @param timeout [s]. @return whether the service has succeeded.
 template <typename Service>
 bool call(const std::string& name, const typename Service::Request& request, double timeout,
           const std::function<bool()>& still_wanted) {
@@ -57,7 +57,7 @@ bool call(const std::string& name, const typename Service::Request& request, dou
   return response && response->success;
 }
 
-/// An on and off, as std_msgs/Bool or std_srvs/SetBool. @throw ros::InvalidNameException
+/// Connects an output that switches on and off, as std_msgs/Bool or std_srvs/SetBool. @throw ros::InvalidNameException
 void connectSwitch(std::optional<SwitchOutput>& output, const CommandSink& sink, ros::NodeHandle& nh) {
   if (!sink.topic.empty()) {
     const ros::Publisher publisher = nh.advertise<std_msgs::Bool>(sink.topic, 1, true);
@@ -65,7 +65,7 @@ void connectSwitch(std::optional<SwitchOutput>& output, const CommandSink& sink,
       std_msgs::Bool message;
       message.data = on;
       publisher.publish(message);
-      // Who is not there yet gets the latched message later.
+      // A later subscriber gets the latched message.
       return publisher.getNumSubscribers() > 0;
     });
   } else if (!sink.service.empty()) {
@@ -77,7 +77,7 @@ void connectSwitch(std::optional<SwitchOutput>& output, const CommandSink& sink,
   }
 }
 
-/// A request without an off. @param timeout [s]. @throw ros::InvalidNameException
+/// Connects an output for a request that cannot be switched off. @param timeout [s]. @throw ros::InvalidNameException
 void connectTrigger(std::optional<TriggerOutput>& output, const CommandSink& sink, ros::NodeHandle& nh,
                     double timeout) {
   if (!sink) return;
@@ -118,7 +118,7 @@ void RosControlDrive::init(ros::NodeHandle&, ros::NodeHandle& drive_nh) {
 void RosControlDrive::loadRobotHw(const std::string& type, ros::NodeHandle& drive_nh) {
   const std::string parameter = "parameter " + drive_nh.getNamespace() + "/robot_hw/type = " + type;
   try {
-    // Where the package hardware_interface is not found, this throws.
+    // Throws if the package hardware_interface is not found.
     loader_ =
         std::make_unique<pluginlib::ClassLoader<hi::RobotHW>>("hardware_interface", "hardware_interface::RobotHW");
     robot_hw_ = loader_->createUniqueInstance(type);
@@ -168,7 +168,7 @@ void RosControlDrive::connect(const RosControlParameters& parameters) {
   connectSwitch(commands_.coolant, parameters.commands.coolant, nh_);
   connectTrigger(commands_.home, parameters.commands.home, nh_, kHomingTimeout);
   connectTrigger(commands_.reset, parameters.commands.reset, nh_, kSwitchTimeout);
-  // controller_manager prepares a stop, too; some RobotHW stop only then.
+  // A stop is prepared too, as by controller_manager; some RobotHW stop only then.
   stop_.emplace([this](const std::function<bool()>&) {
     const std::lock_guard<std::mutex> lock(prepare_mutex_);
     prepared_ = false;
@@ -197,7 +197,7 @@ DriveCapabilities RosControlDrive::capabilities() const {
 }
 
 void RosControlDrive::prepare() {
-  // A stop that came after it would undo it.
+  // A stop after this preparation would undo it.
   while (stop_->isBusy()) std::this_thread::sleep_for(kPoll);
   prepared_ = false;
   const std::lock_guard<std::mutex> lock(prepare_mutex_);
@@ -210,13 +210,13 @@ void RosControlDrive::prepare() {
 // The cycle
 
 void RosControlDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
-  // First, because it must not depend on what the RobotHW may throw.
+  // The status first, because the RobotHW may throw.
   readStatus(feedback.status);
   readFault(feedback.status);
   read_returned_ = false;
   robot_hw_->read(cycle.time, cycle.period);
   read_returned_ = true;
-  // It may have hung, and powerOff() have been called meanwhile.
+  // read() may have hung, and powerOff() may have been called meanwhile.
   feedback.status.enabled = feedback.status.enabled && !power_off_;
   if (fast_ <= kMostFast) fast_ = cycle.period < cycle.nominal * kFast ? fast_ + 1 : 0;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
@@ -229,16 +229,17 @@ void RosControlDrive::read(const DriveCycle& cycle, DriveFeedback& feedback) {
 void RosControlDrive::readStatus(DriveStatus& status) {
   const Clock::time_point now = Clock::now();
   status.emergency_stop = signals_.emergency_stop->at(now);
-  // The axes do not follow without the mode, but the power that is commanded off may be on.
+  // Without the mode the axes do not follow, but power that is commanded off may still be on.
   const bool may_stay =
       !sent_.enable && commands_.power && (!signals_.enabled->topic().empty() || commands_.power->hasFailed());
   status.enabled = (mode_.isOn() || may_stay) && !power_off_ && signals_.enabled->at(now);
   status.homed = signals_.homed->at(now);
-  // Reported in at least one reading, however soon the service answers; its answer may overtake the topic of `homed`.
+  // Homing is reported in at least one reading, however soon the service answers. The answer may overtake the topic of
+  // `homed`.
   status.homing = sent_.home && commands_.home &&
                   (commands_.home->isBusy() || !homing_seen_ || !(status.homed || commands_.home->hasFailed()));
   homing_seen_ = sent_.home;
-  // `always` means: as soon as it is commanded. A wheel that always turned could not be probed beside.
+  // `always` means: as soon as the spindle is commanded. A wheel that always turned would forbid probing.
   status.spindle_at_speed =
       signals_.spindle_at_speed->at(now) && (sent_.spindle || !signals_.spindle_at_speed->topic().empty());
   status.coolant_on = signals_.coolant_on->at(now);
@@ -279,7 +280,7 @@ void RosControlDrive::write(const DriveCycle& cycle, const DriveCommand& command
   const bool was_on = mode_.isOn();
   mode_.update(powered, *this);
   if (!powered) prepareStop();
-  // In homing the commands follow the positions.
+  // During homing the commands follow the positions.
   commandJoints(cycle, last, was_on && mode_.isOn() && !command.home && !last.home);
 }
 
@@ -287,7 +288,7 @@ void RosControlDrive::prepareStop() {
   if (std::exchange(stopping_, stop_->isBusy()) && !stopping_) doSwitch(false);
   if (!prepared_) unused_ = 0;
   if (sent_.enable || !prepared_ || stopping_) return;
-  // The power follows the preparation at once, unless it was withdrawn meanwhile.
+  // Power follows the preparation at once, unless the request was withdrawn meanwhile.
   if (!used_ && ++unused_ < kMostUnused) return;
   stop_->fire();
   stopping_ = true;

@@ -23,8 +23,8 @@
 namespace grinder {
 
 /// Hardware that ros_control drives: any class derived from hardware_interface::RobotHW, unchanged, with a joint for
-/// each axis that takes positions, or positions and velocities. What a RobotHW has not, such as the emergency stop, is
-/// stated by parameters, or comes from and goes to other programs; docs/ros-control.md lists them.
+/// each axis that takes positions, or positions and velocities. Signals that a RobotHW lacks, such as the emergency
+/// stop, are constants in the parameters, or are exchanged with other programs; docs/ros-control.md lists them.
 class RosControlDrive : public Drive {
  public:
   void init(ros::NodeHandle& node_nh, ros::NodeHandle& drive_nh) override;
@@ -32,7 +32,7 @@ class RosControlDrive : public Drive {
   void prepare() override;
   void read(const DriveCycle& cycle, DriveFeedback& feedback) override;
   void write(const DriveCycle& cycle, const DriveCommand& command) override;
-  /// By the monotonic clock, unless the RobotHW's read() is the clock, and blocks: then at once.
+  /// Waits by the monotonic clock; returns at once if the RobotHW's read() blocks and so is the clock.
   ros::Duration wait(const ros::Duration& nominal) override;
   bool powerOff() override;
 
@@ -41,7 +41,7 @@ class RosControlDrive : public Drive {
 
   struct Joint {
     hardware_interface::JointStateHandle state;
-    hardware_interface::JointHandle position;  ///< unless there is the next one
+    hardware_interface::JointHandle position;  ///< used if there is no `with_velocity`
     std::optional<hardware_interface::PosVelJointHandle> with_velocity;
     void command(double position, double velocity);
     double commanded() const;
@@ -67,11 +67,11 @@ class RosControlDrive : public Drive {
   void prepareStop();
   void commandJoints(const DriveCycle& cycle, const DriveCommand& last, bool moves);
 
-  // The class loader must outlive what it has loaded.
+  // The class loader must outlive the objects that it has loaded.
   std::unique_ptr<pluginlib::ClassLoader<hardware_interface::RobotHW>> loader_;
   pluginlib::UniquePtr<hardware_interface::RobotHW> robot_hw_;
   std::array<Joint, kAxisCount> joints_;
-  std::list<hardware_interface::ControllerInfo> controller_;  ///< the grinder, as a RobotHW sees it
+  std::list<hardware_interface::ControllerInfo> controller_;  ///< the grinder, as a controller
   const std::list<hardware_interface::ControllerInfo> none_;
 
   ros::NodeHandle nh_;
@@ -81,18 +81,18 @@ class RosControlDrive : public Drive {
   bool read_is_clock_ = false;
 
   ModeSwitch mode_;
-  std::mutex prepare_mutex_;           ///< of what is never called in the control thread
-  std::atomic<bool> prepared_{false};  ///< a switch to the grinder's commands, and no stop since
+  std::mutex prepare_mutex_;           ///< guards calls of prepareSwitch(), never taken in the control thread
+  std::atomic<bool> prepared_{false};  ///< a switch to the grinder's commands was prepared, and no stop since
   std::optional<TriggerOutput> stop_;
-  bool used_ = false;          ///< the power was asked for since the last stop
-  int unused_ = 0;             ///< cycles since a preparation without that
+  bool used_ = false;          ///< power was commanded since the last stop
+  int unused_ = 0;             ///< cycles since a preparation without a command for power
   bool stopping_ = false;      ///< a stop is being prepared
-  bool homing_seen_ = false;   ///< it has been reported
-  bool read_returned_ = true;  ///< the last read(), instead of throwing
-  int fast_ = 0;               ///< cycles in a row that came too soon; kept once they are too many, until a reset
+  bool homing_seen_ = false;   ///< homing was commanded in the previous cycle
+  bool read_returned_ = true;  ///< the last read() returned and did not throw
+  int fast_ = 0;               ///< cycles in a row that came too soon; once too many, kept until a reset
   DriveCommand sent_;
-  int changed_axis_ = kAxisCount;       ///< whose command the RobotHW has changed
-  std::atomic<bool> power_off_{false};  ///< by powerOff(), until `enable` is false
+  int changed_axis_ = kAxisCount;       ///< axis whose command the RobotHW has changed; kAxisCount for none
+  std::atomic<bool> power_off_{false};  ///< powerOff() was called, and `enable` has not been false since
 };
 
 }  // namespace grinder

@@ -23,7 +23,8 @@ CommandSink sink(const ParameterReader& p, const std::string& name) {
   return sink;
 }
 
-/// Must be stated: without it a stop leaves the drives energised, unless the RobotHW's own switch does not.
+/// The required command for power: without one a stop leaves the drives energised, unless the RobotHW itself switches
+/// them off.
 CommandSink power(const ParameterReader& p) {
   if (p.has("commands/power/service") || p.has("commands/power/topic")) return sink(p, "power");
   const std::string what = "a service, a topic, or none";
@@ -32,7 +33,7 @@ CommandSink power(const ParameterReader& p) {
   throw ParameterError("parameter " + p.name("commands/power") + " = " + stated + "; allowed: " + what);
 }
 
-/// A command without an off.
+/// The sink of a command that cannot be switched off.
 CommandSink service(const ParameterReader& p, const std::string& name) {
   const CommandSink found = sink(p, name);
   if (found.topic.empty()) return found;

@@ -8,10 +8,10 @@
 
 namespace grinder {
 
-/// Where a command goes that a RobotHW does not take.
+/// The destination of a command that a RobotHW does not take: a service or a topic.
 struct CommandSink {
-  std::string service;  ///< its name, or
-  std::string topic;    ///< the topic's
+  std::string service;  ///< name of the service, or empty
+  std::string topic;    ///< name of the topic, or empty
   explicit operator bool() const { return !service.empty() || !topic.empty(); }
 };
 
@@ -20,13 +20,13 @@ struct RosControlParameters {
   std::string robot_hw;  ///< class of the plugin
   std::array<std::string, kAxisCount> joints;
   bool read_is_clock = false;
-  double signal_timeout = 0;  ///< 0 for never [s]
+  double signal_timeout = 0;  ///< time after which a received signal expires; 0 for never [s]
   struct {
-    std::string emergency_stop, homed, spindle_at_speed, coolant_on;  ///< must be stated
+    std::string emergency_stop, homed, spindle_at_speed, coolant_on;  ///< required
     std::string enabled, fault, probe_free, probe_contact;
   } signals;
   struct {
-    CommandSink power;  ///< must be stated, if only that there is none
+    CommandSink power;  ///< required, even if only to say that there is none
     CommandSink home, spindle, coolant, reset;
   } commands;
 };

@@ -15,25 +15,25 @@ namespace grinder {
 
 namespace {
 
-constexpr double kSlip = 0.002;        ///< of the swivel [rad]
-constexpr double kFlickerAt = 0.2e-3;  ///< before the surface [m]
+constexpr double kSlip = 0.002;        ///< slip of the swivel [rad]
+constexpr double kFlickerAt = 0.2e-3;  ///< distance from the surface at which the contact flickers [m]
 constexpr std::chrono::milliseconds kHangStep{1};
 
 constexpr std::array<const char*, 12> kFaultNames{"none",         "emergency_stop", "stuck_axis",     "stale_feedback",
                                                   "nan_feedback", "drive_fault",    "reference_lost", "spindle_lost",
                                                   "coolant_lost", "swivel_slipped", "probe_flickers", "hang"};
 
-/// A buffer of the axes' values, to compute with.
+/// A view of the axes' values for arithmetic.
 auto axes(AxisValues& buffer) { return Eigen::Map<Axes>(buffer.data()); }
 
-/// That this thread has used [ns].
+/// Processor time that this thread has used [ns].
 std::int64_t processorTime() {
   timespec used;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
   return used.tv_sec * 1000000000LL + used.tv_nsec;
 }
 
-/// @param root,p parameters of the node and of the drive.
+/// @param root parameters of the node. @param p parameters of the drive.
 SimulatedDrive::Blank readBlank(const ParameterReader& root, const ParameterReader& p) {
   constexpr double max = 10;
   const auto figure = [](const ParameterReader& from, const std::string& name) { return from.number(name, -max, max); };
@@ -160,7 +160,7 @@ bool SimulatedDrive::touches(const Blank& blank) const {
                z = blank.ball_centre[2] + motor_[kZ];
   const double before_end = std::max(0.0, blank.end_face - x);
   if (blank.rake_face) {
-    // Turned back with the work.
+    // The ball's place in the frame of the rake face.
     const double a = motor_[kA] - blank.rake_face->angle;
     const double below = blank.rake_face->height - (y * std::sin(a) + z * std::cos(a));
     if (below > 0) return before_end == 0 && below <= radius;
@@ -187,7 +187,7 @@ void SimulatedDrive::moveMotors(Fault fault, int failing_axis, double dt) {
 }
 
 void SimulatedDrive::home(double dt) {
-  // One at a time, starting with Y, which moves the wheel away from the workpiece.
+  // One axis at a time, starting with Y, which moves the wheel away from the workpiece.
   for (const int i : {kY, kX, kZ, kA}) {
     const AxisModel& axis = model_[static_cast<std::size_t>(i)];
     const double distance = axis.home_position - motor_[i];
@@ -205,10 +205,10 @@ void SimulatedDrive::write(const DriveCycle&, const DriveCommand& command) { com
 
 ros::Duration SimulatedDrive::wait(const ros::Duration& nominal) {
   if (equipment_.pace == 1) return Drive::wait(nominal);
-  // One rest for many cycles: two calls of the system for each of them would cost the host more than the cycles do.
+  // One rest for many cycles: two system calls per cycle would cost the host more than the cycles themselves.
   ahead_ += nominal * (1 / equipment_.pace);
   if (ahead_ < nominal) return nominal;
-  // At its priority a loop that never rests would leave the host's other programs no core.
+  // At its priority a loop that never rests would starve the host's other programs of a core.
   const std::int64_t last_ns = std::exchange(processor_ns_, processorTime());
   Drive::wait(
       std::max(std::exchange(ahead_, ros::Duration()), ros::Duration().fromNSec(2 * (processor_ns_ - last_ns))));

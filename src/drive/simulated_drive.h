@@ -24,47 +24,48 @@ class SimulatedDrive : public Drive {
  public:
   /// Model of one axis.
   struct AxisModel {
-    double time_constant = 0;    ///< [s]
-    double counts_per_unit = 1;  ///< of the encoder [1/m or 1/rad]
-    double start_position = 0;   ///< [m or rad]
-    double home_position = 0;    ///< [m or rad]
-    double homing_velocity = 1;  ///< [m/s or rad/s]
+    double time_constant = 0;    ///< time constant of the lag [s]
+    double counts_per_unit = 1;  ///< resolution of the encoder [1/m or 1/rad]
+    double start_position = 0;   ///< true position at the start [m or rad]
+    double home_position = 0;    ///< position at which homing ends [m or rad]
+    double homing_velocity = 1;  ///< speed of homing [m/s or rad/s]
   };
   using Model = std::array<AxisModel, kAxisCount>;
 
   /// Model of encoders, spindle and swivel.
   struct Equipment {
-    bool absolute_encoders = true;   ///< homed from the start
-    double spindle_run_up_time = 0;  ///< [s]
+    bool absolute_encoders = true;   ///< the axes are homed from the start
+    double spindle_run_up_time = 0;  ///< time to full speed [s]
     /// Angle that the swivel's encoder reads; NaN for none [rad]
     double swivel = std::numeric_limits<double>::quiet_NaN();
-    /// Simulated time over the clock's, as far as half a core allows. Unless it is 1, every cycle takes exactly its
-    /// period, however late it begins.
+    /// Ratio of simulated time to the clock's, limited by the use of half a core. Unless it is 1, every cycle reports
+    /// exactly its nominal period, however late it begins.
     double pace = 1;
   };
 
-  /// A plane that a blank is ground down to, over its whole length: what is below it, with A at `angle`, is gone.
+  /// A plane down to which the blank is ground over its whole length.
   struct RakeFace {
-    double height = 0;  ///< above the work spindle's axis [m]
-    double angle = 0;   ///< [rad]
+    double height = 0;  ///< height of the plane above the work spindle's axis [m]
+    double angle = 0;   ///< position of A at which the plane is level [rad]
   };
   /// What the measuring probe touches: a cylinder in the work spindle.
   struct Blank {
-    double end_face = 0;  ///< X in machine coordinates [m]
-    double diameter = 0;  ///< [m]
-    double run_out = 0;   ///< total [m]
+    double end_face = 0;  ///< X of the end face in machine coordinates [m]
+    double diameter = 0;  ///< diameter of the cylinder [m]
+    double run_out = 0;   ///< total run-out [m]
     std::optional<RakeFace> rake_face;
-    double ball_diameter = 0;             ///< of the probe [m]
-    std::array<double, 3> ball_centre{};  ///< X in machine coordinates, Y and Z from the axis, the axes at zero [m]
+    double ball_diameter = 0;  ///< diameter of the probe's ball [m]
+    /// Centre of the ball with the axes at zero: X in machine coordinates, Y and Z from the work axis [m].
+    std::array<double, 3> ball_centre{};
   };
 
-  /// What the parameters describe.
+  /// The simulation that the parameters describe.
   struct Simulation {
     Model model;
     Equipment equipment;
     std::optional<Blank> blank;
   };
-  /// @param root,parameters those of the machine and of the drive.
+  /// @param root parameters of the machine. @param parameters parameters of the drive.
   /// @throw ParameterError
   static Simulation readSimulation(const ParameterReader& root, const ParameterReader& parameters);
 
@@ -97,7 +98,7 @@ class SimulatedDrive : public Drive {
 
   /// Injects a fault from the next read() on, or removes all faults (kNone); a drive fault stays until it is reset.
   /// Thread safe.
-  /// @param axis for kStuckAxis and kNanFeedback.
+  /// @param axis axis of kStuckAxis and kNanFeedback.
   void inject(Fault fault, int axis = kX);
 
  private:
@@ -112,21 +113,21 @@ class SimulatedDrive : public Drive {
   Model model_;
   Equipment equipment_;
   std::optional<Blank> blank_;
-  std::atomic<bool> power_off_{false};      ///< by powerOff(), until `enable` is false
+  std::atomic<bool> power_off_{false};      ///< powerOff() was called, and `enable` has not been false since
   std::atomic<std::uint16_t> injected_{0};  ///< fault and axis in one word
   ros::ServiceServer inject_service_;
 
-  Axes time_constant_ = Axes::Zero();    ///< of the model [s]
-  Axes counts_per_unit_ = Axes::Zero();  ///< of the model [1/m], A [1/rad]
+  Axes time_constant_ = Axes::Zero();    ///< time constants of the axes [s]
+  Axes counts_per_unit_ = Axes::Zero();  ///< resolution of the encoders [1/m], A [1/rad]
   Axes motor_ = Axes::Zero();            ///< true positions of the axes
-  Axes offset_ = Axes::Zero();           ///< of the encoders' readings
-  bool probe_near_ = false;              ///< as near to the blank as a contact that flickers is made
+  Axes offset_ = Axes::Zero();           ///< true positions less the encoders' readings
+  bool probe_near_ = false;              ///< the probe is so near to the blank that its contact may flicker
   bool home_was_commanded_ = false;
   double spindle_speed_ = 0;       ///< fraction of full speed
-  ros::Duration ahead_;            ///< time of the clock that the cycles since the last rest are to take
-  std::int64_t processor_ns_ = 0;  ///< time that the thread had used at the last rest
+  ros::Duration ahead_;            ///< time by the clock for the cycles since the last rest
+  std::int64_t processor_ns_ = 0;  ///< processor time of the thread at the last rest
   DriveStatus status_;
-  DriveCommand command_;  ///< as last written
+  DriveCommand command_;  ///< last command written
 };
 
 }  // namespace grinder

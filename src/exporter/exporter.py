@@ -1,9 +1,9 @@
 #!@PYTHON_EXECUTABLE@
 """Shows one grinder to Prometheus; see docs/shop.md. It reads topics and files, and has no way to ask the grinder for anything.
 
-It is no ROS node. One of rospy has two services of its log and an XML-RPC server, with disable_rosout too, and hears nothing more
-once the master has been restarted. This program asks the master where the grinder is, and the grinder for its topics, again
-whenever a connection ends. It registers nothing, and listens on no port but that for Prometheus."""
+It is not a ROS node. A node of rospy has two logging services and an XML-RPC server, even with disable_rosout, and hears nothing
+more after a restart of the master. This program asks the master for the grinder's address, and the grinder for its topics, and
+repeats this whenever a connection ends. It registers nothing, and listens only on the port for Prometheus."""
 
 import argparse
 import copy
@@ -31,15 +31,15 @@ from flute_grinder import job
 from flute_grinder.msg import GrindActionFeedback, GrinderState, Reason
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, InfoMetricFamily
 
-CALLER = '/flute_grinder_exporter'  # what the master and the grinder are told; not a node
-SILENCE = 5  # [s] after which one that says something ten times a second does not answer
-WINDOW = 60  # [s] over which the worst figure is shown: longer than Prometheus leaves between two scrapes
-LONGEST = 1 << 18  # [bytes] of a message
+CALLER = '/flute_grinder_exporter'  # name given to the master and the grinder; not a node
+SILENCE = 5  # [s] of silence after which a peer that sends ten times a second counts as lost
+WINDOW = 60  # [s] over which the worst figure is shown: longer than the time between two scrapes
+LONGEST = 1 << 18  # longest message [bytes]
 RECORD = re.compile(r'\d{10}_\d{8}T\d{6}\.\d{3}Z\.json')
 
 
 def constants(kind):
-    """Names of a message's constants by their values; of several lists, the first."""
+    """The names of a message's constants by their values; of several lists with the same values, the first list."""
     names = {}
     for name, value in vars(kind).items():
         if name.isupper():
@@ -52,7 +52,7 @@ FAULTS = [*range(Reason.POSITION, Reason.INTERLOCK + 1), Reason.SLOW]  # reasons
 
 
 def say(what, error):
-    """In one piece, since several threads do."""
+    """Writes a line to stderr in one piece, because several threads do."""
     sys.stderr.write('%s: %s\n' % (what, error))
 
 
@@ -67,7 +67,7 @@ def read(stream):
 def messages(node, topic, kind, silence):
     """The messages of a node's topic, until the connection ends. Raises exceptions of many kinds.
 
-    `silence`: how long it may say nothing [s]; None for ever."""
+    `silence`: longest time without a message [s]; None for no limit."""
     with xmlrpc.client.ServerProxy(rosgraph.Master(CALLER).lookupNode(node)) as server:
         code, text, protocol = server.requestTopic(CALLER, topic, [['TCPROS']])
     if code != 1:
@@ -91,7 +91,7 @@ def listen(node, topic, kind, silence, hear):
             for message in messages(node, topic, kind, silence):
                 said = ''
                 hear(message)
-        # Whatever has happened to the node, the master or the connection, this goes on.
+        # The loop goes on whatever has happened to the node, the master or the connection.
         except Exception as error:
             if str(error) != said:
                 say(topic, error)
@@ -101,7 +101,7 @@ def listen(node, topic, kind, silence, hear):
 
 
 def tool_text(cutter):
-    """As `grind history` has it."""
+    """The tool in words, as in `grind history`."""
     teeth = len(cutter.tooth_angles)
     return 'D %g mm, cone %g deg, spiral %g deg, rake %g deg, %d %s' % (
         cutter.end_diameter * 1e3, *map(math.degrees, (cutter.cone_angle, cutter.spiral_angle, cutter.rake_angle)), teeth,
@@ -109,7 +109,9 @@ def tool_text(cutter):
 
 
 def like(value, model):
-    """Whether a value of a JSON file has the type of a model, or is of it, with the same keys; numbers not negative, and finite."""
+    """Whether a value from JSON is like a model: an instance of it if it is a type; else with the same keys and types of values.
+
+    Numbers must be finite and not negative."""
     if isinstance(model, type):
         return isinstance(value, model)
     if isinstance(model, dict):
@@ -120,10 +122,10 @@ def like(value, model):
 
 
 class Records:
-    """What the records of a folder add up to, with those that are no longer there.
+    """The sums over all records of a folder, including records since removed.
 
-    The node removes the oldest. Counters that fell by these would make Prometheus count all the others once more. So the sums are
-    kept in a file of the same folder, with the names of the records that are in them."""
+    The node removes the oldest records. If the counters fell with them, Prometheus would count all others again. So the sums are
+    kept in a file of the same folder, with the names of the records counted."""
 
     def __init__(self, folder):
         self.folder = pathlib.Path(folder)
@@ -140,7 +142,7 @@ class Records:
             say(self.file, 'the counters begin with the records that are there: %s' % error)
 
     def kept(self):
-        """The sums in the file, and the records that are in them."""
+        """The sums in the file, and the names of the records counted."""
         # A FIFO would block its reader.
         if not stat.S_ISREG(self.file.stat().st_mode):
             raise OSError('no regular file')
@@ -153,28 +155,28 @@ class Records:
         return kept['sums'], set(kept['counted'])
 
     def update(self):
-        """Adds the records that are new."""
+        """Adds the new records."""
         try:
             names = self.names()
         except FileNotFoundError:
-            return  # before the first job
+            return  # no folder before the first job
         if names <= self.counted:
             return
         entries = list(self.judged(names - self.counted))
-        # One that cannot be read is not tried again.
+        # A record that cannot be read is not tried again.
         self.counted = names
         for entry in entries:
             before = copy.deepcopy(self.sums)
             try:
                 self.add(entry)
-            # A file of this name may have anything in it.
+            # A file with such a name may contain anything.
             except Exception as error:
                 self.sums = before
                 say(self.folder / entry['name'], 'not counted: %r' % error)
         self.save()
 
     def names(self):
-        """Of the records. Says once what is skipped."""
+        """The names of the records. Reports each skipped file once."""
         named = [file for file in os.scandir(str(self.folder)) if RECORD.fullmatch(file.name)]
         names = {file.name for file in named if file.is_file(follow_symlinks=False)}
         others = {file.name for file in named} - names
@@ -184,7 +186,7 @@ class Records:
         return names
 
     def judged(self, names):
-        """What `grind history` lists of records, the oldest first."""
+        """The entries of `grind history` for records, the oldest first."""
         with tempfile.TemporaryDirectory() as folder:
             for name in names:
                 try:
@@ -215,7 +217,7 @@ class Records:
     def save(self):
         new = self.file.with_suffix('.new')
         try:
-            # What a power failure has left; and what else has the name is neither waited for nor written into.
+            # Removes a file that a power failure left, or anything else of this name, such as a FIFO, which must not be opened.
             if os.path.lexists(str(new)):
                 new.unlink()
             with new.open('x') as file:
@@ -239,16 +241,16 @@ gauge, counter = (functools.partial(metric, kind) for kind in (GaugeMetricFamily
 
 
 class Grinder:
-    """What is known of a grinder; a collector of Prometheus' client."""
+    """The known state of a grinder; a collector of Prometheus' client."""
 
     def __init__(self, records):
         self.records = records
         self.scraping = threading.Lock()
         self.state = None
-        self.progress = -SILENCE, 0  # when, and which fraction of the job
-        self.reports = ()  # when, and {(status, key): figure}; of a status itself the key is 'level'
+        self.progress = -SILENCE, 0  # time, and fraction of the job
+        self.reports = ()  # time, and {(status, key): figure}; the key 'level' is the status itself
         self.cycles = self.late = 0
-        self.faults = {REASONS[kind]: 0 for kind in FAULTS}  # shown before the first, which Prometheus would not count
+        self.faults = {REASONS[kind]: 0 for kind in FAULTS}  # 0 first, or Prometheus would not count the first
 
     def hear_state(self, message):
         before, self.state = self.state, message
@@ -265,7 +267,7 @@ class Grinder:
             return
         now, report = time.monotonic(), {}
         for status in message.status:
-            name = status.name.split(': ')[-1]  # after the node's
+            name = status.name.split(': ')[-1]  # name without the node's
             report[name, 'level'] = status.level
             report.update(((name, item.key), item.value) for item in status.values)
         self.reports = tuple(kept for kept in self.reports if kept[0] > now - WINDOW) + ((now, report),)
@@ -360,7 +362,7 @@ def arguments():
 def main():
     given = arguments()
     os.nice(10)  # the grinder's own programs come first
-    # Of all that is asked of others, and of a client that asks nothing.
+    # Timeout of all requests, and of a client of Prometheus' port that sends nothing.
     socket.setdefaulttimeout(SILENCE)
     node = rosgraph.names.script_resolve_name('exporter', given.node)
     home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')

@@ -8,9 +8,9 @@
 
 namespace ros::serialization {
 
-/// Reads the id of a goal, or of the goals to cancel. A stamp more than a minute ahead of the system clock is read as
-/// the time now: actionlib adds a time-out to it, which throws near the end of ros::Time's range, and a cancel stamped
-/// later than the goals to come would cancel all of them. Otherwise identical to the generated one. Every file that
+/// The serializer of a goal's id or of a cancel. A stamp more than a minute ahead of the system clock is read as the
+/// present time: actionlib adds a timeout to it, which throws near the end of ros::Time's range, and a cancel stamped
+/// in the future would cancel all goals until then. Otherwise identical to the generated serializer. Every file that
 /// reads or writes messages must see it: CMakeLists.txt includes it in all files of the node.
 template <>
 struct Serializer<actionlib_msgs::GoalID_<std::allocator<void>>> {
@@ -24,7 +24,7 @@ struct Serializer<actionlib_msgs::GoalID_<std::allocator<void>>> {
 
   template <typename Stream>
   static void read(Stream& stream, GoalID& id) {
-    constexpr double ahead = 60;  // [s]
+    constexpr double ahead = 60;  // longest time ahead of the clock [s]
     stream.next(id.stamp);
     stream.next(id.id);
     const WallTime now = WallTime::now();

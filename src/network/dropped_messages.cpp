@@ -26,7 +26,7 @@ void setOnDropped(const std::string& topic, OnDropped on_dropped) {
 }
 
 void reportDropped(const std::string& topic, std::uint32_t length, std::vector<std::uint8_t> head) {
-  // Held while it is called, so that it is not called after it was replaced.
+  // Held during the call, so that a handler is not called after it was replaced.
   const std::lock_guard<std::mutex> lock(handlers().mutex);
   const auto found = handlers().of_topics.find(topic);
   if (found != handlers().of_topics.end() && found->second) found->second(length, std::move(head));

@@ -11,7 +11,7 @@ namespace grinder {
 
 namespace {
 
-/// roscpp ends the program by a trap for a master that it cannot read.
+/// Requires a valid name of the master, because roscpp ends the program with a trap for a name that it cannot read.
 void requireMaster(int argc, char** argv) {
   constexpr const char* argument = "__master:=";
   std::string name = "ROS_MASTER_URI";
@@ -31,7 +31,8 @@ void requireMaster(int argc, char** argv) {
 
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options) {
   requireMaster(argc, argv);
-  // With a log file named, none is looked for; it is never opened. First, so that one on the command line counts.
+  // With a named log file, which is never opened, roscpp makes no folder. First, so that a name on the command line
+  // wins.
   static char no_log[] = "__log:=/dev/null";
   std::vector<char*> arguments{no_log};
   arguments.insert(arguments.end(), argv, argv + argc);

@@ -1,7 +1,7 @@
 /// @file
 /// Answers ~get_loggers, which every roscpp node serves. With the log4cxx of Debian 12, rosconsole's own answer frees
-/// what it lists, and the second call ends the process. This definition overrides the library's own in the programs
-/// that it is linked into.
+/// the loggers that it lists, and the second call ends the process. This definition overrides the library's in the
+/// programs that link it.
 
 #include <ros/console.h>
 #include <ros/console_impl.h>

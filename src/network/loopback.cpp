@@ -1,8 +1,8 @@
 /// @file
-/// Keeps a roscpp node's servers on loopback. roscpp binds those of topics and services to loopback when ROS_IP or
-/// ROS_HOSTNAME names it, but that of the XML-RPC API always to all interfaces, where anyone could shut the node down.
-/// This bind() overrides the C library's, and applies the same rule to every server. Preloaded as a library, it does
-/// the same for other nodes.
+/// Keeps a roscpp node's servers on loopback. If ROS_IP or ROS_HOSTNAME names loopback, roscpp binds the servers of
+/// topics and services to it, but the XML-RPC server always to all interfaces, where anyone could shut the node down.
+/// This bind() overrides the C library's, and binds every server to loopback then. Preloaded as a library, it protects
+/// other nodes too.
 
 #include "flute_grinder/network/own_address.h"
 
@@ -22,7 +22,7 @@ bool loopbackOnly() {
   return host && grinder::isLoopbackName(host);
 }
 
-/// An address with loopback instead of all interfaces.
+/// An address, with loopback in place of all interfaces.
 sockaddr_storage onLoopback(const sockaddr* address, socklen_t length) {
   sockaddr_storage local{};
   std::memcpy(&local, address, length);

@@ -19,7 +19,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 
 constexpr std::chrono::seconds kInterval(1);
-constexpr int kAttempts = 5;  ///< at a list of publishers that keeps growing
+constexpr int kAttempts = 5;  ///< attempts at a list of publishers that keeps growing
 
 XmlRpcValue listOf(const std::vector<XmlRpcValue>& values) {
   XmlRpcValue list;
@@ -53,7 +53,7 @@ std::string ownUri() { return ros::XMLRPCManager::instance()->getServerURI(); }
 }  // namespace
 
 MasterWatch::MasterWatch(std::vector<std::string> services) : services_(std::move(services)) {
-  // Every roscpp node has these.
+  // The services of every roscpp node.
   for (const char* service : {"/get_loggers", "/set_logger_level"}) {
     services_.push_back(ros::this_node::getName() + service);
   }
@@ -94,7 +94,8 @@ void MasterWatch::checkMaster() {
 }
 
 bool MasterWatch::registerAgain() {
-  // Topics first, since others wait for them. checkMaster() looks for the last service: if it is there, so is the rest.
+  // Topics first, because other nodes wait for them. checkMaster() looks for the last service: if it is there, all the
+  // rest is too.
   return registerPublications() && registerSubscriptions() && registerServices();
 }
 
@@ -129,8 +130,8 @@ bool MasterWatch::registerSubscriptions() {
 }
 
 bool MasterWatch::registerSubscription(const std::string& topic, const std::string& type, const Uris& connected) {
-  // Keep connections to publishers that the new master does not know yet. From now on the master reports others by
-  // itself, but passing on its list undoes any report that arrived meanwhile; so repeat while the list grows.
+  // Keep connections to publishers that the new master does not know yet. From now on the master reports new publishers
+  // by itself, but its list passed on here overrides any report that arrived meanwhile; so repeat while the list grows.
   Uris known = connected;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     auto publishers = callMaster("registerSubscriber", {topic, type, ownUri()});

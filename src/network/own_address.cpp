@@ -13,7 +13,7 @@ namespace grinder {
 
 namespace {
 
-/// Of IPv4, in the host's byte order.
+/// An IPv4 address in the host's byte order.
 in_addr_t addressOf(const addrinfo& found) {
   return ntohl(reinterpret_cast<const sockaddr_in*>(found.ai_addr)->sin_addr.s_addr);
 }
@@ -31,7 +31,7 @@ bool isEveryAddress(const addrinfo& found) {
   return found.ai_family == AF_INET ? addressOf(found) == INADDR_ANY : IN6_IS_ADDR_UNSPECIFIED(&address6Of(found));
 }
 
-/// As roscpp decides it.
+/// Whether roscpp uses IPv6.
 bool usesIpv6() {
   const char* value = std::getenv("ROS_IPV6");
   return value && std::string(value) == "on";
@@ -63,7 +63,7 @@ std::string ownAddressRefusal() {
   if (error != 0) return std::string(variable) + " = " + name + " has no address: " + gai_strerror(error) + allowed;
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> found(list, freeaddrinfo);
   if (isEveryAddress(*found)) return std::string(variable) + " = " + name + " is every address" + allowed;
-  // Many a computer has its own name for loopback in /etc/hosts, and others still reach it by that name.
+  // /etc/hosts often maps the host's own name to loopback; other computers still reach it by that name.
   if (!isLoopback(*found) || name == ownHostName()) return "";
   return std::string(variable) + " = " + name + " is loopback in words that ROS does not know" + allowed;
 }

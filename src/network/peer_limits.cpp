@@ -5,7 +5,7 @@
 #include <sys/socket.h>
 
 /// Overrides the C library's accept: a connection over the limit is closed before anything is read from it. Its
-/// descriptor is returned all the same, since roscpp stops listening for a while after an error.
+/// descriptor is returned all the same, because roscpp stops listening for a while after an error.
 extern "C" int accept(int fd, sockaddr* address, socklen_t* length) {
   using Accept = int (*)(int, sockaddr*, socklen_t*);
   static const auto next = reinterpret_cast<Accept>(grinder::originalSymbol("accept"));

@@ -1,7 +1,7 @@
 /// @file
-/// Makes connections between nodes without delay. roscpp looks for new work of its XML-RPC thread only 10 times a
-/// second, and the subscriber of a topic needs that three times until it is connected. This definition overrides the
-/// library's own in the programs that it is linked into.
+/// Makes connections between nodes without delay. roscpp's XML-RPC thread looks for new work only 10 times a
+/// second, and a subscriber needs three such looks until it is connected. This definition overrides the library's in
+/// the programs that link it.
 
 #include "network/original_symbol.h"
 
@@ -11,7 +11,7 @@
 
 namespace XmlRpc {
 
-/// Serves requests for a time. @param duration [s]
+/// Serves requests for a while. @param duration [s]
 void XmlRpcServer::work(double duration) {
   using Work = void (*)(XmlRpcServer*, double);
   static const auto next = reinterpret_cast<Work>(grinder::originalSymbol("_ZN6XmlRpc12XmlRpcServer4workEd"));

@@ -12,7 +12,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 
 constexpr std::chrono::seconds kTimeout(1);
-constexpr double kSlice = 0.02;  ///< between looks at `stop` [s]
+constexpr double kSlice = 0.02;  ///< time between looks at `stop` [s]
 
 /// The value of a ROS API response [1, text, value]; nothing if it is malformed or reports an error.
 std::optional<XmlRpcValue> valueOf(XmlRpcValue& answer) {

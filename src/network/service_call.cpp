@@ -35,8 +35,8 @@ void ServiceCall::close() {
 }
 
 void ServiceCall::run() {
-  // Persistent, since the server closes any other connection after its answer, and roscpp may see the end of the
-  // connection before it reads the answer (ros_comm #1976).
+  // Persistent, because the server closes any other connection after its answer, and roscpp may see the close before it
+  // reads the answer (ros_comm #1976).
   const auto link = ros::ServiceManager::instance()->createServiceServerLink(name_, true, md5sum_, md5sum_, {});
   bool wanted = false;
   {

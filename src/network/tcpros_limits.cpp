@@ -1,7 +1,7 @@
 /// @file
-/// Limits for connections of topics and services. roscpp allocates whatever length a peer announces, up to 1 GB, and
-/// copies it for each callback: a client with a wrong loop would take the computer's memory, and with it the job. These
-/// definitions override the library's own in the node's program.
+/// Limits for connections of topics and services. roscpp allocates any length that a peer announces, up to 1 GB, and
+/// copies it for each callback: a client with a bug could exhaust the computer's memory and end the job. These
+/// definitions override the library's in the node's program.
 
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
@@ -26,10 +26,10 @@ using grinder::originalSymbol;
 
 namespace {
 
-constexpr std::uint32_t kPiece = 16384;  ///< [bytes]
+constexpr std::uint32_t kPiece = 16384;  ///< length to skip at a time [bytes]
 
-/// Reads bytes and throws them away.
-/// @param then called after the last of them, unless the connection ends before.
+/// Reads bytes and discards them.
+/// @param then called after the last byte, unless the connection ends before.
 void skip(const ros::ConnectionPtr& connection, std::uint32_t size, const std::function<void()>& then) {
   if (size == 0) return then();
   connection->read(std::min(size, kPiece),
@@ -42,8 +42,8 @@ void skip(const ros::ConnectionPtr& connection, std::uint32_t size, const std::f
 
 namespace ros {
 
-/// A publisher has announced the length of its next message. One that is too long is skipped: the connection stays, so
-/// that what follows arrives. roscpp never makes a connection again that its subscriber has closed.
+/// Called when a publisher has announced the length of its next message. A message that is too long is skipped, and the
+/// connection stays, so that later messages arrive: roscpp never reopens a connection that its subscriber has closed.
 void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
                                              const boost::shared_array<std::uint8_t>& buffer, std::uint32_t size,
                                              bool success) {
@@ -70,7 +70,7 @@ void TransportPublisherLink::onMessageLength(const ConnectionPtr& connection,
   });
 }
 
-/// Reads a header, a request, or a message of the announced length; drops the connection if that is too long.
+/// Reads a header, a request, or a message of the announced length; drops the connection if the length is too large.
 void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   using Read = void (*)(Connection*, uint32_t, const ReadFinishedFunc&);
   static const auto next = reinterpret_cast<Read>(originalSymbol(
@@ -83,8 +83,8 @@ void Connection::read(uint32_t size, const ReadFinishedFunc& finished) {
   }
 }
 
-/// Opens the UDP port, which roscpp polls but never reads: a single datagram, as of a port scan, would keep its thread
-/// busy for ever.
+/// Opens the UDP port, which roscpp polls but never reads: a single datagram, as from a port scan, would keep its
+/// thread busy for ever.
 bool TransportUDP::createIncoming(int port, bool is_server) {
   using Create = bool (*)(TransportUDP*, int, bool);
   static const auto next = reinterpret_cast<Create>(originalSymbol("_ZN3ros12TransportUDP14createIncomingEib"));

@@ -12,9 +12,9 @@
 
 namespace grinder {
 
-/// An action server as actionlib::ActionServer, but for two things: its owner subscribes to the cancels, which may need
-/// another thread, as roscpp reads an empty message twice, from freed memory, for a topic that is subscribed to twice;
-/// and the result says why a goal was canceled by the stamp of an earlier cancel.
+/// An action server like actionlib::ActionServer, with two differences. Its owner subscribes to the cancels, which may
+/// need another thread: with two subscribers to a topic, roscpp reads an empty message twice, from freed memory. And
+/// the result says why a goal was canceled by the stamp of an earlier cancel.
 template <typename ActionSpec>
 class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
  public:
@@ -23,7 +23,7 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
   using Result = typename Base::Result;
   using ActionResult = typename Base::ActionResult;
 
-  /// @param nh whose queue the goals' callbacks come from. @param name of the action.
+  /// @param nh handle whose queue takes the goals' callbacks. @param name name of the action.
   /// @param recalled completes the result of a goal that was canceled before it was received, if it has no reason yet.
   ActionServer(const ros::NodeHandle& nh, const std::string& name, std::function<void(GoalHandle)> on_goal,
                std::function<void(GoalHandle)> on_cancel, std::function<void(Result&, const std::string&)> recalled)

@@ -9,10 +9,10 @@ namespace grinder {
 namespace {
 
 constexpr int kSignals[]{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
-constexpr int kMaxChecks = 1000;                   ///< of the loop's status, before giving up
-constexpr timespec kCheckInterval{0, 10'000'000};  ///< [s, ns]
-/// The telemetry publishes every 0.05 s; the axes are off by then.
-constexpr timespec kReportTime{0, 200'000'000};  ///< [s, ns]
+constexpr int kMaxChecks = 1000;                   ///< checks of the loop's status before giving up
+constexpr timespec kCheckInterval{0, 10'000'000};  ///< interval between checks [s, ns]
+/// Time for the telemetry, which publishes every 0.05 s, after the axes are off.
+constexpr timespec kReportTime{0, 200'000'000};  ///< 0.2 s [s, ns]
 
 std::atomic<ControlLoop*> guarded{nullptr};
 

@@ -11,7 +11,7 @@ namespace grinder {
 /// @param loop running; must outlive endCrashGuard().
 void stopAxesOnCrash(ControlLoop& loop);
 
-/// From now on a crash ends the process at once; to be called once the loop has stopped.
+/// Ends the guard: from now on a crash ends the process at once. To be called once the loop has stopped.
 void endCrashGuard();
 
 }  // namespace grinder

@@ -13,10 +13,10 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 constexpr double kPercent = 0.01;
-constexpr int kSetpointsOfPast = 8;  ///< on which acceleration and jerk at a pair end depend
+constexpr int kSetpointsOfPast = 8;  ///< setpoints on which acceleration and jerk at the end of a pair depend
 constexpr std::array<const char*, 4> kQuantityNames{"position", "velocity", "acceleration", "jerk"};
 
-/// For a quantity with upper thresholds; NaN exceeds them all.
+/// The level of a quantity with upper thresholds; NaN exceeds both.
 unsigned char levelAbove(double value, const DiagnosticLevels& levels) {
   if (!(value <= levels.error)) return DiagnosticStatus::ERROR;
   return value <= levels.warn ? DiagnosticStatus::OK : DiagnosticStatus::WARN;
@@ -28,7 +28,7 @@ unsigned char levelBelow(double value, const DiagnosticLevels& levels) {
 
 std::string joint(int axis) { return kJointNames[static_cast<std::size_t>(axis)]; }
 
-/// What is kept on disk. @param error why it is not; empty if it is.
+/// Reports whether data are kept on disk. @param error why not; empty if they are.
 void reportKept(Diagnostics::Status& status, const std::string& error, unsigned char level) {
   if (error.empty()) {
     status.summary(DiagnosticStatus::OK, "kept");
@@ -37,7 +37,7 @@ void reportKept(Diagnostics::Status& status, const std::string& error, unsigned 
   }
 }
 
-/// @param of what they are, in lower case.
+/// @param of name of the durations, in lower case.
 void addDurations(Diagnostics::Status& status, const std::string& of, const Durations& durations) {
   status.add("Median " + of + " [s]", durations.quantile(0.5));
   status.add("99 % " + of + " [s]", durations.quantile(0.99));
@@ -122,7 +122,7 @@ void Diagnostics::addSetpoint(const Setpoint& setpoint, const Axes& command) {
   for (int i = 0; i < kAxisCount; ++i) {
     updateMax(limits_.use[0][i], positionUse(i, command[i]));
     updateMax(limits_.use[1][i], std::abs(limit_check_.velocity()[i]) / limits.max_velocity[i]);
-    if (setpoint.cycle % 2 != 0) continue;  // within a pair the odd and even steps alternate
+    if (setpoint.cycle % 2 != 0) continue;  // within a pair, odd and even steps alternate
     updateMax(limits_.use[2][i], std::abs(limit_check_.acceleration()[i]) / limits.max_acceleration[i]);
     updateMax(limits_.use[3][i], std::abs(limit_check_.jerk()[i]) / limits.max_jerk[i]);
   }

@@ -34,7 +34,7 @@ class Diagnostics {
 
   /// Adds the sample of a cycle. To be called for every cycle, in order.
   void add(const CycleSample& sample);
-  /// Sets what is wrong with the journal; empty if nothing.
+  /// Sets the error of the journal; empty for none.
   void setJournalError(const std::string& error) { journal_error_ = error; }
   /// Sets why the records of jobs are not kept; empty if they are.
   void setHistoryError(const std::string& error) { history_error_ = error; }
@@ -54,19 +54,19 @@ class Diagnostics {
   struct Loop {
     std::uint64_t cycles = 0;
     std::uint64_t late = 0;
-    double longest = 0;  ///< period [s]
-    double total = 0;    ///< [s]
-    Durations busy;      ///< of the cycles, without the wait
-    Durations delay;     ///< of the wake-ups: what a period is longer than nominal
+    double longest = 0;  ///< longest period [s]
+    double total = 0;    ///< sum of the periods [s]
+    Durations busy;      ///< durations of the cycles, without the wait
+    Durations delay;     ///< delays of the wake-ups: period less nominal period
   };
   struct Drive {
-    double feedback_age = 0;  ///< longest [s]
+    double feedback_age = 0;  ///< longest age of the feedback [s]
     bool emergency_stop = false;
     bool fault = false;
     FaultText fault_text;
     Interlock interlock = Interlock::kNone;
     LoopFault loop_fault;
-    Axes position = Axes::Zero();  ///< the latest, or one that was not finite
+    Axes position = Axes::Zero();  ///< the latest position, or one that was not finite
   };
   struct Limits {
     std::uint64_t setpoints = 0;
@@ -74,7 +74,7 @@ class Diagnostics {
   };
   struct Buffer {
     bool used = false;
-    std::uint32_t min = 0;  ///< commands
+    std::uint32_t min = 0;  ///< smallest fill [commands]
   };
 
   void addDrive(const CycleSample& sample);
@@ -90,16 +90,16 @@ class Diagnostics {
   CycleSample last_;
   std::string journal_error_, history_error_;
   LimitCheck limit_check_;
-  std::uint64_t next_setpoint_ = 0;  ///< cycle number
+  std::uint64_t next_setpoint_ = 0;  ///< cycle number of the next setpoint
   int unknown_setpoints_ = 0;        ///< setpoints to come whose history is incomplete
-  std::uint32_t fullest_ = 0;        ///< fill since power-on
-  std::uint64_t samples_lost_ = 0;   ///< as of the last report
-  std::uint64_t underruns_ = 0;      ///< as of the last report
+  std::uint32_t fullest_ = 0;        ///< largest fill since power-on [commands]
+  std::uint64_t samples_lost_ = 0;   ///< count at the last report
+  std::uint64_t underruns_ = 0;      ///< count at the last report
 
-  // Each since its last report.
+  // Values since each one's last report.
   Loop loop_;
   Drive drive_;
-  Axes following_error_ = Axes::Zero();  ///< largest [m], A [rad]
+  Axes following_error_ = Axes::Zero();  ///< largest following errors [m], A [rad]
   Limits limits_;
   Buffer buffer_;
 };

@@ -7,17 +7,17 @@
 
 namespace grinder {
 
-/// A thread for tasks that block on the disk, which it does one after the other. Thread safe; no call waits for a task.
+/// A thread that runs tasks that block on the disk, one after the other. Thread safe; no call waits for a task.
 class DiskThread {
  public:
   DiskThread();
   DiskThread(const DiskThread&) = delete;
   DiskThread& operator=(const DiskThread&) = delete;
-  /// Waits up to 5 s for the tasks that were posted. After that the disk is presumed dead, and the thread is left to
-  /// itself with what its tasks hold.
+  /// Waits up to 5 s for the tasks that were posted. After that the disk is presumed dead, and the thread is detached,
+  /// with all that its tasks hold.
   ~DiskThread();
 
-  /// Queues a task and returns at once. @param task must not throw, and must hold all it uses, since it may outlive
+  /// Queues a task and returns at once. @param task must not throw, and must own all it uses, because it may outlive
   /// everything else.
   void post(std::function<void()> task);
 

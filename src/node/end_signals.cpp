@@ -12,7 +12,7 @@ namespace grinder {
 namespace {
 
 constexpr std::chrono::milliseconds kLook{10};
-constexpr std::chrono::seconds kShutdown{1};  ///< at most
+constexpr std::chrono::seconds kShutdown{1};  ///< longest time for ros::shutdown()
 
 }  // namespace
 
@@ -33,7 +33,7 @@ EndAtOnce::EndAtOnce(const EndSignals& signals, std::string what)
         while (!over_) {
           if (!signals.await(kLook)) continue;
           ROS_WARN_STREAM("ended by a signal before the return of " << what);
-          // It waits for callbacks and for the master, which may hang as well.
+          // ros::shutdown() waits for callbacks and for the master, which may hang as well.
           std::thread([] {
             ros::shutdown();
             std::_Exit(0);

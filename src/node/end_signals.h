@@ -8,24 +8,25 @@
 
 namespace grinder {
 
-/// The signals that end the program: blocked in every thread, because the machine must come to rest before the process
-/// ends, and waited for.
+/// The signals that end the program. They are blocked in every thread and waited for, because the machine must come to
+/// rest before the process ends.
 class EndSignals {
  public:
-  /// Blocks them in this thread and in those that it starts from now on.
+  /// Blocks the signals in this thread and in all threads that it starts from now on.
   EndSignals();
 
-  /// Waits for one. @return whether there was one.
+  /// Waits for a signal. @return whether one came in time.
   bool await(std::chrono::milliseconds timeout) const;
 
  private:
   sigset_t signals_{};
 };
 
-/// While it exists, such a signal ends the process within a second: for what may block for ever, with the power off.
+/// While an object of this class exists, a signal of EndSignals ends the process within a second. For calls that may
+/// block for ever, with the power off.
 class EndAtOnce {
  public:
-  /// @param signals must outlive this object. @param what may block, for the log.
+  /// @param signals must outlive this object. @param what name of the call, for the log.
   EndAtOnce(const EndSignals& signals, std::string what);
   ~EndAtOnce();
 
@@ -34,10 +35,10 @@ class EndAtOnce {
   std::thread thread_;
 };
 
-/// Ends the process, as one that has failed, if it exists for a second: for what may block at the end.
+/// Ends the process with failure if an object of this class exists for a second. For calls that may block at the end.
 class EndInTime {
  public:
-  /// @param what may block, for the log.
+  /// @param what name of the call, for the log.
   explicit EndInTime(std::string what);
   ~EndInTime();
 

@@ -16,8 +16,8 @@
 
 namespace grinder {
 
-/// Publishes to tf the frames that no axis moves but a job and the work offsets set, on `tf_static`, latched, again
-/// with every change:
+/// Publishes to tf the frames that depend on the job and the work offsets, but not on the axes. They are latched on
+/// `tf_static`, and published again with every change:
 /// - `work` in the axis_x table: the cutter's small end, not turning. Here the wheel's centre is at X, D1/2 + Dw/2 + Y,
 ///   and the height of the set-up + Z, in work coordinates.
 /// - `cutter` in the chuck: it turns in `work` by -A.
@@ -27,30 +27,30 @@ namespace grinder {
 /// Not thread safe; not for the control thread.
 class Frames {
  public:
-  /// @param first_view what is shown until there is a job.
+  /// @param first_view blank and wheel shown until there is a job.
   Frames(const MachineModel& model, const FirstView& first_view);
 
-  /// From now on the frames are those of this job. Without one they are those of the first view's blank and wheel, not
-  /// swivelled, and there is no contact.
-  /// @param edges of the teeth; of one that is empty there is no contact either.
+  /// Shows the frames of a job. Without a job the frames show the blank and wheel of the first view, not swivelled and
+  /// without a contact.
+  /// @param edges edges of the teeth; a tooth with an empty edge has no contact.
   void show(std::shared_ptr<const GrindProgram> program, std::vector<GroundEdge> edges) {
     program_ = std::move(program);
     edges_ = std::move(edges);
   }
 
   /// Publishes what has changed, and the contact.
-  /// @param position of the axes in machine coordinates [m], A [rad].
-  /// @param offset of the work; one that is unknown, NaN, counts as 0 [m], A [rad].
-  /// @param tooth that is being ground; any of the job's if there is none.
-  /// @param stamp of the position.
+  /// @param position positions of the axes in machine coordinates [m], A [rad].
+  /// @param offset work offsets; an unknown one, NaN, counts as 0 [m], A [rad].
+  /// @param tooth the tooth being ground, or else any of the job's teeth.
+  /// @param stamp time of the position.
   void publish(const Axes& position, const Axes& offset, int tooth, const ros::Time& stamp);
 
  private:
-  /// What the frames on `tf_static` depend on.
+  /// The values on which the frames on `tf_static` depend.
   struct SetUp {
-    double wheel_y = 0;  ///< of the wheel's centre in `work` at Y = 0 [m]
-    double height = 0;   ///< likewise, at Z = 0 [m]
-    double swivel = 0;   ///< [rad]
+    double wheel_y = 0;  ///< Y of the wheel's centre in `work` at Y = 0 [m]
+    double height = 0;   ///< Z of the wheel's centre in `work` at Z = 0 [m]
+    double swivel = 0;   ///< angle of the swivel [rad]
     Axes offset = Axes::Zero();
 
     bool operator==(const SetUp& other) const;
@@ -67,7 +67,7 @@ class Frames {
   std::shared_ptr<const GrindProgram> program_;
   std::vector<GroundEdge> edges_;
   std::optional<SetUp> published_;
-  ros::Time contact_stamp_;  ///< of the latest
+  ros::Time contact_stamp_;  ///< stamp of the latest contact published
 };
 
 }  // namespace grinder

@@ -16,11 +16,11 @@ namespace grinder {
 
 namespace {
 
-constexpr double kPollPeriod = 0.001;             ///< [s]
-constexpr double kIdlePollPeriod = 0.02;          ///< without a goal [s]
-constexpr double kStartPollPeriod = 0.0001;       ///< while a job starts, and waits for its entry [s]
-const ros::WallDuration kPlanningInterval(0.05);  ///< between feedback messages while planning
-const ros::WallDuration kLoopTimeout(1);          ///< after which the control loop counts as hung
+constexpr double kPollPeriod = 0.001;             ///< period with a goal [s]
+constexpr double kIdlePollPeriod = 0.02;          ///< period without a goal [s]
+constexpr double kStartPollPeriod = 0.0001;       ///< period while a job starts and waits for its entry [s]
+const ros::WallDuration kPlanningInterval(0.05);  ///< time between feedback messages while planning
+const ros::WallDuration kLoopTimeout(1);          ///< time after which the control loop counts as hung
 /// How long the result waits for the last setpoints to be published and the journal to be written.
 const ros::WallDuration kEndTimeout(0.5);
 
@@ -37,7 +37,7 @@ flute_grinder::GrindResult result(int code, const std::vector<Reason>& reasons) 
   return r;
 }
 
-/// As records of jobs state it.
+/// The outcome of a job as written in its record.
 const char* outcomeOf(JobEnd end) {
   switch (end) {
     case JobEnd::kFault: return "fault";
@@ -48,7 +48,7 @@ const char* outcomeOf(JobEnd end) {
   return "done";
 }
 
-/// Why a job ended, with where it did. A setpoint that was refused has a place of its own.
+/// Why and where a job ended. A refused setpoint brings its own place.
 Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
   Reason reason;
   reason.kind = ReasonKind::kCanceled;
@@ -108,7 +108,7 @@ void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> h
     stream.next(header);
     stream.next(answer.status.goal_id);
   } catch (const ros::serialization::StreamOverrunException&) {
-    return;  // an id that is longer than any client's: the log has the message's length
+    return;  // no client has an id of this length; the message's length is in the log
   }
   answer.header.stamp = ros::Time::now();
   answer.status.status = actionlib_msgs::GoalStatus::REJECTED;
@@ -144,7 +144,7 @@ void GoalServer::onGoal(GoalHandle handle) {
     if (!goal->dry_run) {
       const std::string text = refusal(*goal, digest);
       if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
-      // The loop checks it once more when the job starts: the swivel may be turned meanwhile.
+      // The loop checks the swivel once more when the job starts: it may be turned meanwhile.
       const Swivel swivel = loop_.status().swivel;
       if (!swivel.isAt(job->process.setup_swivel)) {
         return reject(handle,
@@ -174,8 +174,8 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   if (!unknown.empty() || goal.dry_run) return unknown;
   if (!goal.discard) {
     std::string changed = tracker_.offsetRefusal(digest, offsets);
-    // A job goes on with what it began with, whatever was said then: a relief only beside edges that are where they
-    // were.
+    // A job that is continued needs only the offsets with which it began; a relief also needs edges that are still
+    // where they were.
     const bool placed = goal.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
     if (!changed.empty() || (placed && tracker_.continues(digest, offsets))) return changed;
   }
@@ -193,7 +193,7 @@ void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, co
                       ? "the grinder is being shut down"
                       : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
   }
-  // From here on to the end of the goal the offsets cannot change.
+  // From here to the end of the goal the offsets cannot change.
   Planner::Request request{job};
   const WorkOffsets offsets = offsets_.offsets();
   const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);

@@ -20,13 +20,13 @@
 
 namespace grinder {
 
-/// Serves the action `~grind`: has a goal planned, enters it in the journal, starts it, publishes it on `~job`, and
-/// reports its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or are
-/// polled. One goal at a time; any other is rejected at once.
+/// Serves the action `~grind`: has each goal planned, enters its job in the journal, starts it, publishes it on `~job`,
+/// and reports its end. Runs in its own thread, which never blocks: results from other threads arrive as callbacks or
+/// are polled. One goal at a time; any other is rejected at once.
 class GoalServer {
  public:
   /// @param private_nh the node's own namespace.
-  /// @param the rest must outlive this object.
+  /// The other parameters must outlive this object.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops, Planner& planner,
              Telemetry& telemetry, Journal& journal, OffsetServer& offsets);
   ~GoalServer();
@@ -47,14 +47,14 @@ class GoalServer {
     std::shared_ptr<PlanControl> control;
     Phase phase = Phase::kPlanning;
     std::shared_ptr<const PlannedJob> plan{};
-    std::unique_ptr<SetpointStream> stream{};  ///< of its job
-    std::uint64_t number = 0;                  ///< of its job, as counted by the loop
-    std::string journal_error{};               ///< why its job could not be entered
-    ros::SteadyTime ended{};                   ///< when the loop was seen to have finished the job
-    ros::SteadyTime last_feedback{};           ///< while planning
+    std::unique_ptr<SetpointStream> stream{};  ///< setpoints of the goal's job
+    std::uint64_t number = 0;                  ///< the loop's number for the goal's job
+    std::string journal_error{};               ///< why the job could not be entered in the journal
+    ros::SteadyTime ended{};                   ///< time at which the loop was seen to have finished the job
+    ros::SteadyTime last_feedback{};           ///< time of the last feedback while planning
   };
 
-  /// Answers a goal that was dropped for its length; in roscpp's network thread.
+  /// Answers a goal that was dropped because of its length. Called in roscpp's network thread.
   void rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const;
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
@@ -88,13 +88,13 @@ class GoalServer {
   OffsetServer& offsets_;
   ProgressTracker tracker_;
 
-  std::uint64_t cycles_ = 0;    ///< of the loop, when last seen
-  ros::SteadyTime last_cycle_;  ///< when that count was last seen to change
+  std::uint64_t cycles_ = 0;    ///< the loop's count of cycles when last seen
+  ros::SteadyTime last_cycle_;  ///< time at which `cycles_` was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
-  std::string dropped_topic_;  ///< on which goals come
-  ServedQueue thread_;         ///< whose queue those below take their callbacks from
-  ros::Publisher job_;         ///< the goal about to start; a recorder may connect to its sender too late
+  std::string dropped_topic_;  ///< topic of the goals
+  ServedQueue thread_;         ///< its queue serves the callbacks of the members below
+  ros::Publisher job_;         ///< the goal about to start, because a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;
   ros::Subscriber cancels_;
 };

@@ -20,7 +20,7 @@ namespace {
 constexpr std::chrono::seconds kStopTimeout(10);
 constexpr std::chrono::seconds kGoalEndTimeout(2);
 constexpr std::chrono::seconds kLoopEndTimeout(1);
-constexpr double kRounding = 1e-9;  ///< of a period that is the inverse of a rate
+constexpr double kRounding = 1e-9;  ///< rounding of a period that is the inverse of a rate
 
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
@@ -33,12 +33,12 @@ bool await(std::chrono::seconds timeout, Condition condition) {
   return true;
 }
 
-/// Refuses a drive whose capabilities are no figures, that cannot hold the control period, or buffers more than the
-/// loop keeps.
-/// @param drive its type. @param rate the parameter's name.
+/// Refuses a drive whose capabilities are not finite, that cannot keep the control period, or that buffers more than
+/// the loop keeps.
+/// @param drive type of the drive. @param rate name of the parameter.
 void checkCapabilities(const DriveCapabilities& can, const std::string& drive, const std::string& rate, double period) {
   std::ostringstream text;
-  // With so many digits, or the rate that is refused may look like the one that is allowed.
+  // With fewer digits a refused rate might look like the allowed one.
   text.precision(std::numeric_limits<double>::digits10);
   if (!(can.shortest_period >= 0 && std::isfinite(can.shortest_period))) {
     text << "the drive " << drive << " states a shortest_period of " << can.shortest_period << " s; allowed: 0 or more";
@@ -136,7 +136,7 @@ std::string GrinderNode::shutDown() {
   const auto or_hangs = [this](bool done) { return done || watchdog_->loopHangs(); };
   await(kStopTimeout, [&] { return or_hangs(!isPowered(loop_->status().state)); });
   await(kGoalEndTimeout, [&] { return or_hangs(!goals_->busy()); });
-  // What rviz shows must not outlive the node.
+  // The markers in rviz must not outlive the node.
   telemetry_->clearScene();
   planner_->end();
   loop_->requestEnd();
@@ -146,7 +146,7 @@ std::string GrinderNode::shutDown() {
   return hanging;
 }
 
-/// Once the loop was told to end.
+/// The function of the drive that hangs, after the loop was told to end; empty if none.
 std::string GrinderNode::hangingFunction() const {
   if (loop_->isPoweringOff()) return "powerOff()";
   if (!loop_->hasEnded()) return "read(), write() or wait()";

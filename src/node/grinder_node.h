@@ -31,15 +31,15 @@ class GrinderNode {
   /// Reads all parameters, loads and initialises the drive, and starts the control loop.
   /// @param nh the node's namespace, for robot_description and joint_states.
   /// @param private_nh the node's private namespace, for everything else.
-  /// @param plugin nothing loaded yet; must outlive this object.
+  /// @param plugin with nothing loaded yet; must outlive this object.
   /// @throw std::exception naming the parameter, plugin or joint at fault, or the owner of an atomic file.
   GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh, DrivePlugin& plugin);
   ~GrinderNode();
 
   /// Stops a running job on the path, lifts the wheel, ends the goal and switches the drive off. No job can start once
   /// this has been called.
-  /// @return the function of the drive that hangs; empty if none. If one does, its thread does not end, and the process
-  /// has to without it.
+  /// @return the function of the drive that hangs; empty if none. If one hangs, its thread does not end, and the
+  /// process must end without waiting for it.
   [[nodiscard]] std::string shutDown();
 
  private:

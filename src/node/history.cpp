@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMaxWaiting = 16;         ///< records, while the disk does not answer
-constexpr std::size_t kMostNamed = 10;  ///< of what is skipped
+constexpr int kMaxWaiting = 16;         ///< most records that wait while the disk does not answer
+constexpr std::size_t kMostNamed = 10;  ///< most names of skipped files in a message
 
-/// @param others at least one path. @throw std::runtime_error
+/// Throws an error that names the skipped files. @param others at least one path. @throw std::runtime_error
 [[noreturn]] void reportSkipped(const std::vector<std::string>& others) {
   std::string names;
   for (std::size_t i = 0; i < std::min(others.size(), kMostNamed); ++i) {
@@ -35,11 +35,11 @@ constexpr std::size_t kMostNamed = 10;  ///< of what is skipped
 
 }  // namespace
 
-/// Used only by the disk thread, except what the mutex guards.
+/// The folder of records. Used only by the disk thread, except for the members guarded by the mutex.
 struct History::Folder {
   Folder(fs::path folder_path, std::uint64_t size_limit) : path(std::move(folder_path)), limit(size_limit) {}
 
-  /// Carries out an action on the disk, and notes its error. @param drops when the action was queued.
+  /// Carries out an action on the disk, and notes its error. @param drops value of `dropped` when it was queued.
   template <typename Action>
   void attempt(std::uint64_t drops, const Action& action) {
     std::string failure;
@@ -60,12 +60,12 @@ struct History::Folder {
   const std::uint64_t limit;
   mutable std::mutex mutex;  ///< guards everything below; held only to copy
   int waiting = 0;
-  std::uint64_t dropped = 0;  ///< records given up, since too many waited
+  std::uint64_t dropped = 0;  ///< records given up because too many waited
   std::string error;
 };
 
-/// @throw std::exception if it cannot be kept, or an older one not be removed; naming what is skipped, once the limit
-/// is held.
+/// Writes a record and removes old ones down to the limit. @throw std::exception if the record cannot be written or an
+/// older one cannot be removed, or, after that, with the names of skipped files.
 void History::Folder::keep(double start, const std::string& text) const {
   fs::create_directories(path);
   const fs::path file = path / recordName(start, recordFilesIn(path));
@@ -98,7 +98,7 @@ void History::keep(double start, std::function<std::string()> text) {
   {
     const std::lock_guard<std::mutex> lock(folder_->mutex);
     if (folder_->waiting >= kMaxWaiting) {
-      // Not logged: the output may be a file on the same disk.
+      // This error is not logged, because the log may be a file on the same disk.
       folder_->error = "history " + folder_->path.string() + ": the disk does not answer";
       ++folder_->dropped;
       return;

@@ -43,7 +43,7 @@ void JobGate::close() {
 bool JobGate::cancel(const actionlib_msgs::GoalID& what) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (phase_ != Phase::kIdle && isMeantFor(what, goal_)) giveUp();
-  // A lift has no goal: a cancel that names none stops it too.
+  // A lift has no goal: a cancel that names no goal stops it too.
   return namesNone(what) || (phase_ == Phase::kStarted && canceled_);
 }
 

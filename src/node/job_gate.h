@@ -8,21 +8,21 @@
 namespace grinder {
 
 /// Arbitrates between stops and the start of a job. Before the start, a cancel prevents it and a hold makes the job
-/// begin held; later stops go to the control loop. Also between a job and a change of what it was planned with. Thread
+/// begin held; later stops go to the control loop. It also keeps a job and a change of its work offsets apart. Thread
 /// safe; its lock is held for a few instructions only.
 class JobGate {
  public:
   /// Makes a goal the one that stops apply to.
   /// @param give_up called once if the goal is canceled before its start, in the canceling thread; must not block.
-  /// @return false if the gate is shut, or while jobs are shut out.
+  /// @return false if the gate is shut, or while jobs are locked out.
   bool open(const actionlib_msgs::GoalID& goal, std::function<void()> give_up);
 
   /// Starts the goal's job unless it was canceled.
   /// @param start hands the job to the control loop; its argument says whether to begin held. Must not block.
-  /// @return whether it was called.
+  /// @return whether `start` was called.
   bool start(const std::function<void(bool held)>& start);
 
-  /// The goal has ended.
+  /// To be called when the goal has ended.
   void close();
 
   /// Cancels as actionlib defines it: without id and stamp every goal, with a stamp all goals sent up to then.
@@ -38,7 +38,7 @@ class JobGate {
   void shut();
 
   /// Lets no goal in until letJobsIn(); the calls must be paired.
-  /// @return false, and nothing is changed, if there is one already.
+  /// @return false, with nothing changed, if there is a goal already.
   bool lockOutJobs();
   void letJobsIn();
 
@@ -51,14 +51,14 @@ class JobGate {
 
   void giveUp();
 
-  mutable std::mutex mutex_;  ///< guards all below
+  mutable std::mutex mutex_;  ///< guards all members below
   Phase phase_ = Phase::kIdle;
   actionlib_msgs::GoalID goal_;
   std::function<void()> give_up_;
   bool canceled_ = false;
   bool held_ = false;
   bool shut_ = false;
-  int shut_outs_ = 0;  ///< lockOutJobs() less letJobsIn()
+  int shut_outs_ = 0;  ///< calls of lockOutJobs() less calls of letJobsIn()
 };
 
 }  // namespace grinder

@@ -14,21 +14,21 @@ namespace grinder {
 /// result is known, in either order. Not thread safe.
 class JobRecorder {
  public:
-  /// @param grinder the node's name. @param tolerances by which jobs are judged. @param history must outlive this
-  /// object.
+  /// @param grinder name of the node. @param tolerances tolerances by which jobs are judged. @param history must
+  /// outlive this object.
   JobRecorder(std::string grinder, MachineInfo machine, const Tolerances& tolerances, History& history);
   JobRecorder(const JobRecorder&) = delete;
   JobRecorder& operator=(const JobRecorder&) = delete;
-  /// Jobs that have not ended, or whose result is missing, are kept as far as they came.
+  /// Keeps the records of jobs that have not ended, or whose result is missing, as far as they came.
   ~JobRecorder();
 
   /// @param number the loop's number for the job.
   void announce(std::uint64_t number, std::shared_ptr<JobRecord> record) { jobs_[number].record = std::move(record); }
-  /// The job will not start.
+  /// Drops a job that will not start.
   void withdraw(std::uint64_t number) { jobs_.erase(number); }
   /// The record of a job that was announced and has not ended.
   JobRecord& of(std::uint64_t number) { return *jobs_.at(number).record; }
-  /// The last cycle of the job has been added.
+  /// To be called when the last cycle of the job has been added.
   void end(std::uint64_t number);
   void conclude(std::uint64_t number, const JobConclusion& conclusion);
 

@@ -11,24 +11,24 @@
 
 namespace grinder {
 
-/// How far a job has come.
+/// The progress of a job.
 struct Progress {
   std::string job_digest;            ///< see jobDigest(); empty if there has been no job
-  std::string job_name;              ///< as given in the goal, for display
-  std::string operation;             ///< as GrindJob::operationText()
-  CutterGeometry cutter;             ///< of the job, for display
-  std::vector<double> tooth_angles;  ///< of the job, for display [rad]
+  std::string job_name;              ///< name given in the goal, for display
+  std::string operation;             ///< text of GrindJob::operationText()
+  CutterGeometry cutter;             ///< cutter of the job, for display
+  std::vector<double> tooth_angles;  ///< angles of the job's teeth, for display [rad]
   bool finished = false;             ///< every pass is ground
   ToothPass next;                    ///< the first unfinished pass
-  double x = 0;                      ///< reached in its stroke, or in the last one [m]
-  std::string end;             ///< how it ended, for display; empty while it runs, and if this process ended first
-  double feed_override = 1;    ///< at which it was left, fraction
-  Wheel wheel;                 ///< as it was left
-  Axes offset = Axes::Zero();  ///< with which the job began, see RunStart [m], A [rad]
-  std::uint32_t mounting = 0;  ///< of the wheel with which the job began, see MountedWheel
-  std::uint32_t clamping = 0;  ///< of the tool in the same way, see ClampedTool
-  std::string tool_digest;     ///< as OffsetBasis::tool_digest
-  int tool_operation = 0;      ///< as OffsetBasis::operation
+  double x = 0;                      ///< X reached in the stroke of `next`, or in the last stroke [m]
+  std::string end;             ///< how the job ended, for display; empty while it runs, or if this process ended first
+  double feed_override = 1;    ///< last feed override, fraction
+  Wheel wheel;                 ///< last state of the wheel
+  Axes offset = Axes::Zero();  ///< work offsets with which the job began, see RunStart [m], A [rad]
+  std::uint32_t mounting = 0;  ///< mounting of the wheel when the job began, see MountedWheel
+  std::uint32_t clamping = 0;  ///< clamping of the tool when the job began, see ClampedTool
+  std::string tool_digest;     ///< see OffsetBasis::tool_digest
+  int tool_operation = 0;      ///< see OffsetBasis::operation
 };
 
 template <>

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLook{100};
 
-/// Waits for the ROS master. roscpp would wait by itself when it is started, but with no way to end it by a signal.
+/// Waits for the ROS master. roscpp would wait by itself when it is started, but a signal could not end that wait.
 /// @return false if a signal has ended the wait.
 bool waitForMaster(const grinder::EndSignals& signals) {
   const std::atomic<bool> never{false};
@@ -38,7 +38,7 @@ bool waitForMaster(const grinder::EndSignals& signals) {
   return true;
 }
 
-/// The address of a node by this one's name, which the master would end for this one; empty if none answers.
+/// The address of a running node of the same name, which the master would end for this one; empty if none answers.
 std::string runningNode() {
   const std::atomic<bool> never{false};
   const auto uri = grinder::callRosApi(ros::master::getHost(), ros::master::getPort(), "lookupNode",
@@ -57,7 +57,7 @@ void waitForEnd(const grinder::EndSignals& signals) {
   }
 }
 
-/// Of the node and its drive.
+/// The names of the services of the node and its drive.
 std::vector<std::string> services() {
   std::vector<std::string> names{"~set_feed_override", "~confirm_swivel", "~confirm_wheel", "~reclamped",
                                  "~jog_step",          "~set_offset",     "~touch_off",     "~hardware/inject_fault"};
@@ -83,7 +83,7 @@ class DriveCallbacks {
 
 /// @return the exit status.
 int run(const ros::NodeHandle& nh, const grinder::EndSignals& signals) {
-  // Destroyed last, so that an error is logged whatever becomes of the drive.
+  // Destroyed last, so that an error is logged even if the drive's destructor hangs.
   grinder::DrivePlugin plugin(signals);
   try {
     const DriveCallbacks callbacks;
@@ -96,7 +96,7 @@ int run(const ros::NodeHandle& nh, const grinder::EndSignals& signals) {
     ROS_FATAL_STREAM("the process ends without the return of the drive's " << hanging);
     std::_Exit(1);
   } catch (const std::exception& error) {
-    // Drives and files have their say in it.
+    // The text may come from drives and files.
     ROS_FATAL_STREAM(grinder::escaped(grinder::textOrNone(error), "\n"));
     return 1;
   }

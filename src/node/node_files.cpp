@@ -4,7 +4,7 @@ namespace grinder {
 
 namespace {
 
-/// An atomic file; if the parameter is a folder, the file in it named after the node.
+/// The path of a state file; if the parameter is a folder, of the file in it that is named after the node.
 std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
   return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
 }

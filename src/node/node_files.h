@@ -6,15 +6,15 @@
 
 namespace grinder {
 
-/// What the node keeps on disk, and reads from there.
+/// The paths of the files that the node keeps on disk.
 struct NodeFiles {
   std::string journal, offsets;
-  std::string history;     ///< the folder of records
-  std::string tolerances;  ///< the file by which jobs are judged
+  std::string history;     ///< folder of the records
+  std::string tolerances;  ///< file of the tolerances by which jobs are judged
 };
 
 /// Reads the parameters journal, offsets, history and tolerances.
-/// @param node the node's full name, after which files are named where only their folder is given.
+/// @param node full name of the node, which names the files if only their folder is given.
 /// @throw ParameterError
 NodeFiles readNodeFiles(const ParameterReader& parameters, const std::string& node);
 

@@ -14,7 +14,7 @@ namespace grinder {
 
 namespace {
 
-/// Between attempts to save what could not be written [s].
+/// Time between attempts to save after an error [s].
 constexpr double kSavePeriod = 1;
 
 bool isDigest(const std::string& text) {
@@ -43,7 +43,7 @@ std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
   return "";
 }
 
-/// Why a request is wrong at any time; empty if it is not.
+/// Why a request is wrong whatever the state; empty if it is right.
 template <typename Request>
 std::string requestRefusal(const Request& request) {
   if (request.axis >= kAxisCount) return axisRefusal(request.axis);
@@ -68,7 +68,7 @@ std::string wheelRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis
          " once it is mounted: grind confirm-wheel JOB";
 }
 
-/// Sets an offset, and what hangs on it. @param offset all but its mounting.
+/// Sets an offset and the state that depends on it. @param offset the offset, without its mounting.
 void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
   offset.mounting = offsets.wheel.mounting;
   const OffsetBasis& basis = offset.basis;
@@ -142,7 +142,7 @@ bool OffsetServer::onConfirmWheel(flute_grinder::ConfirmWheel::Request& request,
         if (isMounted(store_.offsets().wheel, job) && !request.again) return "";
         const auto mount = [&job](WorkOffsets& offsets) {
           MountedWheel& wheel = offsets.wheel;
-          // What was set before any wheel was confirmed is known by its own wheel.
+          // Offsets set before any wheel was confirmed carry their own wheel.
           const std::uint32_t mounting = wheel.mounting + (wheel.isKnown() ? 1 : 0);
           wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, mounting};
         };
@@ -167,7 +167,7 @@ bool OffsetServer::onReclamped(flute_grinder::Reclamped::Request& request,
   return true;
 }
 
-/// Acts while no job is planned or runs. @param act why it has not; empty if it has.
+/// Acts while no job is planned or running. @param act action that returns why it failed; empty if it succeeded.
 template <typename Response>
 void OffsetServer::withoutJob(const std::function<std::string()>& act, Response& response) {
   std::string refused;
@@ -183,7 +183,7 @@ void OffsetServer::withoutJob(const std::function<std::string()>& act, Response&
   response.message = refused;
 }
 
-/// Changes what is kept. @param done for the log. @return why it was not changed; empty if it was.
+/// Changes the store. @param done text for the log. @return why it was not changed; empty if it was.
 std::string OffsetServer::changed(const OffsetStore::Change& change, const std::string& done) {
   try {
     store_.change(change);
@@ -226,7 +226,7 @@ void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
   if (job.operation > 0) return;
   note([=](WorkOffsets& offsets) {
     const bool goes_on = !whole && offsets.tool.digest == job.tool_digest;
-    // Half of the flutes stand where A was before.
+    // The flutes ground before A was homed may have another reference than the rest.
     if (!whole && offsets.tool.unknown == TeethUnknown::kHomed) return;
     offsets.tool = {job.tool_digest, job.job_name, goes_on ? offsets.tool.ground : 0, {}, offsets.tool.clamping};
   });
@@ -260,8 +260,8 @@ std::string OffsetServer::setProbed(int axis, double value, const WorkOffsets& b
   return answered.get();
 }
 
-/// @param offset all but its value and its time. @param large_change whether it is refused because it would change by
-/// too much.
+/// @param offset the offset, without its value and time. @param large_change whether it was refused because it would
+/// change by too much.
 /// @return why the offset was not set; empty if it was.
 std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
                                         bool& large_change) {

@@ -31,28 +31,31 @@ class OffsetServer {
 
   /// The work offsets. Thread safe; never waits for the disk.
   WorkOffsets offsets() const { return store_.offsets(); }
-  /// As OffsetStore::unknown().
+  /// Why the offsets of some axes are unknown, see OffsetStore::unknown().
   std::string unknown() const { return store_.unknown(); }
 
-  // What happens to the tool in the collet. In force at once, and on the disk soon; thread safe, without a wait.
+  // Notes of what happens to the tool in the collet. They are in force at once and on the disk soon. Thread safe; they
+  // never wait.
 
-  /// The axes are being homed: A may get another reference.
+  /// Notes that the axes are being homed: A may get another reference.
   void noteHoming();
-  /// A job has begun. @param whole at its first pass.
+  /// Notes that a job has begun. @param whole whether it began at its first pass.
   void noteGrinding(const OffsetBasis& job, bool whole);
-  /// What the journal has as finished; again, if the process ended before that was on the disk.
+  /// Notes a job that the journal has as finished. To be repeated at the start, in case the process ended before the
+  /// note was on the disk.
   void noteFinished(const Progress& last);
 
-  /// Sets a work offset that was probed while the caller shuts jobs out. For another thread than the one here, for
-  /// which it waits. @param value [m], A [rad]. @param before the offsets when the cycle began; it is not set if it was
-  /// computed with one that has changed since. @param goal by whom and for what it is set.
-  /// @param large_change whether it was not set only because it would change by too much.
+  /// Sets a work offset that was probed, while the caller locks jobs out. Waits for this object's thread, so it is to
+  /// be called from another one.
+  /// @param value [m], A [rad]. @param before the offsets when the cycle began; the value is refused if it was computed
+  /// with an offset that has changed since. @param goal by whom and for what the offset is set.
+  /// @param large_change whether it was refused only because it would change by too much.
   /// @return why it was not set; empty if it was.
   std::string setProbed(int axis, double value, const WorkOffsets& before, const flute_grinder::ProbeGoal& goal,
                         bool& large_change);
 
  private:
-  /// The offset of an axis whose position is as given [m or rad].
+  /// Computes the offset of an axis from its position [m or rad].
   using OffsetAt = std::function<double(double position)>;
 
   bool onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response);
@@ -74,8 +77,8 @@ class OffsetServer {
   JobGate& gate_;
   OffsetStore& store_;
   const OffsetLimits limits_;
-  bool unsaved_ = false;  ///< notes; of the thread alone
-  bool said_ = false;     ///< that they cannot be saved
+  bool unsaved_ = false;  ///< some notes are not on the disk; used by the thread alone
+  bool said_ = false;     ///< the log says that the notes cannot be saved
   ServedQueue thread_;
   ros::Publisher offsets_;
   std::vector<ros::ServiceServer> services_;

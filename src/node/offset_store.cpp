@@ -8,7 +8,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kLatest = 4e9;  ///< time that a ROS message can hold [s]
+constexpr double kLatest = 4e9;  ///< latest time that a ROS message can hold [s]
 
 }  // namespace
 

@@ -18,12 +18,12 @@ struct StateForm<WorkOffsets> {
   static void visit(StateFields& field, WorkOffsets& offsets);
 };
 
-/// The work offsets and what they depend on, kept on disk as by StateFile. Without a file they were never set and are
-/// 0. If the file cannot be read they are unknown, and each remains so until it is set.
+/// The work offsets, the wheel and the tool, kept on disk by a StateFile. Without a file the offsets were never set and
+/// are 0. If the file cannot be read, each offset is unknown until it is set.
 class OffsetStore {
  public:
   /// Reads the file. Blocks on the disk.
-  /// @param path, owner as for StateFile.
+  /// @param path, owner see StateFile.
   /// @throw StateFileOwned
   OffsetStore(std::string path, const std::string& owner);
 
@@ -34,16 +34,17 @@ class OffsetStore {
   /// disk.
   std::string unknown() const;
 
-  /// Called with what is on the disk and then with what is in force, which may differ by changeAtOnce().
+  /// Changes the offsets. Called with the offsets on the disk and then with those in force, which may differ by
+  /// changeAtOnce().
   using Change = std::function<void(WorkOffsets& offsets)>;
 
-  /// Returns once the change is on the disk; if it throws, nothing has changed, or what() says that the file has. For
-  /// one thread.
-  /// @param change leaves offsets of at most kMaxOffset in size.
+  /// Returns once the change is on the disk. If it throws, nothing has changed, unless what() says that the file has.
+  /// For one thread.
+  /// @param change must leave offsets of at most kMaxOffset in size.
   /// @throw StateFileError
   void change(const Change& change);
 
-  /// Changes what is in force without waiting for the disk, which has it with the next change(). Thread safe.
+  /// Changes the offsets in force without waiting for the disk; the next change() also writes them. Thread safe.
   void changeAtOnce(const Change& change);
 
  private:

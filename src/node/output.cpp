@@ -17,7 +17,7 @@ void reopenWithoutWaiting(int fd) {
   if (fstat(fd, &what) != 0 || !(S_ISFIFO(what.st_mode) || S_ISCHR(what.st_mode))) return;
   const std::string path = "/proc/self/fd/" + std::to_string(fd);
   const int fresh = open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY);
-  if (fresh < 0) return;  // another user's terminal: leave it as it is
+  if (fresh < 0) return;  // another user's terminal, left as it is
   dup2(fresh, fd);
   close(fresh);
 }

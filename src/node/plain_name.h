@@ -7,10 +7,10 @@
 
 namespace grinder {
 
-constexpr std::size_t kMaxName = 255;  ///< of a job, or of who sets an offset
+constexpr std::size_t kMaxName = 255;  ///< longest name of a job or of the person who sets an offset
 
-/// Whether a name from a peer may be kept and shown. What would have to be escaped() is refused, since names are
-/// printed on terminals.
+/// Whether a name from a peer may be kept and shown. Names are printed on terminals, so one that would have to be
+/// escaped() is refused.
 inline bool isPlainName(const std::string& name) { return name.size() <= kMaxName && escaped(name) == name; }
 
 /// Why a name is refused.

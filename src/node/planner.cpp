@@ -57,7 +57,7 @@ std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
 
 bool Planner::isKept(const Request& request) const {
   if (!kept_ || kept_->digest != jobDigest(*request.job) || !(kept_->program->run() == request.run)) return false;
-  // The digest has nothing of the operations that follow, but a relief that none follows is judged otherwise.
+  // The digest does not contain the operations that follow, but the last relief is judged differently from the others.
   return kept_->program->job()->operations.size() == request.job->operations.size();
 }
 

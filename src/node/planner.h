@@ -12,14 +12,14 @@
 
 namespace grinder {
 
-/// Shared between the planner and whoever waits for the plan. Thread safe.
+/// State shared by the planner and the thread that waits for the plan. Thread safe.
 struct PlanControl {
   std::atomic<bool> give_up{false};  ///< set to abandon the plan
   std::atomic<double> done{0};       ///< fraction of the job generated and checked, 0..1
 };
 
-/// Plans one job at a time in its own thread. The last good plan is kept: the same job from the same place needs no
-/// other, as after a dry run, and for one tool after the other.
+/// Plans one job at a time in its own thread. Keeps the last good plan, and reuses it for the same job from the same
+/// place, as after a dry run or for the next tool.
 class Planner {
  public:
   struct Request {
@@ -50,9 +50,9 @@ class Planner {
 
   const Machine machine_;
   const MachineShapes shapes_;
-  std::mutex mutex_;  ///< guards the next three
+  std::mutex mutex_;  ///< guards the next three members
   std::condition_variable changed_;
-  std::optional<Request> request_;  ///< until it is done
+  std::optional<Request> request_;  ///< present until it is done
   bool ended_ = false;
 
   std::shared_ptr<const PlannedJob> kept_;  ///< the last good plan; used by the thread only

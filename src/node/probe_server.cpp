@@ -45,7 +45,7 @@ void ProbeServer::onGoal(GoalHandle handle) {
     const std::lock_guard<std::mutex> lock(mutex_);
     goal_ = handle;
   }
-  loop_.keepAlive();  // by its goal
+  loop_.keepAlive();  // the goal itself shows that the client is alive
   handle.setAccepted();
   motion_.post([this, handle, stops = status.stops] { run(handle, stops); });
 }
@@ -67,13 +67,13 @@ bool ProbeServer::isBusy() const {
 }
 
 void ProbeServer::onCancel(const GoalHandle& handle) {
-  // While there is the goal no job can start, which a hold would stop.
+  // During the goal no job can start, so the hold cannot stop one.
   const std::lock_guard<std::mutex> lock(mutex_);
   if (goal_ && *goal_ == handle) loop_.postStop(MachineEvent::kHold);
 }
 
 void ProbeServer::onAlive(const std_msgs::Header::ConstPtr& message) {
-  // A network that was interrupted delivers old ones.
+  // An interrupted network may deliver old messages.
   if (std::abs(ageOf(message->stamp)) <= loop_.config().jog_timeout) loop_.keepAlive();
 }
 

@@ -18,8 +18,8 @@
 namespace grinder {
 
 /// Serves the action `~probe`: probing cycles, each for as long as its client repeats `~probe_alive`. One goal at a
-/// time; any other is rejected at once, and jobs are shut out meanwhile. Two threads: one waits for the motion, the
-/// other takes the messages. A stop goes to the control loop past them, and ends the cycle.
+/// time; any other is rejected at once, and jobs are locked out meanwhile. One thread waits for the motion, another
+/// takes the messages. Stops go directly to the control loop and end the cycle.
 class ProbeServer {
  public:
   /// @param private_nh the node's own namespace.
@@ -42,8 +42,8 @@ class ProbeServer {
   ControlLoop& loop_;
   JobGate& gate_;
   OffsetServer& offsets_;
-  mutable std::mutex mutex_;        ///< guards the next; held only to compare, and to post a stop
-  std::optional<GoalHandle> goal_;  ///< that has not ended
+  mutable std::mutex mutex_;        ///< guards the next member; held only to compare, and to post a stop
+  std::optional<GoalHandle> goal_;  ///< the goal in progress
   ServedQueue messages_, motion_;
   ros::Subscriber alive_, cancels_;
   std::unique_ptr<Server> server_;

@@ -11,8 +11,8 @@ namespace grinder {
 
 namespace {
 
-constexpr std::chrono::milliseconds kPoll(2);  ///< of the loop's status
-constexpr std::chrono::seconds kMaxWait(5);    ///< without a cycle
+constexpr std::chrono::milliseconds kPoll(2);  ///< interval between looks at the loop's status
+constexpr std::chrono::seconds kMaxWait(5);    ///< longest wait without a cycle of the loop
 
 std::size_t index(int axis) { return static_cast<std::size_t>(axis); }
 
@@ -59,7 +59,7 @@ void Prober::checkStop() const {
   if (loop_.status().stops != stops_) throw ProbingError("stopped");
 }
 
-/// Moves to the next contact, and off it. @return the status when the axis had come to rest beyond it.
+/// Moves to the next contact, and off it. @return the status when the axis had come to rest beyond the contact.
 LoopStatus Prober::touchOnce(const Search& search, double distance, double velocity) {
   const std::size_t n = index(search.axis);
   const double end = loop_.status().command[n] + distance;
@@ -69,13 +69,14 @@ LoopStatus Prober::touchOnce(const Search& search, double distance, double veloc
     goBack(search);
     throw ProbingError("nothing was touched over " + shownOf(search.axis, std::abs(distance)));
   }
-  // The axis rests beyond a surface. A contact that flickers does so at one place, and its touches would agree.
+  // A true contact lasts, because the axis rests beyond the surface. A contact that flickers does so at one place, so
+  // its touches would agree.
   if (!status.probe_contact) throw ProbingError("the contact was lost again before the axis came to rest");
   backOff(search, status.contact.position[n]);
   return status;
 }
 
-/// To where the first search began.
+/// Moves back to where the first search began.
 void Prober::goBack(const Search& search) {
   const double at = loop_.status().command[index(search.axis)], distance = search.begin - at;
   const LoopStatus status = step(search.axis, distance, config().probing.velocity[search.axis], false);
@@ -98,7 +99,7 @@ LoopStatus Prober::step(int axis, double distance, double velocity, bool to_touc
   checkStop();
   const std::uint64_t jog = loop_.status().jogs_begun + 1;
   const RequestReply reply = loop_.jogInSeries({axis, false, distance, velocity, stops_, to_touch, true});
-  if (!reply.answered) loop_.postStop(MachineEvent::kHold);  // it may still begin
+  if (!reply.answered) loop_.postStop(MachineEvent::kHold);  // the jog may still begin
   if (!reply.accepted) throw ProbingError(reply.text);
   const LoopStatus status = awaitEnd(jog);
   if (status.state == MachineState::kFault) throw ProbingError("the machine is in state fault");

@@ -18,10 +18,10 @@ namespace grinder {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-/// Maximum difference of a measured diameter from the known one [m]; with more, they are not of the same cylinder.
+/// Maximum difference of a measured diameter from the known one [m]; a larger one means another cylinder.
 constexpr double kMostOff = 1 * units::kMillimetre;
 
-/// What a cycle works with.
+/// The context of a cycle.
 struct Cycle {
   Prober& prober;
   const flute_grinder::ProbeGoal& goal;
@@ -35,7 +35,7 @@ struct Cycle {
   Eigen::Vector3d ballAt(const Prober::Touch& touch) const {
     return geometry.probe->centre + Eigen::Vector3d(touch.axes[kX], touch.axes[kY], touch.axes[kZ]);
   }
-  /// The same from the work spindle's axis, X in machine coordinates [m].
+  /// The ball's centre from the work spindle's axis, X in machine coordinates [m].
   Eigen::Vector3d ballFromAxis(const Prober::Touch& touch) const {
     return ballAt(touch) - Eigen::Vector3d(0, geometry.work_axis_y, geometry.work_axis_z);
   }
@@ -50,7 +50,7 @@ struct Cycle {
   }
 };
 
-/// To 0.1 um: a probe is no better.
+/// A length in mm, to 0.1 um, the resolution of a probe.
 std::string millimetres(double metres) { return format("%.4f mm", metres / units::kMillimetre); }
 
 double endFace(const Cycle& cycle) {
@@ -87,7 +87,7 @@ double diameter(const Cycle& cycle) {
     throw ProbingError("diameter = " + millimetres(diameter) + ", known as " + millimetres(cycle.goal.diameter) +
                        "; allowed: up to " + millimetres(kMostOff) + " apart");
   }
-  // By how much the machine's Y is off, as this diameter shows.
+  // Error of the machine's Y, from the measured diameter.
   const double off = (diameter - cycle.goal.diameter) / 2;
   return workZero(cycle.geometry, jobFromGoal(cycle.goal.job), {}).y() + off;
 }

@@ -10,11 +10,11 @@
 
 namespace grinder {
 
-/// Why a goal is wrong at any time; empty if it is not.
+/// Why a goal is wrong whatever the state; empty if it is right.
 std::string goalRefusal(const flute_grinder::ProbeGoal& goal);
 
-/// Runs a cycle. @param goal that goalRefusal() accepts. @param offsets the work offsets.
-/// @param result gets the figures, as they are measured.
+/// Runs a cycle. @param goal a goal that goalRefusal() accepts. @param offsets the work offsets.
+/// @param result gets the figures as they are measured.
 /// @return the work offset of the cycle's axis; NaN unless goal.set_offset [m], A [rad]
 /// @throw ProbingError; ReasonError
 double runCycle(Prober& prober, const flute_grinder::ProbeGoal& goal, const WorkOffsets& offsets,

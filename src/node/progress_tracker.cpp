@@ -13,12 +13,12 @@ namespace grinder {
 
 namespace {
 
-/// Within which work offsets count as the same: what is lost of them on a display [m], A [rad].
+/// Difference within which work offsets count as equal: the rounding of a display [m], A [rad].
 constexpr double kSameOffset = 1e-7, kSameAngle = 1e-6;
-constexpr int kOffsetDigits = 9;            ///< so that offsets that differ look different
-const ros::WallDuration kPlaceInterval(1);  ///< between entries within a stroke
+constexpr int kOffsetDigits = 9;            ///< digits with which offsets that differ look different
+const ros::WallDuration kPlaceInterval(1);  ///< time between entries within a stroke
 
-/// For the operator; teeth and passes count from 1.
+/// A place as text for the operator; teeth and passes count from 1.
 std::string placeText(const ToothPass& place) { return format("tooth %d, pass %d", place.tooth + 1, place.pass + 1); }
 
 std::string describe(const Progress& p) {
@@ -63,7 +63,7 @@ bool ProgressTracker::continues(const std::string& digest, const WorkOffsets& of
   return !progress_.finished && digest == progress_.job_digest && offsetRefusal(digest, offsets).empty();
 }
 
-/// For the operator; empty if they are those of the last entry.
+/// The changes of the offsets since the last entry, for the operator; empty if there are none.
 std::string ProgressTracker::offsetChanges(const WorkOffsets& offsets) const {
   const Axes offset = offsets.values();
   std::string changes;
@@ -93,7 +93,8 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.tooth_angles = program.job()->tooth_angles;
   progress_.next = program.run().first;
   progress_.x = program.strokeFrom();
-  // Assumed until the job has ended: after a crash nothing but the drive's positions could prove the wheel clear.
+  // The wheel counts as in the work until the job has ended: after a crash only the drive's positions can show that it
+  // is clear.
   progress_.wheel = wheelOf(program);
   progress_.wheel.in_work = true;
   progress_.offset = program.run().offset;
@@ -124,14 +125,14 @@ void ProgressTracker::update(const LoopStatus& status) {
     changed_ = running_;
   }
   if (running_) updatePlace(status);
-  // What the file kept of the wheel is not written over by a guess.
+  // An unknown wheel must not overwrite the known one in the file.
   if (!status.wheel.known) return;
   const auto known = [](const Wheel& wheel) { return std::pair(wheel.in_work, wheel.y_doubted); };
   if (!running_ && known(progress_.wheel) != known(status.wheel)) {
     progress_.wheel = status.wheel;
     write();
   }
-  // Retry an entry that failed: the disk may have room again, or the journal that could not be read be gone.
+  // Retry an entry that failed: the disk may have room again, or an unreadable journal may have been removed.
   const Journal::Status journal = journal_.status();
   const bool failed = !journal.unread.empty() || (request_ > 0 && !journal.error.empty());
   const bool due = changed_ || (failed && journal.number >= request_);

@@ -21,34 +21,34 @@ class ProgressTracker {
   /// @param journal must outlive this object.
   explicit ProgressTracker(Journal& journal);
 
-  /// Why a job must not overwrite the journal: it holds another, unfinished one, is damaged, could not be read, or does
-  /// not have the passes that the job would leave out as ground. Empty if it may.
-  /// @param first pass to grind. @param discard what is known of the last job.
+  /// Why a job must not overwrite the journal; empty if it may. The journal holds another, unfinished job, is damaged,
+  /// could not be read, or does not list the passes that the job leaves out as ground.
+  /// @param first first pass to grind. @param discard whether to give up the last job.
   std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
-  /// Why a job must not be continued: the work offsets are others than when it began, by more than a display loses of
-  /// them (0.1 um, A 1e-6 rad), or another wheel was mounted or a tool clamped since. Empty if it may, or if it is
-  /// another job.
+  /// Why a job must not be continued; empty if it may, or if it is another job. The work offsets have changed since it
+  /// began, by more than the rounding of a display (0.1 um, A 1e-6 rad), or another wheel was mounted or a tool
+  /// clamped.
   std::string offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const;
 
-  /// Whether a job is the unfinished one, with the work offsets with which it began, as offsetRefusal() compares them.
+  /// Whether a job is the unfinished one, with unchanged work offsets as compared by offsetRefusal().
   bool continues(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Enters a job before it starts.
-  /// @param job its name, tool and operation.
+  /// @param job name, tool and operation of the job.
   /// @param number the loop's number for this job; status reports of other jobs are ignored.
-  /// @param offsets with the wheel and the tool with which it begins.
+  /// @param offsets work offsets, wheel and tool with which the job begins.
   void begin(const GrindProgram& program, const std::string& digest, const OffsetBasis& job, std::uint64_t number,
              const WorkOffsets& offsets);
-  /// The job was not started: restores the previous entry.
+  /// Restores the previous entry, because the job was not started.
   void revert();
-  /// The job has ended. @param how for display, not empty.
+  /// Enters the end of the job. @param how text for display, not empty.
   void end(const LoopStatus& status, const std::string& how);
   /// Records the job's progress or, without a job, the wheel's position. To be called often.
   void update(const LoopStatus& status);
 
   /// The last entry.
   const Progress& progress() const { return progress_; }
-  /// Whether every entry has been written to disk, or has failed to be.
+  /// Whether the write of every entry has succeeded or failed.
   bool upToDate() const { return journal_.status().number >= request_; }
   /// Why the last entry is not on disk; empty if it is.
   std::string error() const { return journal_.status().error; }
@@ -61,13 +61,13 @@ class ProgressTracker {
   Journal& journal_;
   Progress progress_;            ///< last entry
   Progress before_;              ///< last entry of the previous job
-  std::vector<Move> moves_;      ///< of the job's program
-  std::vector<JobPass> passes_;  ///< in order
-  std::uint64_t number_ = 0;     ///< of the job
+  std::vector<Move> moves_;      ///< moves of the job's program
+  std::vector<JobPass> passes_;  ///< passes of the job, in order
+  std::uint64_t number_ = 0;     ///< the loop's number for the job
   std::uint32_t strokes_ended_at_ = 0;
   bool running_ = false;
   std::uint64_t request_ = 0;
-  bool changed_ = false;  ///< since the last entry
+  bool changed_ = false;  ///< the progress has changed since the last entry
   ros::SteadyTime last_entry_;
 };
 

@@ -6,7 +6,7 @@ namespace grinder {
 
 namespace {
 
-/// For it to start after the grinder, and for a shutdown that ends it first.
+/// Time for the recorder to start after the grinder, or for a shutdown that ends it first.
 const ros::WallDuration kPatience(5);
 
 }  // namespace

@@ -9,11 +9,11 @@
 
 namespace grinder {
 
-/// Watches whether the recorder of a bag, which runs beside the grinder, takes the setpoints; says in the log and on
-/// /diagnostics if it has not done so for some seconds. Not thread safe.
+/// Watches whether the recorder of a bag is subscribed to the setpoints; reports in the log and on /diagnostics if it
+/// has not been for some seconds. Not thread safe.
 class RecorderWatch {
  public:
-  /// @param recorder the name of its node, resolved; empty if none was asked for.
+  /// @param recorder resolved name of the recorder's node; empty if none was asked for.
   explicit RecorderWatch(std::string recorder) : recorder_(std::move(recorder)) {}
 
   /// Registers the report with the updater, which this object must outlive, if a recorder was asked for.

@@ -11,9 +11,9 @@ namespace grinder {
 
 namespace {
 
-constexpr double kWarningInterval = 1;  ///< for the messages of a continuous jog [s]
+constexpr double kWarningInterval = 1;  ///< time between warnings about the messages of a continuous jog [s]
 
-/// Why a message of a continuous jog is not from now; empty if it is. A network that was interrupted delivers old ones.
+/// Why a message of a continuous jog is too old; empty if it is fresh. An interrupted network may deliver old messages.
 std::string staleness(const flute_grinder::Jog& message, double timeout) {
   const double age = ageOf(message.header.stamp);
   if (std::abs(age) <= timeout) return "";
@@ -34,7 +34,7 @@ RequestServer::RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loo
   }
   services_.push_back(nh.advertiseService("confirm_swivel", &RequestServer::onConfirmSwivel, this));
   services_.push_back(nh.advertiseService("jog_step", &RequestServer::onJogStep, this));
-  // Of several messages that wait only the last one counts.
+  // Of several waiting messages only the last one counts.
   jogs_ = nh.subscribe("jog", 1, &RequestServer::onJog, this, ros::TransportHints().tcpNoDelay());
   jog_refusals_ = nh.advertise<std_msgs::String>("jog_refusal", 10);
   thread_.start();
@@ -56,7 +56,7 @@ RequestReply RequestServer::execute(MachineEvent event) {
   // A hold from before the job's start is still in the gate.
   if (event == MachineEvent::kResume && gate_.resume()) return {true, "", true};
   RequestReply reply = loop_.request(event);
-  // Also if the answer came too late: the loop may be homing.
+  // Noted even if the answer came too late: the loop may be homing.
   if (event == MachineEvent::kHome && (reply.accepted || !reply.answered)) offsets_.noteHoming();
   return reply;
 }
@@ -83,13 +83,13 @@ bool RequestServer::onJogStep(flute_grinder::JogStep::Request& request, flute_gr
 
 void RequestServer::onJog(const flute_grinder::Jog::ConstPtr& message) {
   std::string refusal;
-  // An axis is stopped however late the message comes.
+  // A message that stops counts however late it comes.
   if (message->velocity != 0) refusal = staleness(*message, loop_.config().jog_timeout);
   if (refusal.empty()) refusal = loop_.jog({message->axis, true, 0, message->velocity}).text;
   reportJogRefusal(refusal);
 }
 
-/// Once for each press of a button. @param refusal of its latest message; empty if that was accepted.
+/// Reports a refusal once for each press of a button. @param refusal refusal of the latest message; empty if accepted.
 void RequestServer::reportJogRefusal(const std::string& refusal) {
   const ros::SteadyTime now = ros::SteadyTime::now();
   const bool pressed_before = (now - last_jog_).toSec() <= loop_.config().jog_timeout;

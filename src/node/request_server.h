@@ -40,8 +40,8 @@ class RequestServer {
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber jogs_;
   ros::Publisher jog_refusals_;
-  ros::SteadyTime last_jog_;  ///< when the last message of a continuous jog came
-  bool jog_refused_ = false;  ///< that message
+  ros::SteadyTime last_jog_;  ///< time of the last message of a continuous jog
+  bool jog_refused_ = false;  ///< the last message was refused
 };
 
 }  // namespace grinder

@@ -6,8 +6,8 @@
 
 namespace grinder {
 
-/// Publishes the machine's status on `robot_status` as industrial_msgs/RobotStatus, as other drivers do; nothing where
-/// that package is not installed.
+/// Publishes the machine's status on `robot_status` as industrial_msgs/RobotStatus, as other drivers do. Does
+/// nothing if that package is not installed.
 class RobotStatus {
  public:
   /// @param nh the node's namespace.

@@ -10,7 +10,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kIdlePeriod = 1;  ///< [s]
+constexpr double kIdlePeriod = 1;  ///< period of a queue without a `poll` [s]
 
 std::chrono::steady_clock::duration toDuration(double seconds) {
   return std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));

@@ -13,7 +13,7 @@ namespace grinder {
 class ServedQueue {
  public:
   ServedQueue();
-  /// @param period how often `poll` is called between the callbacks [s].
+  /// @param period time between calls of `poll` [s].
   ServedQueue(double period, std::function<void()> poll);
   ServedQueue(const ServedQueue&) = delete;
   ServedQueue& operator=(const ServedQueue&) = delete;
@@ -29,8 +29,8 @@ class ServedQueue {
   /// Queues a task for the thread. Thread safe; never blocks.
   void post(std::function<void()> task);
 
-  /// Changes how often `poll` is called. A shorter period counts from now, a longer one from the next call on. Only for
-  /// the thread itself: its callbacks, its tasks and `poll`.
+  /// Changes the time between calls of `poll`. A shorter period counts from now, a longer one from the next call on.
+  /// Only for the thread itself: its callbacks, its tasks and `poll`.
   /// @param period [s].
   void setPeriod(double period);
 

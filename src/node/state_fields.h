@@ -17,7 +17,7 @@
 namespace grinder {
 
 /// The fields of a state in its file, a map in YAML. A table is a function that calls an object of this class with key,
-/// member and allowed range of every field, for reading as for writing. What throws is std::exception.
+/// member and allowed range of every field, both to read and to write. All errors are std::exception.
 class StateFields {
  public:
   /// @throw if a value is not allowed.
@@ -31,7 +31,7 @@ class StateFields {
     return std::string(fields.text_.c_str()) + "\n";
   }
 
-  /// @throw unless every field is there once, with a value that is allowed, and nothing else.
+  /// @throw unless every field is there exactly once, with an allowed value, and nothing else.
   template <typename State, typename Table>
   static State read(const std::string& text, const Table& table) {
     StateFields fields;
@@ -46,10 +46,10 @@ class StateFields {
     return state;
   }
 
-  /// Of a number, or of each in a list.
+  /// The allowed range of a number, or of each number in a list.
   struct Allowed {
     double min = -DBL_MAX, max = DBL_MAX;
-    bool nan = false;  ///< too
+    bool nan = false;  ///< NaN is allowed too
 
     std::string text() const { return max == DBL_MAX ? "a finite number" : format("%.10g to %.10g", min, max); }
   };
@@ -72,7 +72,7 @@ class StateFields {
     check(key, value, allowed);
   }
 
-  /// @throw unless it is good, naming key, value and what is allowed.
+  /// @throw unless `good`, naming key, value and the allowed values.
   template <typename Value>
   static void require(bool good, const std::string& key, const Value& value, const std::string& allowed) {
     if (good) return;
@@ -94,8 +94,8 @@ class StateFields {
   }
 
   bool reads_ = false;
-  YAML::Emitter text_;           ///< written
-  YAML::Node file_;              ///< read
+  YAML::Emitter text_;           ///< text being written
+  YAML::Node file_;              ///< map being read
   std::set<std::string> known_;  ///< keys that were read
 };
 

@@ -25,7 +25,7 @@ using File = SealedFile::File;
 
 const std::string kSealKey = "checksum: ";
 
-/// The last line of a file.
+/// The last line of a file, with the checksum of its body.
 std::string seal(const std::string& body) { return kSealKey + sha256Hex(body.data(), body.size()) + "\n"; }
 
 /// The text without its last line, which must be its seal. @throw std::runtime_error if it is damaged.
@@ -44,7 +44,7 @@ void require(bool done, const std::string& path) {
   if (!done) throw std::system_error(errno, std::generic_category(), path);
 }
 
-/// Opens a regular file; no call blocks on a peer, as with a FIFO.
+/// Opens a regular file, without blocking on a FIFO's peer.
 File openFile(const std::string& path, int flags) {
   const int descriptor = open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0644);
   require(descriptor >= 0, path);
@@ -56,7 +56,7 @@ File openFile(const std::string& path, int flags) {
   return file;
 }
 
-/// At most one byte more than a sealed file has.
+/// The contents of a file, cut one byte beyond the longest sealed file.
 std::string contents(std::FILE* file, const std::string& path) {
   std::string text(kMaxFile + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file));
@@ -80,7 +80,7 @@ void SealedFile::acquire() {
   }
   std::filesystem::create_directories(file.parent_path());
   const std::string beside = file.string() + ".lock";
-  // Root's, or on a disk that is mounted read-only, it can be locked all the same, so that the file is read.
+  // A lock file that is root's, or on a read-only disk, can be locked all the same, so that the file can be read.
   const bool writable = faccessat(AT_FDCWD, beside.c_str(), W_OK, AT_EACCESS) == 0 || errno == ENOENT;
   File lock = openFile(beside, writable ? O_RDWR | O_CREAT : O_RDONLY);
   if (flock(fileno(lock.get()), LOCK_EX | LOCK_NB) != 0) {
@@ -89,7 +89,7 @@ void SealedFile::acquire() {
     throw StateFileOwned(kind_ + " " + path_ + " is in use by " + holder.substr(0, holder.find('\n')) +
                          "; allowed: a " + kind_ + " of its own for every node");
   }
-  // For people, if it can be.
+  // For people, if the lock file is writable.
   if (ftruncate(fileno(lock.get()), 0) == 0) {
     std::fputs(format("node %s, process %d\n", owner_.c_str(), getpid()).c_str(), lock.get());
     std::fflush(lock.get());

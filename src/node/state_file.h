@@ -15,29 +15,29 @@
 
 namespace grinder {
 
-/// A state file that cannot be read or written; what() names it and the reason, and is escaped(): a damaged file may
-/// have anything.
+/// An error of a state file that cannot be read or written; what() names the file and the reason, and is escaped(),
+/// because a damaged file may contain anything.
 class StateFileError : public std::runtime_error {
  public:
   explicit StateFileError(const std::string& text) : std::runtime_error(escaped(text)) {}
 };
 
-/// A state file that was read, and is not as it was written.
+/// The error of a state file whose contents are not as they were written.
 class StateFileDamaged : public StateFileError {
  public:
   using StateFileError::StateFileError;
 };
 
-/// A state file in use by another process; what() names its node and process.
+/// The error of a state file in use by another process; what() names its node and process.
 class StateFileOwned : public StateFileError {
  public:
   using StateFileError::StateFileError;
 };
 
 /// Keeps a text on disk, so that it survives a crash and a power failure. The file is always either the old or the new
-/// version, complete; a damaged or modified file is refused. From the first call that finds its folder on, only one
-/// SealedFile on the computer owns the file, by a lock on one beside it with the suffix `.lock`, which is never
-/// removed. Not thread safe; blocks on the disk.
+/// version, complete; a damaged or modified file is refused. Once its folder is found, only one SealedFile on
+/// the computer owns the file: it locks a file beside it with the suffix `.lock`, which is never removed. Not thread
+/// safe; blocks on the disk.
 class SealedFile {
  public:
   using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
@@ -52,9 +52,9 @@ class SealedFile {
   /// @throw StateFileError if it cannot be read.
   std::optional<std::string> read();
 
-  /// Returns once the text and the file's name, which is its folder's, are on the disk: only then a power failure
-  /// cannot bring back the text before.
-  /// @param undo whether to put the file back if the folder alone cannot be synchronized; what() says if it cannot be.
+  /// Returns once the text and the folder's entry are on the disk, so that a power failure cannot bring back the old
+  /// text.
+  /// @param undo whether to restore the old file if only the folder cannot be synchronized; what() says if this fails.
   /// @throw StateFileError
   void write(const std::string& text, bool undo);
 
@@ -78,8 +78,8 @@ class SealedFile {
   File lock_{nullptr, std::fclose};  ///< held while not null
 };
 
-/// How a state is kept: `kKind` as for SealedFile; `kComment` for who opens the file; `kInBackground`, whether it
-/// belongs to a thread of its own, or else to the one that calls change(); `visit`, the table of StateFields.
+/// How a state is kept: `kKind`, see SealedFile; `kComment`, a note for readers of the file; `kInBackground`, whether a
+/// thread of its own writes it, or else the caller of change(); `visit`, the table of StateFields.
 template <typename State>
 struct StateForm;
 
@@ -88,24 +88,24 @@ template <typename State>
 class StateFile {
  public:
   struct Status {
-    State on_disk{};           ///< what a restart would find
-    std::uint64_t number = 0;  ///< of the last write() that succeeded or failed; 0 before the first
-    std::string error;         ///< of the last write, or of the initial read; empty if none
-    std::string damage;        ///< of the file as it was read, until it is replaced; empty if none
+    State on_disk{};           ///< state that a restart would find
+    std::uint64_t number = 0;  ///< number of the last write() that succeeded or failed; 0 before the first
+    std::string error;         ///< error of the last write, or of the initial read; empty if none
+    std::string damage;        ///< damage found when the file was read, until it is replaced; empty if none
     std::string unread;        ///< why the file could not be read at the start, until it is replaced; empty if it could
   };
 
   /// Reads the file. Blocks on the disk. A thread of its own ends as DiskThread does: if the disk is dead by then, the
   /// file holds either its old contents or the last write, and stays owned until the disk answers or the process ends.
-  /// @param path, owner as for SealedFile.
+  /// @param path, owner see SealedFile.
   /// @throw StateFileOwned
   StateFile(std::string path, const std::string& owner) : work_(std::make_shared<Work>(std::move(path), owner)) {
     if (Form::kInBackground) thread_.emplace();
   }
 
-  /// Queues a state to be written, and returns at once; for what is so, whether it can be written or not. While the
-  /// disk is busy, a new write replaces the pending one. If the file could not be read, no write succeeds as long as
-  /// there may be one. Thread safe; not for the control thread.
+  /// Queues a state to be written, and returns at once; for states that hold whether or not they can be written. While
+  /// the disk is busy, a new write replaces the pending one. A file that could not be read is never overwritten. Thread
+  /// safe; not for the control thread.
   /// @return the number of this write, from 1.
   std::uint64_t write(const State& state) {
     static_assert(Form::kInBackground);
@@ -115,8 +115,8 @@ class StateFile {
     return ++work_->writes;
   }
 
-  /// Returns once the state is on the disk; if it throws, the file is as it was, or what() says that it is not. As
-  /// write() else. For one thread.
+  /// Writes the state, and returns once it is on the disk. If it throws, the file is as before, unless what() says
+  /// otherwise. A file that could not be read is never overwritten. For one thread.
   /// @throw StateFileError
   void change(const State& state) {
     static_assert(!Form::kInBackground);
@@ -149,11 +149,11 @@ class StateFile {
       }
     }
 
-    /// @return why it is not on the disk; empty if it is.
+    /// Writes a state. @return why it is not on the disk; empty if it is.
     std::string store(const State& state, std::uint64_t number) {
       std::string error;
       try {
-        // The status is changed by whoever stores, alone.
+        // Only the thread that stores changes the status.
         if (!status.unread.empty() && file.read()) {
           throw StateFileError(status.unread + "; it can be read now: start the grinder again");
         }
@@ -178,7 +178,7 @@ class StateFile {
       store(state, number);
     }
 
-    SealedFile file;   ///< used only by whoever stores
+    SealedFile file;   ///< used only by the thread that stores
     std::mutex mutex;  ///< guards everything below; held only to copy
     Status status;
     std::uint64_t writes = 0;

@@ -72,7 +72,7 @@ void StopServer::onStop(const flute_grinder::Stop::ConstPtr& stop) {
       gate_.cancel(actionlib_msgs::GoalID());
       loop_.postStop(stop->request == flute_grinder::Stop::CANCEL ? MachineEvent::kCancel : MachineEvent::kDisable);
       break;
-    default: break;  // from a newer sender; its meaning is unknown
+    default: break;  // an unknown stop, from a newer sender
   }
 }
 

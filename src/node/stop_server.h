@@ -22,9 +22,9 @@ class StopServer {
   /// @param loop,gate must outlive this object.
   StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
 
-  /// Serves the topic `~grind/cancel` for as long as the subscriber that is returned lives.
-  /// @param pass_on called in this thread with each cancel, once the loop has it: actionlib, which may block on
-  ///        publishing, has to know of it, too, and forwards only the first cancel of a goal.
+  /// Serves the topic `~grind/cancel` for as long as the returned subscriber lives.
+  /// @param pass_on called in this object's thread with each cancel, once the loop has it. It informs actionlib, which
+  ///        may block on publishing, and which forwards only the first cancel of a goal.
   ros::Subscriber subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::ConstPtr&)> pass_on);
 
  private:
@@ -34,7 +34,7 @@ class StopServer {
                       flute_grinder::SetFeedOverride::Response& response);
   void onStop(const flute_grinder::Stop::ConstPtr& stop);
 
-  ros::NodeHandle nh_;  ///< with the thread's queue
+  ros::NodeHandle nh_;  ///< handle with the thread's queue
   ControlLoop& loop_;
   JobGate& gate_;
   ServedQueue thread_;

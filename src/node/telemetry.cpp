@@ -14,11 +14,11 @@ namespace grinder {
 
 namespace {
 
-constexpr double kTickPeriod = 0.01;          ///< between joint states [s]
-constexpr double kRestPeriod = 0.02;          ///< between looks for a change, at rest [s]
-const ros::WallDuration kRestDelay(1);        ///< without a change, until less is published
-constexpr std::uint64_t kTicksPerBatch = 5;   ///< of setpoints, state and feedback; at rest, of joint states too
-constexpr std::uint64_t kTicksPerScene = 10;  ///< between updates of the job in rviz
+constexpr double kTickPeriod = 0.01;         ///< time between joint states [s]
+constexpr double kRestPeriod = 0.02;         ///< time between looks for a change, at rest [s]
+const ros::WallDuration kRestDelay(1);       ///< time without a change until less is published
+constexpr std::uint64_t kTicksPerBatch = 5;  ///< ticks between setpoints, state and feedback; at rest, joint states too
+constexpr std::uint64_t kTicksPerScene = 10;  ///< ticks between updates of the job in rviz
 
 double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
 
@@ -55,13 +55,13 @@ flute_grinder::JobProgress toMessage(const Progress& progress) {
   return m;
 }
 
-/// The node that records a bag of this one; empty if none was asked for.
+/// The name of the node that records a bag of this node; empty if none was asked for.
 std::string recorderOf(const ros::NodeHandle& nh, const ros::NodeHandle& private_nh) {
   const auto name = private_nh.param<std::string>("recorder", "");
   return name.empty() ? name : nh.resolveName(name);
 }
 
-/// Of a drive that hangs.
+/// The state of the power of a drive that hangs, in words.
 const char* powerInWords(LoopWatchdog::Finding finding) {
   switch (finding) {
     case LoopWatchdog::Finding::kSwitchingOff: return "its powerOff() has not returned either";
@@ -110,7 +110,7 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
 
 Telemetry::~Telemetry() {
   thread_.stop();
-  // Its peers are reported to the thread's queue.
+  // Its subscribers are reported to the thread's queue.
   setpoints_.shutdown();
 }
 
@@ -152,7 +152,7 @@ void Telemetry::clearScene() {
   });
 }
 
-/// @param ground whether its job begins; else it is only planned.
+/// @param ground whether the plan's job begins; if not, it is only planned.
 void Telemetry::showJob(const PlannedJob& plan, const std::string& name, bool ground) {
   const GrindJob& job = *plan.program->job();
   const char* operation = job.operations.size() > 1 ? rowOf(job.process.kind).words : "";
@@ -163,7 +163,7 @@ void Telemetry::showJob(const PlannedJob& plan, const std::string& name, bool gr
               (ground ? "Ground: " : "Planned: ") + jobText(name, operation, job.cutter, job.tooth_angles.size()));
 }
 
-/// A path that is shown where the work was is worse than none.
+/// Removes the plan from rviz once its zero points or the wheel have changed: it would be shown in the wrong place.
 void Telemetry::discardStalePlan() {
   if (!shown_with_ || !jobs_.empty()) return;
   const WorkOffsets offsets = offsets_.offsets();
@@ -202,7 +202,7 @@ void Telemetry::tick() {
   publishDiagnostics();
 }
 
-/// Looks for changes. While there are none, and no job, the pace is slower.
+/// Looks for changes. Without changes and without a job the pace is slower.
 /// @return whether a change ends the rest.
 bool Telemetry::setPace() {
   const ros::SerializedMessage state = ros::serialization::serializeMessage(stateMessage());
@@ -239,7 +239,7 @@ void Telemetry::readRecords() {
 void Telemetry::processRecord() {
   diagnostics_.add(sample_);
   logFault();
-  // If the sample of a job's end was lost, a sample of a later job ends it.
+  // If the sample of a job's end was lost, a sample of a later job ends that job.
   while (jobs_.size() > 1 && sample_.job > jobs_.front().number) endJob(jobs_.front());
   if (!jobs_.empty() && sample_.job == jobs_.front().number) trackJob(jobs_.front());
 }
@@ -262,7 +262,7 @@ LoopFault Telemetry::hang() const {
   return fault;
 }
 
-/// What the loop has said last no longer holds.
+/// Replaces the loop's last state by the fault of the hang.
 void Telemetry::replaceByHang(flute_grinder::GrinderState& message) const {
   const LoopFault fault = hang();
   message.state = static_cast<std::uint8_t>(MachineState::kFault);
@@ -272,7 +272,7 @@ void Telemetry::replaceByHang(flute_grinder::GrinderState& message) const {
   message.fault_reason = grinder::toMessage(reasonOf(fault));
 }
 
-/// A fault that has ended a job is logged with its goal.
+/// Logs a new fault, unless it ended a job: then the goal's end is logged.
 void Telemetry::logFault() {
   const bool in_fault = sample_.state == MachineState::kFault;
   if (in_fault && !in_fault_ && !sample_.job_ended) ROS_ERROR_STREAM("fault without a job: " << sample_.fault.text());
@@ -315,7 +315,7 @@ void Telemetry::addToBatch(Job& job, const Buffered& written) {
 Axes Telemetry::workPosition(const Job& job) const { return sample_.position - job.plan->program->run().offset; }
 
 void Telemetry::endJob(Job& job) {
-  // Written, but never reached the axes.
+  // Setpoints that were written but never reached the axes.
   for (const Buffered& unplayed : job.buffered) addToBatch(job, unplayed);
   publishBatch();
   makeFeedback();
@@ -351,7 +351,7 @@ void Telemetry::publishState() {
   robot_status_.publish(message);
 }
 
-/// Without a stamp.
+/// The state, without a stamp.
 flute_grinder::GrinderState Telemetry::stateMessage() const {
   flute_grinder::GrinderState message;
   message.state = static_cast<std::uint8_t>(sample_.state);

@@ -52,16 +52,17 @@ class Telemetry {
   /// safe; never blocks.
   void show(std::shared_ptr<const PlannedJob> plan, const std::string& job_name);
   /// Announces a job before it starts. Thread safe; never blocks.
-  /// @param number the loop's number for this job. @param goal_id,job_name of its goal. @param record new.
+  /// @param number the loop's number for this job. @param goal_id,job_name id and job name of the goal. @param record a
+  /// new record.
   void announceJob(std::uint64_t number, const std::string& goal_id, const std::string& job_name,
                    std::shared_ptr<const PlannedJob> plan, std::shared_ptr<JobRecord> record);
   /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
   std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number);
-  /// The job announced last will not start. Thread safe; never blocks.
+  /// Withdraws the job announced last, because it will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
   /// Hands over the result of a job, for its record. Thread safe; never blocks.
   void concludeJob(std::uint64_t number, const JobConclusion& conclusion);
-  /// Takes back what rviz shows of a job, and shows nothing any more. Thread safe; never blocks.
+  /// Removes the job from rviz, and shows no other any more. Thread safe; never blocks.
   void clearScene();
 
   /// Number of the last job whose setpoints have all been published. Thread safe.
@@ -70,8 +71,8 @@ class Telemetry {
  private:
   /// A setpoint in the drive's buffer.
   struct Buffered {
-    std::uint64_t cycle;  ///< of the loop that generated it
-    double period;        ///< of that cycle, measured [s]
+    std::uint64_t cycle;  ///< the loop's cycle that generated the setpoint
+    double period;        ///< measured period of that cycle [s]
     Setpoint setpoint;
   };
 
@@ -80,10 +81,10 @@ class Telemetry {
     std::string goal_id, name;
     std::shared_ptr<const PlannedJob> plan;
     bool shown = false;
-    Setpoint last{};                  ///< that reached the axes
-    double max_error = 0;             ///< since the last feedback [rad]
-    std::uint64_t next_cycle = 0;     ///< of the next setpoint to publish
-    std::deque<Buffered> buffered{};  ///< written, not yet published
+    Setpoint last{};                  ///< the last setpoint that reached the axes
+    double max_error = 0;             ///< largest error since the last feedback [rad]
+    std::uint64_t next_cycle = 0;     ///< cycle of the next setpoint to publish
+    std::deque<Buffered> buffered{};  ///< setpoints written but not yet published
   };
 
   void showJob(const PlannedJob& plan, const std::string& name, bool ground);
@@ -107,7 +108,7 @@ class Telemetry {
   void publishState();
   void makeFeedback();
   Job* running();
-  std::uint64_t cycle() const { return samples_read_ + sample_.samples_lost; }  ///< of the loop, since it started
+  std::uint64_t cycle() const { return samples_read_ + sample_.samples_lost; }  ///< the loop's cycles since its start
 
   ControlLoop& loop_;
   const Journal& journal_;
@@ -120,23 +121,23 @@ class Telemetry {
   RobotStatus robot_status_;
   Frames frames_;
   Scene scene_;
-  std::optional<WorkOffsets> shown_with_;  ///< the offsets of the plan that is shown; nothing if none is
+  std::optional<WorkOffsets> shown_with_;  ///< work offsets of the plan shown; nothing if no plan is shown
 
-  CycleSample sample_;  ///< the latest
+  CycleSample sample_;  ///< the latest sample
   std::uint64_t samples_read_ = 0;
-  bool in_fault_ = false;  ///< by the sample before
+  bool in_fault_ = false;  ///< the previous sample was in state kFault
   const LoopWatchdog* watchdog_ = nullptr;
-  LoopWatchdog::Finding finding_ = LoopWatchdog::Finding::kRuns;  ///< when the watchdog was last asked
-  std::deque<Job> jobs_;                                          ///< announced; the first may be running
+  LoopWatchdog::Finding finding_ = LoopWatchdog::Finding::kRuns;  ///< last finding of the watchdog
+  std::deque<Job> jobs_;                                          ///< jobs announced; the first may be running
   JobRecorder recorder_;
-  std::mutex feedback_mutex_;  ///< guards the next two
+  std::mutex feedback_mutex_;  ///< guards the next two members
   std::uint64_t feedback_number_ = 0;
-  std::optional<flute_grinder::GrindFeedback> feedback_;  ///< of the job with this number, not taken yet
+  std::optional<flute_grinder::GrindFeedback> feedback_;  ///< feedback of job feedback_number_, not taken yet
   bool scene_cleared_ = false;
   flute_grinder::SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
-  ros::SerializedMessage last_state_;  ///< without its stamp
-  ros::SteadyTime last_change_;        ///< of anything that is published
+  ros::SerializedMessage last_state_;  ///< last state published, without its stamp
+  ros::SteadyTime last_change_;        ///< time of the last change of anything published
   bool resting_ = false;
   ros::WallDuration diagnostics_period_;
   ros::SteadyTime next_diagnostics_;

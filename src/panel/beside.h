@@ -9,8 +9,8 @@
 
 namespace grinder {
 
-/// Moves a window beside a part of the panel that is as wide as the panel, to where there is more room, and makes it so
-/// narrow that it has room there: the buttons that stop the grinder are never below it.
+/// Moves a window beside the panel, to the side with more room, and makes it narrow enough for that room, so that it
+/// never covers the buttons that stop the grinder. @param part a part of the panel that is as wide as the panel.
 inline void moveBeside(QWidget& window, const QWidget& part) {
   constexpr int apart = 30;  // for the panel's margin and the window's frame [px]
   const QRect here(part.mapToGlobal(QPoint()), part.size());

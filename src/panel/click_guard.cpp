@@ -8,10 +8,10 @@ namespace grinder {
 
 namespace {
 
-constexpr unsigned long kDoubleClick = 500;  ///< longest time between its clicks, whatever the desktop's is [ms]
-constexpr int kSamePlace = 10;               ///< [px]
+constexpr unsigned long kDoubleClick = 500;  ///< longest time between its clicks, whatever the desktop's setting [ms]
+constexpr int kSamePlace = 10;               ///< longest distance between its clicks [px]
 
-/// Of the application, since a click may close a dialog over the button that the next one meets.
+/// An event filter of the whole application, because a click may close a dialog that lies over another button.
 class ClickGuard : public QObject {
  public:
   ClickGuard(QWidget& parent, const std::set<QWidget*>& always) : QObject(&parent), always_(always) {}
@@ -20,7 +20,7 @@ class ClickGuard : public QObject {
     const bool press = event->type() == QEvent::MouseButtonPress || event->type() == QEvent::MouseButtonDblClick;
     if (!press || !watched->isWidgetType()) return false;
     const auto& mouse = static_cast<QMouseEvent&>(*event);
-    // A press that a widget does not take goes on to its parent.
+    // A press that a widget does not take goes on to its parent, with the same time.
     if (mouse.timestamp() != time_) {
       time_ = mouse.timestamp();
       second_ = time_ - first_ <= kDoubleClick && (mouse.globalPos() - place_).manhattanLength() <= kSamePlace;
@@ -38,10 +38,10 @@ class ClickGuard : public QObject {
   }
 
   const std::set<QWidget*> always_;
-  unsigned long time_ = 0;   ///< of the last click [ms]
-  unsigned long first_ = 0;  ///< of the last that was no second one [ms]
-  QPoint place_;             ///< of that
-  bool second_ = false;      ///< whether the last was one
+  unsigned long time_ = 0;   ///< time of the last click [ms]
+  unsigned long first_ = 0;  ///< time of the last first click [ms]
+  QPoint place_;             ///< place of the last first click
+  bool second_ = false;      ///< the last click was the second of a double click
 };
 
 }  // namespace

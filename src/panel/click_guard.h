@@ -6,9 +6,9 @@
 
 namespace grinder {
 
-/// Lets a double click press a button once: what lies under the mouse by the second click may be another button, which
-/// the operator has not chosen, and the same one would do its work twice.
-/// @param parent of the buttons, also of those in its dialogs. @param always buttons that take every click.
+/// Makes a double click press a button once. By the second click another button may lie under the mouse, and the same
+/// button would act twice.
+/// @param parent parent of the buttons, including buttons in its dialogs. @param always buttons that take every click.
 void guardFromDoubleClicks(QWidget& parent, const std::set<QWidget*>& always);
 
 }  // namespace grinder

@@ -8,12 +8,12 @@
 
 namespace grinder {
 
-/// A small table for people: figures side by side, with a word in front of each line.
+/// A small table for people: figures side by side, with a label in front of each row.
 struct Comparison {
-  QStringList columns;            ///< their heads, but the first, which has none
-  std::vector<QStringList> rows;  ///< of one cell more than there are heads
+  QStringList columns;            ///< heads of the columns after the labels
+  std::vector<QStringList> rows;  ///< rows: the label and a cell for each head
 
-  /// Without the columns that are empty in every row.
+  /// The table as HTML, without columns that are empty in every row.
   QString html() const {
     const auto used = [this](int column) {
       return std::any_of(rows.begin(), rows.end(), [column](const QStringList& row) { return !row[column].isEmpty(); });

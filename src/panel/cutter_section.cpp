@@ -13,8 +13,8 @@ namespace {
 
 using namespace units;
 
-constexpr std::size_t kRings = 24;     ///< of a wall
-constexpr std::size_t kColumns = 120;  ///< of all lands together
+constexpr std::size_t kRings = 24;     ///< rings of a wall
+constexpr std::size_t kColumns = 120;  ///< columns of all lands together
 
 QString line(const QString& text, bool good) {
   return good ? text : QString("<span style=\"color:%1\">%2</span>").arg(kWrong, text);
@@ -31,7 +31,7 @@ QString figureLine(const CutterSection& section, const GroundFigure& figure) {
          (asked.isEmpty() ? "" : QString(" (%1 ± %2)").arg(asked).arg(figure.tolerance / shopScale(row.unit)));
 }
 
-/// What is wrong beyond the figures.
+/// The faults of a section beyond its figures.
 QStringList faults(const CutterSection& section) {
   const std::vector<ToothSection>& teeth = section.ground.teeth;
   const auto none = [&](const auto& has) { return std::none_of(teeth.begin(), teeth.end(), has); };
@@ -77,7 +77,7 @@ QString figuresText(const CutterSection& section) {
   QStringList lines;
   for (const QString& fault : faults(section)) lines << line(fault, false);
   for (const GroundFigure& figure : figuresOf(section.job, {section.ground})) {
-    // The others are of another operation, and there is no room for all.
+    // Only the figures of this operation: there is no room for all.
     if (rowOf(figure.figure).of_relief == of_relief) lines << figureLine(section, figure);
   }
   return lines.join("<br>");

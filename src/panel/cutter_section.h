@@ -10,24 +10,25 @@
 
 namespace grinder {
 
-/// A section of the cutter that a job grinds, with what is asked of it there.
+/// A section of the cutter that a job grinds, with the core asked for there.
 struct CutterSection {
   ValidJob job;
   GroundSection ground;
-  double asked_core = 0;              ///< radius [m]
-  std::vector<PolarPoint> outline{};  ///< at A = 0; empty if the core is cut through
+  double asked_core = 0;              ///< radius of the core asked for [m]
+  std::vector<PolarPoint> outline{};  ///< outline at A = 0; empty if the core is cut through
 
-  /// Whether a figure is as asked, or the tooth's flute is not complete here. A core that is cut through is not.
+  /// Whether a figure is as asked; true also where the tooth's flute is not complete, but not where the core is cut
+  /// through.
   bool isWithin(ToolFigure figure, std::size_t tooth = 0) const;
-  bool hasLand(const ToothSection& tooth) const;  ///< or nothing is ground here
+  bool hasLand(const ToothSection& tooth) const;  ///< true also where nothing is ground
 };
 
-/// Takes milliseconds for each tooth with a flute of its own.
-/// @param job from withLaws(). @param x within its flute's length [m].
+/// Computes a section. Takes milliseconds for each tooth with a flute of its own.
+/// @param job a job from withLaws(). @param x place within its flute length [m].
 /// @throw std::invalid_argument if the wheel's corner radii do not fit its profile.
 CutterSection cutterSection(const ValidJob& job, double x);
 
-/// The figures of all teeth, in brackets what is asked, in mm and deg: rich text, with what is wrong in red.
+/// The figures of all teeth, with the figures asked for in brackets, in mm and deg. Rich text, with errors in red.
 QString figuresText(const CutterSection& section);
 
 }  // namespace grinder

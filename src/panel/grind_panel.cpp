@@ -29,13 +29,13 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRefreshInterval = 50;            ///< the rate of the grinder's state [ms]
-constexpr const char* kTitleSeparator = " - ";  ///< as in rviz's own title
+constexpr int kRefreshInterval = 50;            ///< period of the grinder's state [ms]
+constexpr const char* kTitleSeparator = " - ";  ///< separator as in rviz's own title
 constexpr int kButtonColumns = 4;
-constexpr int kSpacing = 3;            ///< between the panel's parts, which are to fit a screen of 1024 x 768 [px]
-constexpr int kLowestTab = 120;        ///< height of the part of a tab that is always seen [px]
-constexpr int kApart = 14;             ///< between the last column of buttons and the others [px]
-constexpr double kLargerGauge = 1e-3;  ///< than blank and shank, with which Y may well be touched off [m]
+constexpr int kSpacing = 3;            ///< gap between the panel's parts, which must fit a screen of 1024 x 768 [px]
+constexpr int kLowestTab = 120;        ///< height of the part of a tab that is always in sight [px]
+constexpr int kApart = 14;             ///< gap between the last column of buttons and the others [px]
+constexpr double kLargerGauge = 1e-3;  ///< excess over blank and shank at which a gauge for Y is plausible [m]
 constexpr int kDiameterDigits = 5;
 constexpr int kOffsetDigits = 7;
 
@@ -45,7 +45,7 @@ QString capitalized(const std::string& text) {
   return words;
 }
 
-/// Whether a request asks for what is so already, or is on its way.
+/// Whether a state already has, or is about to have, the result of a request.
 bool isDone(MachineState state, MachineEvent event) {
   switch (event) {
     case MachineEvent::kEnable: return state == MachineState::kReady;
@@ -55,12 +55,12 @@ bool isDone(MachineState state, MachineEvent event) {
   }
 }
 
-/// Whether two cutters fill a view alike.
+/// Whether two cutters have the same size in a view.
 bool isSameSize(const flute_grinder::Cutter& a, const flute_grinder::Cutter& b) {
   return a.end_diameter == b.end_diameter && a.cone_angle == b.cone_angle && a.flute_length == b.flute_length;
 }
 
-/// A page of a tab, which scrolls where the screen is low, so that what is always needed stays on it.
+/// Makes the page of a tab scroll on a low screen, so that the rest of the panel stays in sight.
 QScrollArea* scrolling(QWidget* page) {
   auto* area = new QScrollArea;
   area->setWidget(page);
@@ -71,7 +71,7 @@ QScrollArea* scrolling(QWidget* page) {
   return area;
 }
 
-/// Why Y is hardly touched off at a diameter for a job; empty if it may well be.
+/// Why a diameter is implausible for touching off Y for a job; empty if it is plausible.
 std::string diameterDoubt(const GrindJob& job, double diameter) {
   const CutterGeometry& cutter = job.cutter;
   const double blank = std::max(cutter.end_diameter, 2 * ConicalCutter(cutter).radius(cutter.flute_length));
@@ -81,7 +81,7 @@ std::string diameterDoubt(const GrindJob& job, double diameter) {
          shown(cutter.shank_diameter) + ".";
 }
 
-/// A work offset as it is and as it would be.
+/// A comparison of a work offset before and after a change.
 Comparison change(int axis, const WorkOffset& before, double after) {
   const auto shown = [axis](double value) {
     return QString::fromStdString(text(Quantity{value, unitOf(axis, 0)}, kOffsetDigits));
@@ -91,7 +91,7 @@ Comparison change(int axis, const WorkOffset& before, double after) {
   return {{"now", "then", "change"}, {{QString("%1").arg("XYZA"[axis]), was, shown(after), by}}};
 }
 
-/// One for the process, however many panels there are.
+/// The object shared by all panels of the process.
 template <typename Shared>
 std::shared_ptr<Shared> theOnly() {
   static std::weak_ptr<Shared> the;
@@ -126,7 +126,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   messages_->setPlaceholderText("Replies from the grinder");
   layOut();
   guardFromWheel(*this);
-  // A stop is a stop, however often it is pressed.
+  // The stops take every click.
   std::set<QWidget*> stops;
   for (const auto& [event, button] : buttons_) {
     if (isStop(event)) stops.insert(button);
@@ -170,7 +170,7 @@ void GrindPanel::layOut() {
   hand_layout->addLayout(layOutSwitches());
   hand_layout->addStretch(1);
   tabs_->setObjectName("tabs");
-  // Where a button was that jogs there must never be the opposite one: that page does not scroll.
+  // The page of the jog buttons does not scroll, so that a button never moves to the place of the opposite one.
   for (const auto& [page, title] :
        std::initializer_list<std::pair<QWidget*, const char*>>{{scrolling(job_), "Job"},
                                                                {scrolling(section_), "Section"},
@@ -186,7 +186,7 @@ void GrindPanel::layOut() {
   layout->setSpacing(kSpacing);
   layout->addWidget(state_);
   layout->addWidget(lamps_);
-  // Whatever is below them, the stops stay where they are.
+  // The stops stay in place whatever is below them.
   layout->addLayout(layOutButtons());
   layout->addWidget(messages_);
   layout->addWidget(override_);
@@ -201,10 +201,10 @@ QLayout* GrindPanel::layOutButtons() {
   buttons->setColumnMinimumWidth(kButtonColumns - 1, kApart);
   int place = 0;
   const auto add = [&](const EventRow& request) {
-    // What the hand finds in a hurry.
+    // Large buttons for a hand in a hurry.
     const bool large = request.value == MachineEvent::kStart || request.value == MachineEvent::kHold;
     const int first = place % kButtonColumns, last = first + (large ? 1 : 0);
-    // A column of the grid is the gap.
+    // One column of the grid is the gap.
     const auto column = [](int of) { return of < kButtonColumns - 1 ? of : of + 1; };
     buttons->addWidget(addButton(request, large), place / kButtonColumns, column(first), 1,
                        column(last) - column(first) + 1);
@@ -214,7 +214,7 @@ QLayout* GrindPanel::layOutButtons() {
     const bool offered = isRequest(request.value) && !isSwitch(request.value) && request.value != MachineEvent::kJog;
     if (offered && request.value != MachineEvent::kCancel) add(request);
   }
-  // Last, where it is not hit instead of Resume.
+  // Cancel comes last, so that it is not hit instead of Resume.
   add(rowOf(MachineEvent::kCancel));
   for (const int column : {0, 1, 2, kButtonColumns}) buttons->setColumnStretch(column, 1);
   return buttons;
@@ -226,7 +226,7 @@ QLayout* GrindPanel::layOutSwitches() {
   QString part;
   for (const EventRow& request : kMachineEvents) {
     if (!isSwitch(request.value)) continue;
-    // "spindle on": the first word stands before its two buttons.
+    // For "spindle on", the first word stands before its two buttons.
     const QStringList words = QString(request.name).split(' ');
     if (words[0] != part) switches->addWidget(new QLabel(capitalized(words[0].toStdString())));
     part = words[0];
@@ -286,7 +286,7 @@ void GrindPanel::setNode(const QString& node) {
   node_ = node;
   moves_.clear();
   sent_.reset();
-  job_->discardPlan();  // it is for another machine
+  job_->discardPlan();  // the plan is for another machine
   offerBack(std::nullopt);
   override_->reset();
   link_.reset();
@@ -302,7 +302,7 @@ void GrindPanel::setNode(const QString& node) {
 }
 
 void GrindPanel::connectLink() {
-  // Without a master it would wait for one.
+  // Without a master the link would wait for one.
   if (name_.empty() || master_watch_->master() == Master::kMissing) return;
   link_ = std::make_unique<GrinderLink>(
       name_, [this](const std::string& id, const flute_grinder::GrindResult& result) { onResult(id, result); },
@@ -319,7 +319,7 @@ void GrindPanel::refresh() {
   const Master master = master_watch_->master();
   std::optional<MachineState> state;
   if (view.state) state = static_cast<MachineState>(view.state->state);
-  if (!state && sent_) {  // a grinder that is gone sends no result
+  if (!state && sent_) {  // no result comes from a grinder that is gone
     sent_.reset();
     job_->discardPlan();
   }
@@ -349,7 +349,7 @@ void GrindPanel::refresh() {
   if (rviz_) rviz_->keepPace(state && rowOf(*state).moves);
 }
 
-/// What moves or is about to, for people; empty if nothing does.
+/// Text on what moves or is about to move; empty if nothing does.
 QString GrindPanel::whatMoves(const GrinderView& view) const {
   const auto state = static_cast<MachineState>(view.state->state);
   const QString name = QString::fromStdString(name_);
@@ -363,14 +363,15 @@ QString GrindPanel::whatMoves(const GrinderView& view) const {
 }
 
 void GrindPanel::keepWhileItMoves(const GrinderView& view) {
-  // One whose messages do not arrive may still be moving, as long as it can be stopped from here.
+  // A grinder whose messages do not arrive may still be moving, as long as it can be stopped from here.
   if (view.state || !link_ || !link_->stopsConnected()) moves_ = view.state ? whatMoves(view) : QString();
   choose_node_->setEnabled(moves_.isEmpty());
   if (!moves_.isEmpty()) node_dialog_->hide();
   rviz_window_->keepPanel(moves_);
 }
 
-/// With two grinders a window must say whose it is. rviz itself sets the title when it reads or writes a file.
+/// Puts the grinder's name into the titles, for the case of two grinders. To be repeated, because rviz sets the title
+/// when it reads or writes a file.
 void GrindPanel::nameWindows() {
   const QString name = QString::fromStdString(name_);
   if (auto* dock = qobject_cast<rviz::PanelDockWidget*>(parentWidget())) {
@@ -391,7 +392,7 @@ void GrindPanel::showLegend(const std::optional<flute_grinder::Legend>& legend) 
   position_->setTolerance(legend ? std::optional<double>(legend->tolerance) : std::nullopt);
   look_->setEnabled(rviz_ && looked_at_);
   if (!rviz_ || !legend) return;
-  // Only at another tool, so that a view that the operator has chosen stays.
+  // Only for another tool, so that a view chosen by the operator stays.
   const bool other = !looked_at_ || !isSameSize(*looked_at_, legend->cutter);
   looked_at_ = legend->cutter;
   if (other) rviz_->lookAt(legend->cutter);
@@ -435,7 +436,7 @@ void GrindPanel::request(MachineEvent event) {
   });
 }
 
-/// What is true in a state is not to be read after it.
+/// Removes a reply that is valid in a state only, once that state is over.
 void GrindPanel::dropPassedReply(std::optional<MachineState> state) {
   if (!passing_) return;
   const bool there = state == passing_->state;
@@ -481,7 +482,7 @@ void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResul
     }
   }
   if (!good) return showMessage("the job has ended: " + result.error_string);
-  // A dry run of somebody else has written none.
+  // A dry run of another client has written no setpoints.
   showMessage(result.setpoints_written > 0 ? "the job is done" : result.error_string);
 }
 
@@ -532,14 +533,14 @@ void GrindPanel::offerBack(const std::optional<Touched>& touched) {
   touch_off_->offerBack(touched ? touched->axis : kAxisCount);
 }
 
-/// One step back: to the offset before the last touch-off, with what it was set for.
+/// Asks to restore the offset from before the last touch-off, with its basis.
 void GrindPanel::askToTakeBack() {
   const auto message = link_->view().offsets;
   if (!message || !touched_) return;
   const auto [axis, before] = *touched_;
   const WorkOffsets offsets = fromMessage(*message);
   const WorkOffset& now = offsets.axes[static_cast<std::size_t>(axis)];
-  // Set now, it would count for the wheel that is mounted now.
+  // An offset set now counts for the wheel mounted now.
   if (before.mounting != offsets.wheel.mounting) {
     offerBack(std::nullopt);
     return showMessage("touch-off: another wheel has been mounted since; touch off anew");
@@ -571,7 +572,7 @@ void GrindPanel::confirmWheel(const flute_grinder::GrindGoal& goal) {
   });
 }
 
-/// What an offset is set for: the chosen job, if there is one. @throw std::exception why it cannot be said.
+/// The basis of an offset: the chosen job, if there is one. @throw std::exception with the reason if it is unknown.
 OffsetBasis GrindPanel::touchedFor(int axis) const {
   OffsetBasis basis;
   basis.method = OffsetMethod::kTouchOff;
@@ -590,7 +591,7 @@ void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
   const WorkOffsets offsets = fromMessage(*message);
   struct Replies {
     int missing = 0;
-    std::map<int, std::string> lines;  ///< of the axes
+    std::map<int, std::string> lines;  ///< a line for each axis
   };
   auto replies = std::make_shared<Replies>();
   for (const OffsetMismatch& mismatch : mismatches(offsets, goal)) {

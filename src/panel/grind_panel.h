@@ -53,7 +53,7 @@ class GrindPanel : public rviz::Panel {
     flute_grinder::GrindGoal goal;
   };
 
-  /// A touch-off from here, with the work offset before.
+  /// A touch-off from this panel, with the previous work offset.
   struct Touched {
     int axis;
     WorkOffset before;
@@ -63,7 +63,7 @@ class GrindPanel : public rviz::Panel {
   struct Passing {
     MachineState state;
     bool seen;
-    QString reply;  ///< to the request, which is true in this state; empty until it has come
+    QString reply;  ///< reply to the request, valid in this state; empty until it has come
   };
 
   void layOut();
@@ -95,25 +95,26 @@ class GrindPanel : public rviz::Panel {
   void confirmWheel(const flute_grinder::GrindGoal& goal);
   OffsetBasis touchedFor(int axis) const;
   void fitOffsets(const flute_grinder::GrindGoal& goal);
-  /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception why it does not.
+  /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception with the reason if it
+  /// cannot.
   double touchedY(double diameter) const;
   void showOtherJob(const GrinderView& view, bool job_runs);
-  /// Shows a reply instead of the one before. @param text its first line is the one that is seen.
+  /// Shows a reply instead of the previous one. @param text the reply; its first line is in sight.
   void showMessage(const std::string& text);
-  /// Shows the answer to a request. @param done its success.
+  /// Shows the answer to a request. @param done text if the request succeeds.
   GrinderLink::OnAnswer reply(const std::string& done);
 
   const std::shared_ptr<MasterWatch> master_watch_;
   const std::shared_ptr<HoldKey> hold_key_;
-  QString node_;                       ///< as entered
-  std::string name_;                   ///< resolved; empty if invalid
-  QString titled_;                     ///< the name that the window's title has from here
-  std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or no master has answered since it was entered
+  QString node_;                       ///< name of the node, as entered
+  std::string name_;                   ///< resolved name of the node; empty if invalid
+  QString titled_;                     ///< name that this panel has put into the window's title
+  std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or until a master answers
   std::optional<Sent> sent_;
-  std::optional<Passing> passing_;  ///< of the last request
-  std::optional<Touched> touched_;  ///< that can be taken back
-  std::string last_sent_;           ///< id of the last goal from here
-  bool begun_ = false;              ///< a job runs or was sent, whoever sent it
+  std::optional<Passing> passing_;  ///< state to which the last request leads
+  std::optional<Touched> touched_;  ///< touch-off that can be taken back
+  std::string last_sent_;           ///< id of the last goal sent by this panel
+  bool begun_ = false;              ///< a job of any client is running or was sent
 
   StateBox* state_;
   LampBox* lamps_;
@@ -122,8 +123,8 @@ class GrindPanel : public rviz::Panel {
   JogBox* jog_;
   TouchOffBox* touch_off_;
   LegendBox* legend_;
-  QPushButton* look_;         ///< at the tool
-  QTabWidget* tabs_;          ///< of job, section, jog, zero points and view
+  QPushButton* look_;         ///< looks at the tool
+  QTabWidget* tabs_;          ///< tabs of job, section, jog, zero points and view
   RvizView* rviz_ = nullptr;  ///< null without rviz
   std::optional<flute_grinder::Cutter> looked_at_;
   std::map<MachineEvent, QPushButton*> buttons_;
@@ -133,8 +134,8 @@ class GrindPanel : public rviz::Panel {
   QPlainTextEdit* messages_;
   QPushButton* choose_node_;
   NodeDialog* node_dialog_;
-  RvizWindow* rviz_window_;  ///< around this panel
-  QString moves_;            ///< what moves, for people, as last known; empty if nothing does
+  RvizWindow* rviz_window_;  ///< window around this panel
+  QString moves_;            ///< text on what moves, as last known; empty if nothing does
   QTimer refresh_timer_;
 };
 

@@ -21,11 +21,11 @@ namespace grinder {
 
 namespace {
 
-const ros::WallDuration kStale(1);  ///< state and positions arrive at 10 Hz or more
+const ros::WallDuration kStale(1);  ///< age of a lost message; state and positions arrive at 10 Hz or more
 
-constexpr const char* kPlanning = "planning";  ///< the feedback's state until the job runs
+constexpr const char* kPlanning = "planning";  ///< state in the feedback until the job runs
 
-constexpr double kRequestTimeout = 10;  ///< for an answer [s]
+constexpr double kRequestTimeout = 10;  ///< longest wait for an answer [s]
 
 /// How long a stop waits for a connection: longer than reconnecting takes once grinder or master are back.
 const ros::WallDuration kStopTimeout(2);
@@ -71,7 +71,7 @@ GrinderLink::~GrinderLink() { spinner_.stop(); }
 GrinderView GrinderLink::view() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   GrinderView view;
-  // Not before the connections of a goal and its result are there, or a short job might end unheard.
+  // Only once the topics of goal and result are connected, or a short job might end unheard.
   if (isFresh(state_) && goals_.getNumSubscribers() > 0 && results_.getNumPublishers() > 0) {
     view.state = state_->message;
     view.machine = machine_;
@@ -96,7 +96,7 @@ void GrinderLink::onMachine(const flute_grinder::MachineInfo::ConstPtr& machine)
 
 void GrinderLink::onState(const flute_grinder::GrinderState::ConstPtr& state) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  // After a silence it may be another process, which knows nothing of the job before.
+  // After a silence the node may be a new process, which knows nothing of the last job.
   if (!isFresh(state_)) feedback_.reset();
   state_ = Received<flute_grinder::GrinderState>{*state, ros::SteadyTime::now()};
 }
@@ -143,7 +143,7 @@ void GrinderLink::onJointState(const sensor_msgs::JointState::ConstPtr& joints) 
     const auto& names = joints->name;
     const auto joint = std::find(names.begin(), names.end(), kJointNames[static_cast<std::size_t>(axis)]);
     const auto at = static_cast<std::size_t>(joint - names.begin());
-    if (joint == names.end() || at >= joints->position.size()) return;  // from another part of the machine
+    if (joint == names.end() || at >= joints->position.size()) return;  // message about another part of the machine
     position[axis] = joints->position[at];
   }
   const std::lock_guard<std::mutex> lock(mutex_);

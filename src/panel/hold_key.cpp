@@ -12,7 +12,7 @@ namespace grinder {
 
 namespace {
 
-/// Whether a space can be typed there. It is no part of a number.
+/// Whether a space can be typed into a widget; not into a number.
 bool takesText(const QObject& widget) {
   if (const auto* line = qobject_cast<const QLineEdit*>(&widget)) {
     return !line->isReadOnly() && !qobject_cast<const QAbstractSpinBox*>(line->parent());

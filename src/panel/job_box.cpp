@@ -35,8 +35,8 @@ constexpr const char* kFileChanged = "The job file or its wheel file has changed
 constexpr const char* kZeroChanged = "A zero point or the wheel has changed since it was planned. Plan it again.";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
-constexpr int kAnswerLines = 3;   ///< that have room with a choice of the operation; one more without
-constexpr int kAngleDigits = 10;  ///< so that the angle appears as in the job file
+constexpr int kAnswerLines = 3;   ///< lines with room beside a choice of the operation; one more without
+constexpr int kAngleDigits = 10;  ///< digits with which the angle appears as in the job file
 
 bool isUnfinished(const flute_grinder::JobProgress& progress) {
   return !progress.job_digest.empty() && !progress.finished;
@@ -44,21 +44,21 @@ bool isUnfinished(const flute_grinder::JobProgress& progress) {
 
 QString packageJobs() { return QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"; }
 
-/// Whether starting a goal overwrites the journal's record of an unfinished job: another one, or the first part of the
-/// same one.
+/// Whether starting a goal overwrites the journal's entry of an unfinished job: of another job, or of the first part of
+/// the same job.
 bool discardsUnfinished(const flute_grinder::GrindGoal& goal, const flute_grinder::JobProgress& progress) {
   if (!isUnfinished(progress)) return false;
   const bool goes_on = goal.first_tooth == progress.tooth && goal.first_pass == progress.pass;
   return !(goes_on && progress.job_digest == jobDigest(jobFromGoal(goal)));
 }
 
-/// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: if it does
-/// not stand where it should, the grinder refuses the goal.
+/// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: at
+/// another angle the grinder refuses the goal.
 bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swivel) {
   return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
 }
 
-/// What a job asks for, beside what is set.
+/// A comparison of the values that a job asks for and the present ones.
 Comparison comparisonOf(const std::vector<OffsetMismatch>& mismatches) {
   Comparison all{{"asked", "set", "off by"}, {}};
   for (const OffsetMismatch& mismatch : mismatches) {
@@ -168,7 +168,7 @@ void JobBox::makeQuestions() {
   }
 }
 
-/// Not modal, since the buttons that stop the grinder must work meanwhile.
+/// Opens the file dialog, which is not modal, so that the buttons that stop the grinder work meanwhile.
 void JobBox::choose() {
   if (file_dialog_) {
     file_dialog_->raise();
@@ -177,7 +177,7 @@ void JobBox::choose() {
   const QString folder = file_.isEmpty() ? packageJobs() : QFileInfo(file_).path();
   file_dialog_ = new QFileDialog(this, "Choose a job file for " + QString::fromStdString(grinder_), folder,
                                  "Jobs (*.yaml *.yml);;All files (*)");
-  // Qt's own: the desktop's is modal, and so are the messages that the others of these would open.
+  // Qt's own dialog, read-only: the desktop's dialog is modal, and so are the messages of Qt's for writing.
   file_dialog_->setOption(QFileDialog::DontUseNativeDialog);
   file_dialog_->setOption(QFileDialog::ReadOnly);
   file_dialog_->setFileMode(QFileDialog::AnyFile);
@@ -209,7 +209,7 @@ void JobBox::setFile(const QString& file) {
   readAnew();
 }
 
-/// Also what may be continued is to be found anew.
+/// Reads the file again, and looks again for a job to continue.
 void JobBox::readAnew() {
   where_left_.reset();
   continue_->setChecked(false);
@@ -227,7 +227,7 @@ void JobBox::showFile() { showName(*name_, file_.isEmpty() ? "no job file" : QFi
 void JobBox::read() {
   const std::string file = file_.toStdString();
   try {
-    // Also of a file whose set-ups are still to be found.
+    // Works even for a file whose set-ups are still to be solved.
     operation_->offer(readJobFile(file, unsolvedFields(std::nullopt), "1").operations);
     if (operation_->isMissing()) {
       job_.reset();
@@ -245,7 +245,7 @@ void JobBox::read() {
   }
 }
 
-/// One that another replaces is no longer watched, and is so again once it is read.
+/// Watches the files. To be repeated after each reading, because a replaced file is no longer watched.
 void JobBox::watchFiles() {
   const QString wheel = QString::fromStdString(wheelFileOf(file_.toStdString(), job_->operation));
   for (const QString& file : watch_.files()) watch_.removePath(file);
@@ -258,13 +258,14 @@ void JobBox::discardPlan(const QString& why) {
   showVerdict(why.isEmpty() ? withoutPlan() : why, why.isEmpty());
 }
 
-/// Of offsets that come from the grinder: those that it had when it planned may come later than the plan.
+/// Whether offsets from the grinder differ from the plan's. Older ones do not count: the offsets at the time of
+/// planning may arrive after the plan.
 bool JobBox::hasOtherZero(const flute_grinder::WorkOffsets& now) const {
   return now.header.stamp > planned_with_.header.stamp &&
          (now.values != planned_with_.values || now.wheel.mounting != planned_with_.wheel.mounting);
 }
 
-/// What is shown as long as nothing was planned.
+/// The text shown until a job is planned.
 QString JobBox::withoutPlan() const {
   QString text = file_.isEmpty()           ? "Open a job file first."
                  : operation_->isMissing() ? "Choose the operation first."
@@ -275,7 +276,7 @@ QString JobBox::withoutPlan() const {
          QString::fromStdString("\nNot finished: " + describe(progress_) + ". It ended: " + endText(progress_) + ".");
 }
 
-/// Takes the file of the unfinished job if it is another than the chosen one.
+/// Opens the file of the unfinished job if another one is chosen.
 void JobBox::clickContinue(bool checked) {
   if (!checked || where_left_) return discardPlan();
   setFile(unfinished_file_);
@@ -319,7 +320,7 @@ void JobBox::start() {
 
 bool JobBox::discardsSomething() const { return journal_damaged_ || discardsUnfinished(*planned_, progress_); }
 
-/// What is about to be ground, in full.
+/// A full description of the planned job.
 QString JobBox::plannedJob() const {
   const std::string wheel = wheelText(basisOf(*planned_, OffsetMethod::kUnknown));
   return QString::fromStdString(describe(*planned_) + ", wheel " + wheel);
@@ -349,13 +350,14 @@ void JobBox::askForOffsets() {
   ask(offset_question_, plannedJob() + "\nThese zero points are not of this job:", comparisonOf(offsets));
 }
 
-/// What of the offsets, the wheel and the tool does not fit the chosen job.
+/// The offsets, the wheel and the tool that do not fit the chosen job.
 std::vector<OffsetMismatch> JobBox::offsetMismatches() const {
   if (!job_ || !offsets_) return {};
   return mismatches(*offsets_, goal_);
 }
 
-/// A job that is continued needs what it began with, which the grinder knows. @param wheel the wheel, or all else.
+/// The mismatches to ask about; none for a job that is continued, which the grinder checks by itself.
+/// @param wheel true for the wheel, false for all others.
 std::vector<OffsetMismatch> JobBox::toAskFor(bool wheel) const {
   std::vector<OffsetMismatch> asked;
   if (continue_->isChecked()) return asked;
@@ -394,7 +396,7 @@ void JobBox::planAnew() {
   if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
 }
 
-/// The planned goal. Reads the file again; nothing, and a reason is shown, if it has changed since planning.
+/// The planned goal. Reads the file again; if it has changed since planning, shows the reason and returns nothing.
 std::optional<flute_grinder::GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
@@ -426,7 +428,7 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
   plan_->setEnabled(idle && chosen);
 }
 
-/// Whether the question shown, if there is one, still has to be answered.
+/// Whether the question shown still needs an answer.
 bool JobBox::asksWithReason() const {
   if (!planned_) return false;
   if (pages_->currentWidget() == wheel_question_) return !toAskFor(true).empty();
@@ -479,7 +481,7 @@ void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& s
                                                   : "Continue " + unfinishedName(place));
 }
 
-/// What can be continued, its file's name shortened to the room beside the rest.
+/// The name of the job that can be continued, with its file's name shortened to the room beside `rest`.
 QString JobBox::unfinishedName(const QString& rest) const {
   const QString operation = unfinished_operation_ ? toString(*unfinished_operation_) : "";
   if (unfinished_file_ == file_) return operation + rest;
@@ -488,14 +490,14 @@ QString JobBox::unfinishedName(const QString& rest) const {
   return fontMetrics().elidedText(QFileInfo(unfinished_file_).fileName(), Qt::ElideMiddle, room) + all;
 }
 
-/// The file of an unfinished job other than the chosen one, if it lies beside that or is one of the package's.
+/// Finds the file of an unfinished job other than the chosen one, beside the chosen file or in the package.
 void JobBox::findUnfinished() {
   if (where_left_ || job_runs_ || !isUnfinished(progress_)) {
     unfinished_file_.clear();
     sought_.clear();
     return;
   }
-  // Files are read once for each job, and for each that is chosen.
+  // Files are read once for each unfinished job and each chosen file.
   const std::string sought = progress_.job_digest + file_.toStdString();
   if (std::exchange(sought_, sought) == sought) return;
   unfinished_file_.clear();
@@ -513,7 +515,7 @@ void JobBox::findUnfinished() {
         return;
       }
     } catch (const std::exception&) {
-      // Whatever is there is not that job's.
+      // A file that cannot be read is not the job's.
     }
   }
 }

@@ -29,8 +29,8 @@ namespace grinder {
 struct GrindJob;
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
-/// without violations, and asks before an unfinished job is discarded, where wheel or zero points do not fit, and for
-/// the swivel unless it is known to be set. A question shows what the job asks for beside what is set.
+/// without violations. It asks before it discards an unfinished job, if wheel or zero points do not fit, and for the
+/// swivel unless its angle is known. A question shows the values asked for beside the present ones.
 class JobBox : public QWidget {
   Q_OBJECT
 
@@ -42,15 +42,15 @@ class JobBox : public QWidget {
   void setFile(const QString& file);
 
   /// @param state nothing if the grinder does not answer.
-  /// @param offsets nothing if they are not known.
+  /// @param offsets nothing if unknown.
   /// @param idle whether the grinder can plan now.
   void refresh(const std::optional<flute_grinder::GrinderState>& state,
                const std::optional<flute_grinder::WorkOffsets>& offsets, bool idle);
 
-  /// Names the job that runs in the grinder where that is not the one from here. @param text empty for none.
+  /// Names the running job of another client. @param text empty for none.
   void showOtherJob(const QString& text);
 
-  /// @param name resolved name of the grinder's node, whose robot description counts and which the dialogs name.
+  /// @param name resolved name of the grinder's node, for its robot description and for the dialogs.
   void setGrinder(const std::string& name) { grinder_ = name; }
 
   /// Shows the result of a plan, if it is for the goal that would be started now.
@@ -59,33 +59,32 @@ class JobBox : public QWidget {
   /// Plans the job once more, as it would be started now.
   void planAnew();
 
-  /// The plan is no longer valid. @param why for the operator; empty if that is known.
+  /// Discards the plan. @param why reason for the operator; empty if he knows it.
   void discardPlan(const QString& why = "");
 
-  /// Which operation of the file is chosen, for readJobFile(). @throw std::invalid_argument if it is still to be
-  /// chosen.
+  /// The chosen operation of the file, for readJobFile(). @throw std::invalid_argument if none is chosen yet.
   std::string operation() const;
 
-  /// As read from the file; null if there is none, if it is wrong, or if its operation is not chosen. Another object
-  /// after each reading.
+  /// The job read from the file; null without a file, with a wrong one, or if no operation is chosen. Each reading
+  /// makes a new object.
   const std::shared_ptr<const GrindJob>& job() const { return job_; }
 
   bool planned() const { return planned_.has_value(); }
   /// Starts the planned goal, or asks first. A plan is good for one start: the next needs a plan from the axes' new
   /// position.
   void start();
-  /// The grinder has taken the confirmation of swivelConfirmed(): starts the job.
+  /// Starts the job after the grinder has taken the confirmation of swivelConfirmed().
   void startConfirmed();
 
  Q_SIGNALS:
   void fileChosen();
-  /// start() has a question, or does not start the job: the text says what or why.
+  /// start() asks a question or does not start the job; the text shown says which.
   void startDelayed();
   void planWanted(const flute_grinder::GrindGoal& goal);
   void startWanted(const flute_grinder::GrindGoal& goal);
   /// The operator has set the swivel for the job to be started. @param angle [rad].
   void swivelConfirmed(double angle);
-  /// The operator has mounted the wheel of a goal, which is then to be planned anew.
+  /// The operator has mounted the wheel of a goal, which is then to be planned again.
   void wheelConfirmed(const flute_grinder::GrindGoal& goal);
   /// The work offsets that can be computed are to be fitted to a goal.
   void offsetFitWanted(const flute_grinder::GrindGoal& goal);
@@ -122,43 +121,43 @@ class JobBox : public QWidget {
   void showVerdict(const QString& text, bool good);
 
   QString file_;
-  std::string grinder_;  ///< name of its node
+  std::string grinder_;  ///< name of the grinder's node
   std::shared_ptr<const GrindJob> job_;
-  flute_grinder::GrindGoal goal_;                       ///< of that job, from its start
-  std::optional<flute_grinder::GrindGoal> planned_;     ///< without violations
-  flute_grinder::WorkOffsets planned_with_;             ///< the offsets of that plan
-  std::optional<flute_grinder::GrindGoal> where_left_;  ///< the job as it would be continued, if it can be
-  flute_grinder::JobProgress progress_;                 ///< as last received from the grinder
-  std::string journal_error_;                           ///< the same; empty if the journal is good
-  bool journal_damaged_ = false;                        ///< the same; the journal may then be discarded
-  bool job_runs_ = false;                               ///< whose progress that is
-  QString unfinished_file_;                            ///< of another job that can be continued; empty if none is known
-  std::optional<OperationKind> unfinished_operation_;  ///< of that file, if it has several
-  std::string sought_;                                 ///< the job and the chosen file for which that was sought
-  Swivel swivel_;                                      ///< as last received from the grinder
-  std::optional<WorkOffsets> offsets_;                 ///< as last received from the grinder
-  bool discard_ = false;                               ///< the unfinished job, by the start that waits for an answer
-  bool ignore_offset_check_ = false;                   ///< said for that start
+  flute_grinder::GrindGoal goal_;                       ///< goal of job_, from its start
+  std::optional<flute_grinder::GrindGoal> planned_;     ///< goal planned without violations
+  flute_grinder::WorkOffsets planned_with_;             ///< work offsets of that plan
+  std::optional<flute_grinder::GrindGoal> where_left_;  ///< goal that continues the job, if it can be continued
+  flute_grinder::JobProgress progress_;                 ///< progress last received from the grinder
+  std::string journal_error_;                           ///< error of the journal; empty if it is good
+  bool journal_damaged_ = false;                        ///< the journal is damaged, and may be discarded
+  bool job_runs_ = false;                               ///< the job of `progress_` is running
+  QString unfinished_file_;                             ///< file of another job that can be continued; empty if unknown
+  std::optional<OperationKind> unfinished_operation_;   ///< operation of that file, if it has several
+  std::string sought_;                                  ///< job and chosen file for which that file was sought
+  Swivel swivel_;                                       ///< swivel last received from the grinder
+  std::optional<WorkOffsets> offsets_;                  ///< offsets last received from the grinder
+  bool discard_ = false;                                ///< the start in question may discard the unfinished job
+  bool ignore_offset_check_ = false;                    ///< the start in question may ignore the offsets
   QLabel* name_;
   OperationChoice* operation_;
   QPushButton* choose_;
   QPushButton* setup_;
   QCheckBox* continue_;
-  QLabel* zeros_;  ///< whether the zero points are the job's
+  QLabel* zeros_;  ///< shows whether the zero points fit the job
   QPushButton* plan_;
   QPlainTextEdit* verdict_;
   QPlainTextEdit* other_job_;
-  QStackedWidget* answer_;  ///< verdict, or the job of somebody else
-  QWidget* form_;           ///< all of the above
+  QStackedWidget* answer_;  ///< the verdict, or the job of another client
+  QWidget* form_;           ///< page with all widgets above
   Question* discard_question_;
   QPushButton* keep_;
   Question* wheel_question_;
   Question* offset_question_;
   QPushButton* fit_;
   Question* swivel_question_;
-  QStackedWidget* pages_;  ///< form or a question
+  QStackedWidget* pages_;  ///< the form or a question
   QPointer<QFileDialog> file_dialog_;
-  QFileSystemWatcher watch_;  ///< of the job file and its wheel file
+  QFileSystemWatcher watch_;  ///< watches the job file and its wheel file
 };
 
 }  // namespace grinder

@@ -14,18 +14,18 @@ namespace grinder {
 
 namespace {
 
-/// At most half of the shortest jog_timeout [ms].
+/// Period of the messages of a continuous jog, at most half of the shortest jog_timeout [ms].
 constexpr int kRepeatInterval = 25;
 
-/// What a hurried hand hits, and not its neighbour [px].
+/// Sizes with which a hurried hand hits a button and not its neighbour [px].
 constexpr int kButtonHeight = 40, kApart = 8, kOppositesApart = 20;
 
-constexpr double kContinuous = 0;                                 ///< among the steps
-constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< [mm], A [deg]
+constexpr double kContinuous = 0;                                 ///< entry for a continuous jog among the steps
+constexpr std::array<double, 5> kSteps{0.001, 0.01, 0.1, 1, 10};  ///< steps [mm], A [deg]
 
-/// Speeds at first; the operator's are not kept.
-constexpr double kLinearSpeed = 600;   ///< [mm/min]
-constexpr double kRotarySpeed = 1800;  ///< [deg/min]
+/// Initial speeds; the operator's changes are not saved.
+constexpr double kLinearSpeed = 600;   ///< speed of X, Y and Z [mm/min]
+constexpr double kRotarySpeed = 1800;  ///< speed of A [deg/min]
 constexpr double kMaxSpeed = 99999;
 constexpr int kSpeedDecimals = 3;
 
@@ -86,7 +86,7 @@ QPushButton* JogBox::addButton(int axis, int direction) {
   auto* button = new PanelButton(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"),
                                  QString("%1 %2").arg(name).arg(up ? "+" : QString::fromUtf8("\xe2\x88\x92")),
                                  QString("Jog axis %1").arg(name));
-  // It ends the jog when it loses the focus, say to another window.
+  // The jog ends when the button loses the focus, for instance to another window.
   button->setFocusPolicy(Qt::ClickFocus);
   button->setMinimumHeight(kButtonHeight);
   button->setEnabled(false);
@@ -117,7 +117,7 @@ void JogBox::repeat() {
   // A menu or a dialog may take the mouse, so that the button does not see its release.
   const bool covered = QApplication::activePopupWidget() || QApplication::activeModalWidget();
   const bool pressed = button.isDown() && button.isEnabled() && button.isVisible() && !covered;
-  // It asks the X server and waits for the answer, so that no message goes while the display stands still.
+  // QCursor::pos() waits for an answer of the X server, so that no message is sent while the display hangs.
   if (pressed) QCursor::pos();
   const bool goes_on = pressed && since_message_.restart() <= timeout_ * 1e3;
   const int axis = pressed_->axis;

@@ -15,28 +15,28 @@
 
 namespace grinder {
 
-/// Buttons that jog the axes: by a step with each click, or for as long as a button is pressed. The latter ends when
-/// the button is released, hidden or disabled, or loses the focus, and where this program or the display stands still
-/// for longer than the grinder's jog_timeout, since a release may then be on its way; the button must be pressed anew.
+/// Buttons that jog the axes: by a step with each click, or for as long as a button is pressed. A continuous jog ends
+/// when the button is released, hidden or disabled, or loses the focus. It also ends if this program or the display
+/// hangs for longer than the grinder's jog_timeout, when a release may be on its way; the button must be pressed anew.
 class JogBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit JogBox(QWidget* parent = nullptr);
 
-  /// @param timeout longest time between the messages of a continuous jog; 0 if it is not known [s].
-  /// @param has_services whether requests with an answer can be sent; a continuous jog does without.
+  /// @param timeout longest time between the messages of a continuous jog; 0 if unknown [s].
+  /// @param has_services whether requests with an answer can be sent; a continuous jog does not need them.
   void refresh(const std::optional<flute_grinder::GrinderState>& state, double timeout, bool has_services);
 
  Q_SIGNALS:
-  void stepWanted(int axis, double distance, double speed);  ///< [m], [m/s], of A [rad], [rad/s]
+  void stepWanted(int axis, double distance, double speed);  ///< [m] and [m/s], A [rad] and [rad/s]
   void continuousWanted(int axis, double velocity);          ///< [m/s], A [rad/s]; 0 stops
 
  private:
   struct Button {
     QPushButton* button;
     int axis;
-    int direction;  ///< +1 or -1
+    int direction;  ///< direction of the jog, +1 or -1
   };
 
   QPushButton* addButton(int axis, int direction);
@@ -48,10 +48,10 @@ class JogBox : public QWidget {
   double speed(int axis) const;
 
   QComboBox* step_;
-  NumberBox* linear_speed_;  ///< [mm/min]
-  NumberBox* rotary_speed_;  ///< [deg/min]
+  NumberBox* linear_speed_;  ///< speed of X, Y and Z [mm/min]
+  NumberBox* rotary_speed_;  ///< speed of A [deg/min]
   std::array<Button, std::size_t{2} * kAxisCount> buttons_{};
-  std::optional<Button> pressed_;  ///< of a continuous jog
+  std::optional<Button> pressed_;  ///< button of the continuous jog in progress
   QElapsedTimer since_message_;
   double timeout_ = 0;  ///< longest time between messages [s]
   QTimer repeat_;

@@ -18,7 +18,7 @@ QLabel* lamp(const char* name, const char* longest) {
   QFont small = made->font();
   small.setPointSize(small.pointSize() - 1);
   made->setFont(small);
-  // A change of the text must move nothing.
+  // Fixed width, so that a change of the text moves nothing.
   made->setMinimumWidth(made->fontMetrics().horizontalAdvance(QString::fromUtf8("\xe2\x97\x8f ") + longest) + 2);
   return made;
 }
@@ -29,10 +29,10 @@ void show(QLabel& label, Lamp lamp, const char* text) {
   const auto i = static_cast<std::size_t>(lamp);
   label.setText(QString::fromUtf8(circles[i]) + ' ' + text);
   const QString style = lamp == Lamp::kOff ? QString() : QString("color: %1;").arg(colours[i]);
-  if (style != label.styleSheet()) label.setStyleSheet(style);  // which is slow
+  if (style != label.styleSheet()) label.setStyleSheet(style);  // setStyleSheet() is slow
 }
 
-/// Of what is commanded, and reported by the drive.
+/// The lamp for a command and the drive's report.
 Lamp lampOf(bool commanded, bool reported) {
   if (commanded != reported) return Lamp::kHalf;
   return commanded ? Lamp::kLit : Lamp::kOff;

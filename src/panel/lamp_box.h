@@ -7,8 +7,8 @@
 
 namespace grinder {
 
-/// Lamps for the spindle, the coolant and the probe, in a line: what is commanded is told from what the drive reports,
-/// in words, and by a circle that is empty, half full or full. A machine that lacks one has no lamp for it.
+/// A line of lamps for the spindle, the coolant and the probe. Words, and a circle that is empty, half full or full,
+/// tell the command from the drive's report. A device that the machine lacks has no lamp.
 class LampBox : public QWidget {
   Q_OBJECT
 

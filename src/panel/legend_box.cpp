@@ -13,8 +13,8 @@ namespace {
 
 using namespace units;
 
-constexpr int kDigits = 3;  ///< of a figure
-constexpr int kStops = 16;  ///< of the gradient
+constexpr int kDigits = 3;  ///< digits of a figure
+constexpr int kStops = 16;  ///< stops of the gradient
 
 /// The colours from 0 to a scale's end.
 class Gradient : public QWidget {
@@ -36,7 +36,7 @@ class Gradient : public QWidget {
 QString micrometres(double length) { return QString("%1 um").arg(length / kMicrometre, 0, 'g', kDigits); }
 QString degrees(double angle) { return QString("%1 deg").arg(angle / kDegree, 0, 'g', kDigits); }
 
-/// How much longer arrows are, e.g. " x 500" or " x 5e6"; empty without arrows.
+/// The magnification of the arrows, e.g. " x 500" or " x 5e6"; empty without arrows.
 QString timesText(double scale) {
   if (!(scale > 0)) return "";
   return " x " + QString::number(scale, 'g', 3).replace(QRegularExpression("e\\+0*"), "e");

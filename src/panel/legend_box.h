@@ -10,7 +10,7 @@
 
 namespace grinder {
 
-/// What the colours in rviz mean: where each scale ends, and the maximum error measured.
+/// The legend of rviz's colours: the ends of the scales, and the maximum error measured.
 class LegendBox : public QWidget {
   Q_OBJECT
 

@@ -12,7 +12,7 @@ class NodeDialog : public QDialog {
  public:
   explicit NodeDialog(QWidget& panel);
 
-  /// @param node the name that it has now, as entered.
+  /// @param node the present name, as entered.
   void ask(const QString& node);
 
  Q_SIGNALS:

@@ -36,7 +36,7 @@ QString NumberBox::entered(const QString& text) const {
   return rest;
 }
 
-/// The number in range that a text is, if it is one.
+/// The number in a text; nothing unless it is a number in range.
 std::optional<double> NumberBox::number(const QString& text) const {
   const QRegularExpression plain(QString("^[-+]?([0-9]+([.,][0-9]{0,%1})?|[.,][0-9]{1,%1})$").arg(decimals()));
   const QString figures = entered(text).trimmed();
@@ -47,7 +47,7 @@ std::optional<double> NumberBox::number(const QString& text) const {
 }
 
 QValidator::State NumberBox::validate(QString& text, int& /*position*/) const {
-  // Qt adds the suffix to the rest of one of which a part was deleted.
+  // If a part of the suffix was deleted, Qt adds the suffix to the rest.
   for (int part = 2; part < suffix().size(); ++part) {
     if (entered(text).endsWith(suffix().left(part))) return QValidator::Invalid;
   }
@@ -84,7 +84,7 @@ void NumberBox::hideEvent(QHideEvent* event) {
   keepText([&] { QDoubleSpinBox::hideEvent(event); });
 }
 
-/// Lets Qt handle an event at which it would put the value in place of a text that is none.
+/// Lets Qt handle an event, but keeps a wrong text that Qt would replace by the value.
 template <typename Handle>
 void NumberBox::keepText(Handle handle) {
   const QString text = lineEdit()->text();
@@ -93,7 +93,7 @@ void NumberBox::keepText(Handle handle) {
   if (!good) lineEdit()->setText(text);
 }
 
-/// Here, since Qt sends no signal for a text that it sets itself.
+/// Sets the colour here, because Qt sends no signal for a text that it sets itself.
 void NumberBox::paintEvent(QPaintEvent* event) {
   QDoubleSpinBox::paintEvent(event);
   if (red_ != isGood()) return;

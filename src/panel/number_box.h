@@ -8,18 +8,18 @@
 namespace grinder {
 
 /// A box for a number with its unit. Point and comma are both the decimal sign, whatever the system's language, and
-/// there is no group separator: 6,203 is 6.203, never 6203. What is no number in range stays as it was typed, in red,
-/// until it is changed; who uses the value asks isGood() first. Shown without zeros at the end.
+/// there is no group separator: 6,203 is 6.203, never 6203. An entry that is not a number in range stays as typed, in
+/// red, until it is changed: call isGood() before using the value. Numbers are shown without trailing zeros.
 class NumberBox : public QDoubleSpinBox {
   Q_OBJECT
 
  public:
-  /// @param decimals that can be entered, at least one: a box of whole numbers would drop the decimal sign.
+  /// @param decimals number of decimals, at least one: a box of whole numbers would drop the decimal sign.
   NumberBox(const char* name, int decimals, QWidget* parent = nullptr);
 
   /// Whether the whole text is a number in range, and value() is that number, or will be once the box is left.
   bool isGood() const { return hasAcceptableInput(); }
-  /// What may be entered, for people, e.g. "1 to 30 mm, 2 decimals".
+  /// The allowed entries as text, e.g. "1 to 30 mm, 2 decimals".
   QString allowed() const;
 
   QValidator::State validate(QString& text, int& position) const override;

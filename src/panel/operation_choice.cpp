@@ -21,7 +21,7 @@ OperationChoice::OperationChoice(QWidget* parent) : QWidget(parent), box_(new QC
 void OperationChoice::offer(const std::vector<GrindOperation>& operations) {
   const bool several = operations.size() > 1;
   const int items = several ? static_cast<int>(operations.size()) + 1 : 0;
-  // Their order is fixed, so that as many are the same ones.
+  // The order of operations is fixed, so an equal number means the same operations.
   if (items == box_->count()) return;
   box_->clear();
   if (several) box_->addItem("choose");

@@ -12,11 +12,11 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRest = 300;    ///< after which a slider moved by the mouse wheel counts as at rest [ms]
-constexpr int kSettle = 200;  ///< several state messages arrive within this [ms]
+constexpr int kRest = 300;    ///< time after which a slider moved by the mouse wheel counts as at rest [ms]
+constexpr int kSettle = 200;  ///< time within which several state messages arrive [ms]
 const int kMaxPercent = static_cast<int>(std::lround(kMaxFeedOverride * 100));
 
-/// A slider that no key moves: one that is pressed by accident would start the axes at an override of 0.
+/// A slider that no key moves: a key pressed by accident could start the axes from an override of 0.
 class MouseSlider : public QSlider {
  public:
   using QSlider::QSlider;
@@ -58,7 +58,7 @@ OverrideBox::OverrideBox(QWidget* parent)
 
 void OverrideBox::emitWanted() {
   rest_.stop();
-  // Not while the mouse holds it. Qt releases a slider that is disabled meanwhile.
+  // Nothing is requested while the mouse holds the slider. Qt releases a slider that is disabled meanwhile.
   if (slider_->isSliderDown() || !slider_->isEnabled()) return;
   ++unanswered_;
   Q_EMIT wanted(slider_->value() / 100.0);

@@ -11,7 +11,7 @@
 
 namespace grinder {
 
-/// The feed override: shows the grinder's, and requests a new one when the slider is released or comes to rest.
+/// Shows the grinder's feed override, and requests a new one when the slider is released or comes to rest.
 class OverrideBox : public QWidget {
   Q_OBJECT
 
@@ -19,22 +19,22 @@ class OverrideBox : public QWidget {
   explicit OverrideBox(QWidget* parent = nullptr);
 
   void refresh(const std::optional<flute_grinder::GrinderState>& state);
-  /// To be called after every wanted(): the grinder has accepted or refused it.
+  /// To be called after every wanted(), when the grinder has accepted or refused the override.
   void answered();
-  /// No more answers will come.
+  /// To be called when no more answers will come.
   void reset();
 
  Q_SIGNALS:
-  void wanted(double fraction);  ///< of the job's feed
+  void wanted(double fraction);  ///< fraction of the job's feed
 
  private:
   void emitWanted();
 
-  QSlider* slider_;  ///< per cent
+  QSlider* slider_;  ///< override in per cent
   QLabel* value_;
   QTimer rest_;
   int unanswered_ = 0;
-  QTimer settle_;  ///< until a state newer than the answer has arrived
+  QTimer settle_;  ///< runs until a state newer than the answer has arrived
 };
 
 }  // namespace grinder

@@ -5,9 +5,8 @@
 
 namespace grinder {
 
-/// A push button of the panel or of one of its dialogs, which the mouse alone presses: the focus may have come to it
-/// from elsewhere, and a key that was meant for another would start the spindle. A default button of a dialog is still
-/// pressed by Enter.
+/// A push button of the panel or of its dialogs that only the mouse presses: with the focus on it, a key meant for
+/// another widget could start the spindle. Enter still presses the default button of a dialog.
 class PanelButton : public QPushButton {
  public:
   PanelButton(const QString& name, const QString& text, const QString& hint) : QPushButton(text) {
@@ -15,7 +14,7 @@ class PanelButton : public QPushButton {
     setToolTip(hint);
     setFocusPolicy(Qt::NoFocus);
     setAutoDefault(false);
-    setMinimumWidth(10);  // so that the columns of a grid are alike
+    setMinimumWidth(10);  // for grid columns of equal width
   }
 
  protected:

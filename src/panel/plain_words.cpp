@@ -49,18 +49,18 @@ std::string duration(double seconds) {
 std::string describe(const flute_grinder::GrinderState& state) {
   const auto machine = static_cast<MachineState>(state.state);
   std::string text;
-  // In states other than a fault it says why the last job did not begin.
+  // In states other than a fault, `fault` says why the last job did not begin.
   if (!state.fault.empty()) text = "Fault: " + state.fault + ". ";
   if (!state.hold_reason.empty()) text += "Held because " + state.hold_reason + ". ";
   if (state.power_stays_on)
     return text + "The drive still reports power, though it was switched off: press the emergency stop.";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
   if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
-  // Switched off while the wheel is lifted, they keep the job from being resumed.
+  // A spindle or coolant that is off while the wheel is lifted keeps the job from being resumed.
   const bool is_lifted = isInJob(machine) && after(machine, MachineEvent::kSpindleOn);
   if (is_lifted && !state.spindle_commanded) text += "The spindle is off: switch it on first. ";
   if (is_lifted && !state.coolant_commanded) text += "The coolant is off: switch it on first. ";
-  // In the other states of a job it belongs there.
+  // In the other states of a job the wheel belongs in the work.
   if (state.wheel_in_work && (!isInJob(machine) || machine == MachineState::kHeld)) return text + wheelInWork(state);
   if (machine == MachineState::kReady && !state.homed)
     return text + "The axes are not homed. Home finds their reference.";

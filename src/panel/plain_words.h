@@ -14,29 +14,29 @@ namespace grinder {
 /// A time, e.g. "7.0 s", "12:05 min" or "1:02:05 h". @param seconds not negative.
 std::string duration(double seconds);
 
-/// What the grinder is doing, why, and what to do about it.
+/// The grinder's activity, the reason for it, and the operator's next step.
 std::string describe(const flute_grinder::GrinderState& state);
 
-/// Where the swivel stands, as the drive measures it or somebody has confirmed it.
+/// The swivel's angle, measured by the drive or confirmed by a person.
 std::string swivelText(const flute_grinder::GrinderState& state);
 
-/// The success of a request, in a line. @param event a request.
+/// The success message of a request. @param event a request.
 std::string done(MachineEvent event);
 
 /// An operation by its number and name, e.g. "2 primary relief".
 std::string operationEntry(OperationKind kind);
 
-/// Which of several operations a goal is; nothing if it is the only one.
+/// The operation of a goal; nothing if its file has only one.
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal);
 
-/// A job that runs, by its file, its operation and its tool.
+/// A running job, by its file, operation and tool.
 std::string describe(const flute_grinder::GrindGoal& goal);
 
-/// A job that was begun, by its file and tool, and how far it has come. @param progress not finished.
+/// An unfinished job, by its file, its tool and its progress. @param progress not finished.
 std::string describe(const flute_grinder::JobProgress& progress);
 
-/// What came of a plan: how long the job takes, what comes closest, why zero points do not fit, what cuts its feed; or
-/// its violations. A line for each.
+/// The result of a plan, a line for each item: duration, least distance, zero points that do not fit, limits of the
+/// feed; or its violations.
 std::string describe(const flute_grinder::GrindResult& planned);
 
 }  // namespace grinder

@@ -10,8 +10,8 @@ namespace grinder {
 
 namespace {
 
-constexpr int kAppearing = 1000;  ///< [ms]
-constexpr int kSmaller = 2;       ///< by which the text of a dangerous answer is smaller [pt]
+constexpr int kAppearing = 1000;  ///< time without answers after it appears [ms]
+constexpr int kSmaller = 2;       ///< reduction of the text of a dangerous answer [pt]
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Question::Question(const QString& name, int lines)
   text_->setTabChangesFocus(true);
   text_->setWordWrapMode(QTextOption::WrapAtWordBoundaryOrAnywhere);
   text_->setMinimumHeight(lines * text_->fontMetrics().lineSpacing() + 12);
-  // The borders of a table are wider than what it is given.
+  // The borders of a table exceed its width.
   text_->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   more_->setObjectName(name + "_more");
   more_->setAutoFillBackground(true);
@@ -49,7 +49,7 @@ QPushButton* Question::addAnswer(const char* name, const QString& text, const QS
                                  const std::function<void()>& act) {
   auto* button = new PanelButton(name, text, hint);
   button->setEnabled(false);
-  // One that is not offered must not move the others.
+  // An answer that is not offered must not move the others.
   QSizePolicy policy = button->sizePolicy();
   policy.setRetainSizeWhenHidden(true);
   button->setSizePolicy(policy);
@@ -91,7 +91,7 @@ void Question::appear() {
 void Question::enableAnswers() {
   const QScrollBar& bar = *text_->verticalScrollBar();
   const bool appeared = !appearing_.isActive();
-  // Not before it has its size.
+  // Only once the text has its size.
   if (appeared && bar.value() == bar.maximum()) seen_ = true;
   more_->setVisible(bar.value() < bar.maximum());
   for (auto* answer : findChildren<QPushButton*>()) answer->setEnabled(appeared && (seen_ || answer == decline_));

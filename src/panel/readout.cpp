@@ -21,7 +21,7 @@ using namespace units;
 constexpr const char* kGrey = "#5f6368";
 constexpr const char* kBlue = "#1a5fb4";
 
-/// Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
+/// The colour of a state. Green: a job may begin. Blue: the axes move. Amber: they rest during a job, or are about to.
 const char* colourOf(const flute_grinder::GrinderState& grinder) {
   if (grinder.power_stays_on) return kWrong;
   switch (rowOf(static_cast<MachineState>(grinder.state)).group) {
@@ -36,19 +36,19 @@ const char* colourOf(const flute_grinder::GrinderState& grinder) {
 
 constexpr const char* kStrokeDone = "Stroke %p %";
 constexpr const char* kJobDone = "Job %p %";
-constexpr int kBarHeight = 8;  ///< [px]
+constexpr int kBarHeight = 8;  ///< height of a bar [px]
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Of positions [mm, deg]: micrometres, and no finer than encoders read.
+// Decimals of positions [mm, deg]: micrometres, and no finer than encoders read.
 constexpr int kFewestDecimals = 3, kMaxDecimals = 4;
 
-/// Short, since four stand in a line; mm or deg. @param to_go [m], A [rad].
+/// A distance to go in mm or deg, short enough for four in a line. @param to_go [m], A [rad].
 QString toGoText(int axis, double to_go) {
   const double shown = to_go / (axis == kA ? kDegree : kMillimetre);
   return QString("%1 %2").arg("XYZA"[axis]).arg(shown, 0, 'f', std::abs(shown) < 99.9995 ? kFewestDecimals : 1);
 }
 
-/// mm/min with three digits, so that the feed of a small tool shows too.
+/// A feed in mm/min with three digits, so that the feed of a small tool shows too. @param feed [m/s].
 QString feedText(double feed) {
   const double shown = feed / kMillimetrePerMinute;
   const int decimals = shown == 0 || shown >= 99.95 ? 0 : shown >= 9.995 ? 1 : 2;
@@ -92,7 +92,7 @@ void StateBox::setNode(const QString& node) {
 void StateBox::setName(const QString& name, const QString& colour) {
   const QString style = QString("background: %1; color: white; padding: 4px; border-radius: 4px;").arg(colour);
   name_->setText(name);
-  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // which is slow
+  if (style != name_->styleSheet()) name_->setStyleSheet(style);  // setStyleSheet() is slow
 }
 
 void StateBox::show(const GrinderView& view, const QString& node, Master master) {
@@ -124,7 +124,7 @@ ProgressBox::ProgressBox(QWidget* parent)
   feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
   feed_->setMinimumWidth(feed_->fontMetrics().horizontalAdvance("10000 mm/min"));
-  // What changes must not make the panel grow.
+  // Changing texts must not make the panel grow.
   stroke_.text->setMinimumWidth(stroke_.text->fontMetrics().horizontalAdvance("Stroke 100 %") + 4);
   job_.text->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   auto* place = new QHBoxLayout;
@@ -223,7 +223,7 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
     label->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
     label->setFont(small);
     label->setToolTip(QString("Distance to go to the end of the running move in %1").arg(axis == kA ? "deg" : "mm"));
-    // A long one must not make the panel grow.
+    // A long text must not make the panel grow.
     label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     to_go->addWidget(label, 1);
     to_go_[static_cast<std::size_t>(axis)] = label;
@@ -233,14 +233,14 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
 
 void PositionBox::setTolerance(std::optional<double> tolerance) {
   const double decimals = std::ceil(-std::log10(tolerance.value_or(kMicrometre) / kMillimetre) - 1e-9);
-  // 0 and NaN, of a malformed legend, have no logarithm to count by.
+  // The tolerance of a malformed legend may be 0 or NaN, without a usable logarithm.
   decimals_ = !(decimals <= kMaxDecimals)      ? kMaxDecimals
               : !(decimals >= kFewestDecimals) ? kFewestDecimals
                                                : static_cast<int>(decimals);
 }
 
 void PositionBox::show(const GrinderView& view) {
-  // At rest there is none; on the way a little is left in every axis.
+  // At rest the distance to go is 0 in every axis; during a move it is not.
   const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
   to_go_title_->setText(moves ? "To go" : " ");
   for (int axis = 0; axis < kAxisCount; ++axis) {

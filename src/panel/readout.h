@@ -12,8 +12,8 @@
 
 namespace grinder {
 
-/// The panel's head: the grinder's name, where its swivel stands, its state on a coloured field, and a sentence that
-/// explains it, or that says whether the grinder or the ROS master is missing.
+/// The panel's head: the grinder's name, its swivel, its state on a coloured field, and a sentence that explains the
+/// state or says whether the grinder or the ROS master is missing.
 class StateBox : public QWidget {
   Q_OBJECT
 
@@ -32,20 +32,20 @@ class StateBox : public QWidget {
   QLabel* meaning_;
 };
 
-/// Progress of the stroke and of the job, which is named, whoever started it.
+/// The progress of the stroke and of the job of any client, with the job's name.
 class ProgressBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit ProgressBox(QWidget* parent = nullptr);
-  /// @param job_runs if false, the last job's progress is shown in grey, or that of planning.
+  /// @param job_runs if false, the progress of planning is shown, or in grey the progress of the last job.
   void show(const GrinderView& view, bool job_runs);
 
  private:
   void showPlace(const GrinderView& view, const flute_grinder::GrindFeedback& feedback);
   void showPlanning(double planned);
 
-  /// A bar with its text above it, where it is legible whatever the bar's colours.
+  /// A bar with its text above it, legible whatever the bar's colours.
   struct Bar {
     QProgressBar* bar;
     QLabel* text;
@@ -59,15 +59,15 @@ class ProgressBox : public QWidget {
   Bar stroke_, job_;
 };
 
-/// Work position of the axes in mm and deg, with the distance to go of the running move; the machine's and the work
-/// offset in the tool tip.
+/// The work positions of the axes in mm and deg, with the distance to go of the running move. The tool tip has the
+/// machine position and the work offset.
 class PositionBox : public QWidget {
   Q_OBJECT
 
  public:
   explicit PositionBox(QWidget* parent = nullptr);
   void show(const GrinderView& view);
-  /// Chooses the decimals. @param tolerance of the job that is shown [m]; nothing without one.
+  /// Chooses the decimals. @param tolerance tolerance of the job shown [m]; nothing without a job.
   void setTolerance(std::optional<double> tolerance);
 
  private:

@@ -13,11 +13,11 @@ namespace grinder {
 namespace {
 
 constexpr std::chrono::seconds kUntilAtRest{1};
-constexpr int kPause = 67;       ///< with rviz's own interval of 33 it makes 100 [ms]
-constexpr double kDistance = 4;  ///< of the camera, of the flutes' length or diameter
+constexpr int kPause = 67;       ///< pause; with rviz's own interval of 33 ms a frame takes 100 ms [ms]
+constexpr double kDistance = 4;  ///< distance of the camera, as a multiple of the flutes' length or diameter
 constexpr const char* kFrame = "work";
 
-/// Whether the hand turns or shifts the view.
+/// Whether an event of the mouse turns or shifts the view.
 bool isMotion(QEvent::Type type) {
   return type == QEvent::MouseMove || type == QEvent::MouseButtonPress || type == QEvent::Wheel;
 }
@@ -56,7 +56,7 @@ bool RvizView::eventFilter(QObject* watched, QEvent* event) {
   return QObject::eventFilter(watched, event);
 }
 
-/// rviz draws a frame now, and its timer starts the next. At rest that waits.
+/// Called when rviz draws a frame, which its timer repeats; at rest the timer pauses.
 void RvizView::beginFrame() {
   if (Clock::now() - last_motion_ < kUntilAtRest) return;
   manager_.stopUpdate();

@@ -10,24 +10,24 @@
 
 namespace grinder {
 
-/// Where rviz's view looks, and how often it is drawn.
+/// Controls the direction and the frame rate of rviz's view.
 class RvizView : public QObject {
   Q_OBJECT
 
  public:
-  /// @param manager outlives this.
+  /// @param manager must outlive this object.
   explicit RvizView(rviz::VisualizationManager& manager, QObject* parent);
-  /// rviz draws at its own rate again.
+  /// Makes rviz draw at its own rate again.
   ~RvizView() override;
   RvizView(const RvizView&) = delete;
   RvizView& operator=(const RvizView&) = delete;
 
-  /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. A view in
-  /// another frame does not look at the work, and stays.
+  /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. Other
+  /// views do not follow the work, and stay.
   void lookAt(const flute_grinder::Cutter& cutter);
 
   /// Has rviz draw at its own frame rate while something moves or the mouse turns the view, and ten times a second
-  /// otherwise: without a graphics card each frame costs. To be called often.
+  /// otherwise: without a graphics card each frame costs processor time. To be called often.
   void keepPace(bool moves);
 
  protected:
@@ -41,7 +41,7 @@ class RvizView : public QObject {
 
   rviz::VisualizationManager& manager_;
   Clock::time_point last_motion_ = Clock::now();
-  QTimer pause_;  ///< between two frames
+  QTimer pause_;  ///< pause between two frames
 };
 
 }  // namespace grinder

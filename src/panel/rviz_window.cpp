@@ -17,7 +17,7 @@ namespace grinder {
 namespace {
 
 constexpr int kQuestionLines = 6, kQuestionWidth = 360;
-constexpr const char* kQuit = "Quit";  ///< in rviz's menu *File*
+constexpr const char* kQuit = "Quit";  ///< name in rviz's menu *File*
 
 bool isQuit(const QAction& action) { return action.text().remove('&') == kQuit; }
 
@@ -53,14 +53,14 @@ void RvizWindow::keepPanel(const QString& why) {
 
 void RvizWindow::watch() {
   dock_ = qobject_cast<rviz::PanelDockWidget*>(panel_.parentWidget());
-  // A dock that floats still has the window as its parent.
+  // A floating dock still has the window as its parent.
   window_ = dock_ ? qobject_cast<QMainWindow*>(dock_->parentWidget()) : nullptr;
   if (!window_) return;
   dock_->installEventFilter(this);
   window_->installEventFilter(this);
 }
 
-/// rviz gives its window the size that the configuration has, whatever the screen's is.
+/// Fits the window to the screen: rviz takes its size from the configuration.
 void RvizWindow::fitScreen() {
   fits_ = true;
   const QRect screen = window_->windowHandle()->screen()->availableGeometry();
@@ -72,7 +72,7 @@ void RvizWindow::fitScreen() {
 }
 
 void RvizWindow::lock() {
-  // First, since this disables the dock's own action, and the other way round.
+  // The features first, because changing them also changes the dock's own action.
   dock_->setFeatures(dock_->features() & ~QDockWidget::DockWidgetClosable);
   for (auto* box : dock_->titleBarWidget()->findChildren<QToolButton*>()) switchOff(box);
   for (auto* fold : window_->centralWidget()->findChildren<QToolButton*>(QString(), Qt::FindDirectChildrenOnly)) {
@@ -92,7 +92,7 @@ void RvizWindow::switchOff(QObject* item) {
   off_.emplace_back(item);
 }
 
-/// Also one that was away when the motion began.
+/// Shows the panel, even if it was hidden when the motion began.
 void RvizWindow::showPanel() {
   if (!dock_->isHidden()) return;
   dock_->overrideVisibility(false);

@@ -16,16 +16,16 @@ class PanelDockWidget;
 
 namespace grinder {
 
-/// rviz's window around a panel. It takes no more than the screen, and keeps the panel on it while the grinder moves:
-/// then rviz's menus but for *Quit*, the box that closes the panel and the arrows that fold it away are off, and rviz
-/// asks before it ends. Without rviz it does nothing.
+/// rviz's window around a panel. It fits the window to the screen, and keeps the panel in sight while the grinder
+/// moves: rviz's menus except *Quit*, the button that closes the panel and the arrows that fold it away are disabled,
+/// and rviz asks before it ends. Without rviz it does nothing.
 class RvizWindow : public QObject {
   Q_OBJECT
 
  public:
   explicit RvizWindow(QWidget& panel);
 
-  /// To be called often, since rviz enables its menus anew. @param why what moves, for people; empty if nothing does.
+  /// To be called often, because rviz enables its menus again. @param why text on what moves; empty if nothing does.
   void keepPanel(const QString& why);
 
  protected:
@@ -44,10 +44,10 @@ class RvizWindow : public QObject {
   QPointer<rviz::PanelDockWidget> dock_;
   QPointer<QMainWindow> window_;
   QString why_;
-  std::vector<QPointer<QObject>> off_;  ///< actions and buttons that are enabled otherwise
-  bool fits_ = false;                   ///< it has been made to, once
-  bool ends_ = false;                   ///< the operator has said so
-  QDialog* dialog_;                     ///< with the question
+  std::vector<QPointer<QObject>> off_;  ///< actions and buttons disabled by this object
+  bool fits_ = false;                   ///< the window was fitted to the screen once
+  bool ends_ = false;                   ///< the operator has confirmed the end of rviz
+  QDialog* dialog_;                     ///< dialog with the question
   Question* question_;
 };
 

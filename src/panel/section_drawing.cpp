@@ -21,11 +21,11 @@ const QColor kInk("#202124");
 const QColor kThin("#5f6368");
 const QColor kMeasured("#1a5fb4");
 
-constexpr int kLines = 2;          ///< of a label; of a relief's one more
-constexpr double kDimension = 8;   ///< from the cutter to the land's dimension [px]
-constexpr double kMargin = 14;     ///< around the cutter [px]
-constexpr double kStepsOfQt = 16;  ///< of Qt, in a degree
-constexpr double kTop = kPi / 2;   ///< where the first tooth's edge is drawn [rad]
+constexpr int kLines = 2;          ///< lines of a label; a relief's label has one more
+constexpr double kDimension = 8;   ///< distance from the cutter to the land's dimension [px]
+constexpr double kMargin = 14;     ///< margin around the cutter [px]
+constexpr double kStepsOfQt = 16;  ///< Qt's units of angle per degree
+constexpr double kTop = kPi / 2;   ///< angle at which the first tooth's edge is drawn [rad]
 
 QPen dashed(const QColor& colour) { return {colour, 1, Qt::DashLine}; }
 
@@ -37,7 +37,7 @@ class Painting {
     const QFontMetricsF metrics(painter.font());
     label_ = {metrics.horizontalAdvance("asked 00.00"),
               (kLines + (isRelief(section.job->process.kind) ? 1 : 0)) * metrics.lineSpacing()};
-    // The corners belong to the labels.
+    // The corners are for the labels.
     const double w = sheet.width() / 2, h = sheet.height() / 2;
     const double corner = std::hypot(std::max(0.0, w - label_.width()), std::max(0.0, h - label_.height()));
     radius_ = std::max(10.0, std::min({w, h, corner}) - kMargin);
@@ -61,7 +61,7 @@ class Painting {
   }
 
  private:
-  /// @param angle as drawn [rad]
+  /// A point on the sheet. @param angle angle on the sheet [rad]
   QPointF at(double radius, double angle) const {
     return centre_ + scale_ * radius * QPointF(std::cos(angle), -std::sin(angle));
   }
@@ -89,7 +89,7 @@ class Painting {
     label(-1, 1, {"cutter", mm(2 * section_.ground.radius) + " mm"}, true, at(section_.ground.radius, -3 * kPi / 4));
   }
 
-  /// Between the radius and the rake face's tangent, at the edge.
+  /// Draws the rake: the angle at the edge between the radius and the rake face's tangent.
   void rake(const ToothSection& tooth) {
     const QPointF edge = at(section_.ground.radius, kTop);
     const auto inward = [&](double angle) { return QPointF(-side_ * std::sin(angle), std::cos(angle)); };
@@ -106,7 +106,7 @@ class Painting {
           section_.isWithin(ToolFigure::kRake), edge + r * inward(*tooth.rake / 2));
   }
 
-  /// Between the circle's tangent and the primary relief's, at the edge; and how wide that is.
+  /// Draws the primary relief: its angle at the edge to the circle's tangent, and its width.
   void relief(const ReliefSection& relief) {
     const QPointF edge = at(section_.ground.radius, kTop);
     const auto behind = [&](double angle) { return QPointF(-side_ * std::cos(angle), std::sin(angle)); };
@@ -127,7 +127,7 @@ class Painting {
     label(-side_, -1, lines, good, edge + r * behind(*relief.clearance / 2));
   }
 
-  /// A dimension outside of the cutter. @param angle behind the edge [rad].
+  /// Draws a dimension outside the cutter. @param angle angle behind the edge [rad].
   void alongCircle(double angle) {
     const double outside = radius_ + kDimension;
     painter_.setPen(QPen(kMeasured, 1.5));
@@ -146,14 +146,14 @@ class Painting {
           at(outside / scale_, target));
   }
 
-  /// @param from,span counterclockwise [rad]
+  /// Draws an arc. @param from,span counterclockwise [rad]
   void arc(const QPointF& centre, double radius, double from, double span) {
     const QRectF square(centre - QPointF(radius, radius), 2 * QSizeF(radius, radius));
     painter_.drawArc(square, qRound(from / kDegree * kStepsOfQt), qRound(span / kDegree * kStepsOfQt));
   }
 
-  /// Writes into a corner, with a line to what it is about.
-  /// @param right,low which corner: 1, else -1.
+  /// Writes a label into a corner, with a line to its target.
+  /// @param right,low 1 or -1: the corner.
   void label(double right, double low, const QStringList& lines, bool good, const QPointF& target) {
     const int flags = (right > 0 ? Qt::AlignRight : Qt::AlignLeft) | (low > 0 ? Qt::AlignBottom : Qt::AlignTop);
     const QString text = lines.join('\n');
@@ -176,8 +176,8 @@ class Painting {
   QRectF sheet_;
   QPointF centre_;
   QSizeF label_;
-  double radius_, scale_, turn_;  ///< of the cutter [px], [px/m], from the cutter's frame to the sheet [rad]
-  double side_;                   ///< of the edge on which its flute is: 1 right, -1 left
+  double radius_, scale_, turn_;  ///< cutter [px], [px/m], from the cutter's frame to the sheet [rad]
+  double side_;                   ///< side of the edge with its flute: 1 right, -1 left
 };
 
 }  // namespace

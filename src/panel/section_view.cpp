@@ -20,7 +20,7 @@ namespace {
 using units::kMillimetre;
 
 constexpr int kPausePerWork = 9;
-constexpr int kXDecimals = 2;  ///< of X: no finer place is computed
+constexpr int kXDecimals = 2;  ///< decimals of X, the finest step of a section
 
 template <typename Value>
 bool isReady(const std::future<Value>& future) {
@@ -90,7 +90,7 @@ SectionView::Computed SectionView::computed(const Wanted& wanted) {
   };
   try {
     if (!job) job = withLaws(ValidJob(*wanted.job));
-    // The length may have more decimals than the choice.
+    // The flute length may have more decimals than the box.
     const double x = std::min(wanted.x * kMillimetre, (*job)->cutter.flute_length);
     const auto section = std::make_shared<const CutterSection>(cutterSection(*job, x));
     return {wanted.job, section, figuresText(*section), Clock::now() - begin, job};
@@ -122,7 +122,7 @@ QString SectionView::whyNothing(const GrinderView& view) const {
          ". This is not the chosen job, and only the chosen job's section can be shown, at an X of your choice.";
 }
 
-/// The section at the wheel, or at the flute's end next to it.
+/// Chooses the section at the wheel, or at the nearest end of the flute.
 void SectionView::follow(double x) {
   const QSignalBlocker programmatic(x_);
   x_->setValue(x / kMillimetre);

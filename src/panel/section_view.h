@@ -18,15 +18,15 @@
 namespace grinder {
 
 /// The part of the panel that shows a section of the cutter that the chosen job grinds, at a chosen X or where the
-/// wheel stands. Sections are computed in a thread of their own, one at a time and for a tenth of the time at most;
-/// none while this is hidden.
+/// wheel stands. Sections are computed one at a time in a thread of their own, for at most a tenth of the time, and
+/// never while this widget is hidden.
 class SectionView : public QWidget {
   Q_OBJECT
 
  public:
   explicit SectionView(QWidget* parent = nullptr);
 
-  /// @param job that is chosen; null if none is, or if it is wrong.
+  /// @param job the chosen job; null if none is chosen, or if it is wrong.
   void refresh(const GrinderView& view, const std::shared_ptr<const GrindJob>& job);
 
  private:
@@ -34,16 +34,16 @@ class SectionView : public QWidget {
   using Job = std::shared_ptr<const GrindJob>;
   struct Wanted {
     Job job;
-    double x = 0;                      ///< [mm]
-    std::optional<ValidJob> with_law;  ///< from withLaws(); nothing if that is not computed yet
+    double x = 0;                      ///< X of the section [mm]
+    std::optional<ValidJob> with_law;  ///< result of withLaws(); nothing if not computed yet
     bool operator==(const Wanted& o) const { return job == o.job && x == o.x; }
   };
   struct Computed {
     Job job;
-    std::shared_ptr<const CutterSection> section;  ///< null if it cannot be computed
-    QString text;                                  ///< its figures, or why not
+    std::shared_ptr<const CutterSection> section;  ///< null if the section cannot be computed
+    QString text;                                  ///< figures of the section, or why there is none
     Clock::duration took{};
-    std::optional<ValidJob> with_law;  ///< as in Wanted
+    std::optional<ValidJob> with_law;  ///< see Wanted::with_law
   };
 
   static Computed computed(const Wanted& wanted);
@@ -54,14 +54,14 @@ class SectionView : public QWidget {
   void show(const std::shared_ptr<const CutterSection>& section, const QString& text);
 
   Job job_;
-  std::optional<ValidJob> with_law_;  ///< as in Wanted
-  std::string digest_;                ///< of the job
+  std::optional<ValidJob> with_law_;  ///< see Wanted::with_law
+  std::string digest_;                ///< digest of the job
   std::optional<Wanted> wanted_;
   NumberBox* x_;
   QCheckBox* follow_;
   SectionDrawing* drawing_;
   QLabel* figures_;
-  Clock::time_point earliest_;  ///< for the next
+  Clock::time_point earliest_;  ///< earliest time of the next section
   std::future<Computed> computing_;
 };
 

@@ -29,12 +29,12 @@ namespace grinder {
 
 namespace {
 
-constexpr int kPollInterval = 50;                     ///< [ms]
-constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< with the buttons below the sheet
-constexpr int kFewestLines = 12;                      ///< beside the question
+constexpr int kPollInterval = 50;                     ///< interval of looks at the thread [ms]
+constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< size of the sheet with the buttons below it
+constexpr int kFewestLines = 12;                      ///< least lines of the sheet with the question
 constexpr int kWriteLines = 10;
 
-/// Of every operation of a job file.
+/// The digests of all operations of a job file.
 std::vector<std::string> digestsOf(const std::string& file) {
   const GrindJob job = readJobFile(file, unsolvedFields(std::nullopt), "1");
   if (job.operations.size() < 2) return {jobDigest(job)};
@@ -196,7 +196,7 @@ void SetupDialog::poll() {
   if (working_.valid() && working_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
     take(working_.get());
   }
-  // Closed, it stays until nothing is left to wait for.
+  // A closed dialog stays until its thread has ended.
   if (!isVisible() && !working_.valid()) deleteLater();
 }
 

@@ -23,36 +23,36 @@ namespace grinder {
 struct GrindJob;
 struct JobSetup;
 
-/// Shows the set-up sheet of a job file, leaving a figure of it as it is if asked to, with the figures that the file
-/// has. It writes the set-up into the file if the operator says so twice, and never into that of the job that runs.
-/// Solving and writing have a thread of their own, and a master that hangs holds it up for a second at most.
+/// Solves and shows the set-up sheet of a job file beside the file's figures, with one figure kept if asked. Writes the
+/// set-up into the file if the operator confirms it twice, but never into the file of the running job. Solving and
+/// writing have a thread of their own, which waits for a hanging master for a second at most.
 class SetupDialog : public QDialog {
   Q_OBJECT
 
  public:
   /// Begins to solve.
-  /// @param operation of the file, for readJobFile(). @param title what the sheet is of.
-  /// @param grinder resolved name of its node; the swivel's range is that of the robot description beside it.
+  /// @param operation operation of the file, for readJobFile(). @param title title of the sheet.
+  /// @param grinder resolved name of the node; the swivel's range comes from the robot description in its namespace.
   SetupDialog(const QString& file, const std::string& operation, const QString& title, const std::string& grinder,
               QWidget* parent);
   ~SetupDialog() override;
 
-  /// @param last job in the grinder's journal. @param runs whether it does.
+  /// @param last last job in the grinder's journal. @param runs whether that job is running.
   void refresh(const flute_grinder::JobProgress& last, bool runs);
 
  Q_SIGNALS:
-  /// The set-up is in the file.
+  /// The set-up has been written into the file.
   void written();
 
  private:
-  /// What the thread has done.
+  /// The result of the thread.
   struct Done {
-    std::shared_ptr<const JobSetup> setup;  ///< that was solved and can be written
+    std::shared_ptr<const JobSetup> setup;  ///< solved set-up that can be written
     bool written = false;
     QString text;
     bool good = false;
-    std::vector<std::string> digests{};  ///< of the operations in the file
-    QString changes{};                   ///< in the file
+    std::vector<std::string> digests{};  ///< digests of the operations in the file
+    QString changes{};                   ///< changes to the file
   };
 
   QWidget* makeButtons();
@@ -74,9 +74,9 @@ class SetupDialog : public QDialog {
   QPlainTextEdit* sheet_;
   QComboBox* keep_;
   QPushButton* write_;
-  QLabel* why_not_;  ///< the file is not written now
+  QLabel* why_not_;  ///< why the file is not written now
   Question* question_;
-  QWidget* buttons_;  ///< or the question
+  QWidget* buttons_;  ///< buttons, in place of the question
   QTimer poll_timer_;
   std::atomic<bool> stop_{false};
   std::future<Done> working_;  ///< last member: its thread uses the others

@@ -6,7 +6,7 @@
 
 namespace grinder {
 
-constexpr const char* kWrong = "#b00020";  ///< colour of what is not as it should be
+constexpr const char* kWrong = "#b00020";  ///< colour of faults
 constexpr const char* kGreen = "#1e7d34";
 constexpr const char* kAmber = "#9a5b00";
 
@@ -22,13 +22,13 @@ inline QPlainTextEdit* textView(const char* name, int lines) {
   return view;
 }
 
-/// @param good false shows it in red.
+/// @param good false shows the text in red.
 inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
   view.setStyleSheet(good ? "" : QString("color: %1;").arg(kWrong));
   view.setPlainText(text);
 }
 
-/// Shows a name, shortened in its middle to what room the label has beside the rest.
+/// Shows a name, shortened in its middle to the room that the label has beside `rest`.
 inline void showName(QLabel& label, const QString& name, const QString& rest = "") {
   const QFontMetrics metrics = label.fontMetrics();
   label.setText(metrics.elidedText(name, Qt::ElideMiddle, label.width() - metrics.horizontalAdvance(rest)) + rest);

@@ -16,16 +16,16 @@ namespace grinder {
 
 namespace {
 
-constexpr double kMoved = 10e-6;  ///< by which an axis at rest does not move [m], A [rad]
-constexpr int kDecimals = 4;      ///< of positions and offsets
+constexpr double kMoved = 10e-6;  ///< change of position that counts as a motion [m], A [rad]
+constexpr int kDecimals = 4;      ///< decimals of positions and offsets
 constexpr int kLinesOfChange = 4;
 constexpr int kLinesOfOffset = 3;
-constexpr double kFarthest = 9999;  ///< [mm or deg]
+constexpr double kFarthest = 9999;  ///< largest entry [mm or deg]
 
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
 const char* unitName(int axis) { return axis == kA ? "deg" : "mm"; }
 
-/// Whether the grinder sets offsets in its state.
+/// Whether the grinder can set offsets in its present state.
 bool mayTouchOff(const flute_grinder::GrinderState& state) {
   return (state.state == flute_grinder::GrinderState::READY || state.state == flute_grinder::GrinderState::DISABLED) &&
          state.homed != 0;

@@ -14,9 +14,9 @@
 
 namespace grinder {
 
-/// Sets the work offset of an axis from where it stands, takes the last one back, and takes the word of a new clamping;
-/// shows the offset with who set it and when, and the tool in the collet. Nothing counts before the operator has seen
-/// it beside what was.
+/// Sets the work offset of an axis from its present position, takes the last change back, and reports a new clamping.
+/// Shows the offset with who set it and when, and the tool in the collet. A change counts only after the operator has
+/// seen it beside the old value.
 class TouchOffBox : public QWidget {
   Q_OBJECT
 
@@ -26,15 +26,15 @@ class TouchOffBox : public QWidget {
   /// @param has_services whether requests with an answer can be sent.
   void refresh(const GrinderView& view, bool has_services);
 
-  /// Asks before something counts; the question goes when the axis moves.
-  /// @param done what to do if it is to count.
+  /// Asks before a change counts; the question disappears when the axis moves.
+  /// @param done action if the operator agrees.
   void ask(const QString& text, const Comparison& figures, std::function<void()> done);
 
-  /// The offset that was set last from here is taken back on demand. @param axis kAxisCount for none.
+  /// Offers to take back the last offset set by this panel. @param axis kAxisCount for none.
   void offerBack(int axis);
 
  Q_SIGNALS:
-  /// @param at the axis' work position; of Y the diameter of the blank that the wheel touches [m], of A [rad].
+  /// @param at work position of the axis [m], A [rad]; for Y, diameter of the blank that the wheel touches [m].
   void wanted(int axis, double at);
   void backWanted();
   void reclampedWanted();
@@ -45,18 +45,18 @@ class TouchOffBox : public QWidget {
   QString offsetText(const GrinderView& view) const;
 
   QComboBox* axis_;
-  NumberBox* at_;  ///< [mm or deg]
+  NumberBox* at_;  ///< position or diameter [mm or deg]
   QPushButton* touch_;
   QPushButton* back_;
   QPushButton* reclamped_;
   QLabel* offset_;
   QLabel* tool_;
   Question* question_;
-  QStackedLayout* pages_;       ///< all of the above or the question
-  double position_ = 0;         ///< of the axis, as last received [m], A [rad]
-  double asked_at_ = 0;         ///< of the axis, when the question was asked [m], A [rad]
-  std::function<void()> done_;  ///< the answer to the question
-  int back_axis_ = kAxisCount;  ///< whose offset can be taken back
+  QStackedLayout* pages_;       ///< all widgets above, or the question
+  double position_ = 0;         ///< last position of the axis received [m], A [rad]
+  double asked_at_ = 0;         ///< position of the axis when the question was asked [m], A [rad]
+  std::function<void()> done_;  ///< action of the question
+  int back_axis_ = kAxisCount;  ///< axis whose offset can be taken back
 };
 
 }  // namespace grinder

@@ -13,7 +13,7 @@ namespace {
 
 using units::kMillimetre;
 
-constexpr double kNano = 1e-9;  ///< one of them is a hundredth of what an encoder resolves [m], [rad]
+constexpr double kNano = 1e-9;  ///< unit of the deviations, a hundredth of an encoder's resolution [m], [rad]
 
 /// The keys of a deviation's parts.
 constexpr std::pair<const char*, double PathDeviation::*> kParts[]{

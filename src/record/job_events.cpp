@@ -4,7 +4,7 @@ namespace grinder {
 
 namespace {
 
-constexpr std::size_t kMaxEntries = 10000;  ///< of each; a client may make any number
+constexpr std::size_t kMaxEntries = 10000;  ///< most entries of each kind, because a client may cause any number
 
 /// Appends tooth and pass, which count from 1.
 Json placed(Json json, const ToothPass& pass) {

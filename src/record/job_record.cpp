@@ -96,7 +96,7 @@ RecordHead JobRecord::head() const {
   RecordHead head;
   head.started = utcText(started_);
   head.ended = utcText(ended_);
-  // As the difference of these, which are in whole milliseconds.
+  // The difference of the texts, which are in whole milliseconds.
   head.duration = std::round(1000 * (timeOf(head.ended) - timeOf(head.started))) / 1000;
   head.job = names_.job;
   head.digest = digest_;

@@ -21,24 +21,24 @@ namespace grinder {
 
 namespace {
 
-// As hasForm() takes them.
+// Forms for hasForm().
 constexpr std::string_view kTimeForm = "0000-00-00T00:00:00.000Z";
 constexpr std::string_view kStartForm = "00000000T000000.000Z";
 constexpr std::string_view kNameForm = "0000000000_00000000T000000.000Z.json";
 constexpr std::string_view kUnfinishedForm = "0000000000_00000000T000000.000Z.json.new";  ///< see writeFile()
 constexpr std::size_t kDigits = kNameForm.find('_');
-constexpr std::uint64_t kMostRecords = 9999999999;  ///< of so many digits
+constexpr std::uint64_t kMostRecords = 9999999999;  ///< highest number with kDigits digits
 
-/// Without the folder.
+/// A file's name without its folder.
 std::string_view nameIn(std::string_view path) { return path.substr(path.rfind('/') + 1); }
 
-// The lines of a file: a reader of JSON has one object, one of heads the first line.
+// The lines of a file. Together they are one JSON object; the head needs the first line only.
 constexpr std::string_view kHead = R"({"record":2,"head":)";
 constexpr std::string_view kBody = R"("body":)";
 constexpr std::string_view kSeal = R"("seal":")";
 constexpr std::string_view kEnd = "\"}\n";
 
-/// Calls `visit(key, member)` for each field, in the order in which files and lists have them.
+/// Calls `visit(key, member)` for each field, in the order of files and lists.
 template <typename AnyHead, typename Visit>
 void visitHead(AnyHead& head, const Visit& visit) {
   visit("grinder", head.grinder);
@@ -72,14 +72,14 @@ std::ifstream opened(const std::string& path) {
   return file;
 }
 
-/// What the library says, without its own numbers.
+/// The message of the JSON library, without its error numbers.
 std::string wordsOf(const std::exception& error) {
   const std::string words = error.what();
   const bool numbered = words.rfind("[json.exception", 0) == 0;
   return numbered ? words.substr(words.find("] ") + 2) : words;
 }
 
-/// Does something with a file's text. @throw FileError naming the file.
+/// Carries out an action on a file's text. @throw FileError naming the file.
 template <typename Action>
 auto ofRecord(const std::string& path, const Action& action) {
   try {
@@ -89,7 +89,7 @@ auto ofRecord(const std::string& path, const Action& action) {
   }
 }
 
-/// @param line with the comma at its end, without the line feed.
+/// Parses the head. @param line first line with the comma at its end, without the line feed.
 RecordHead headIn(const std::string& line) {
   if (line.compare(0, kHead.size(), kHead) != 0)
     throw std::invalid_argument("it begins otherwise than " + std::string(kHead));
@@ -112,7 +112,7 @@ RecordHead headIn(const std::string& line) {
 
 std::string sealOf(const std::string& text) { return sha256Hex(text.data(), text.size()); }
 
-/// What is sealed of a text. @throw std::invalid_argument if it is damaged.
+/// The part of a text before its checksum. @throw std::invalid_argument if it is damaged.
 std::string unsealed(const std::string& text) {
   const std::size_t at = text.rfind('\n', text.empty() ? 0 : text.size() - 2);
   if (at == std::string::npos) throw std::invalid_argument("it is cut off");
@@ -147,7 +147,7 @@ double timeOf(const std::string& utc) {
   t.tm_min = number(14, 2);
   t.tm_sec = number(17, 2);
   const double time = static_cast<double>(timegm(&t)) + number(20, 3) / 1000.0;
-  // timegm() takes the 31st of a short month for a day of the next.
+  // timegm() accepts the 31st of a short month as a day of the next month.
   if (utcText(time) != utc) throw std::invalid_argument("time = " + utc + "; allowed: a time that there is");
   return time;
 }

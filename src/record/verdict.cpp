@@ -21,7 +21,7 @@ constexpr const char* kFollowing = "following error in strokes";
 constexpr const char* kFeed = "feed constancy";
 constexpr const char* kLate = "late cycles";
 
-/// A tolerance of the file, and the criterion that it is of.
+/// A tolerance of the file, and its criterion.
 struct ToleranceRow {
   const char* key;
   double Tolerances::*value;
@@ -46,7 +46,7 @@ void setTolerance(Criterion& criterion, const Tolerances& tolerances) {
   }
 }
 
-/// By how much a value is farther off than allowed; what cannot be compared is infinitely far off.
+/// The excess of a value's difference over its tolerance; infinite if the value cannot be compared.
 double excess(std::optional<double> value, std::optional<double> asked, std::optional<double> tolerance) {
   if (!value || !asked) return kInfinity;
   const double off = tolerance ? std::abs(*value - *asked) - *tolerance : *asked - *value;
@@ -57,8 +57,8 @@ double excess(const Criterion& c) { return c.missing ? kInfinity : excess(c.meas
 
 bool isMeasured(const Criterion& c) { return c.measured || c.missing; }
 
-/// Keeps a value if it is farther off than that before. @param value nothing, or NaN: there is none where there should
-/// be one.
+/// Keeps a value if its excess is larger than the excess kept so far. @param value nothing or NaN for a figure that
+/// does not exist where it should.
 void add(Criterion& criterion, const FigureValue& value, std::string place) {
   Criterion other = criterion;
   other.missing = !value || std::isnan(*value);
@@ -78,7 +78,7 @@ std::string placeOf(const FigurePlace& p, ToolFigure figure) {
   return figure == ToolFigure::kCoreDiameter ? at : format("tooth %zu, ", p.number + 1) + at;
 }
 
-/// What a job asks for at a place, where nothing is measured yet.
+/// The criterion of a figure at a place, without a measured value.
 Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tolerances& tolerances) {
   const double scale = shopScale(row.unit);
   Criterion criterion{row.words, row.unit == Unit::kRadian ? "deg" : "mm", true, 3, {}, {}, {}, false, "", ""};
@@ -95,12 +95,12 @@ bool isJudged(const ToolFigureRow& row, const FigurePlace& p) {
   return row.value == ToolFigure::kLand || asked(row.value, p).has_value();
 }
 
-/// Where a figure must be found: an allowed incomplete flute has no rake face at its end.
+/// Whether a figure must exist at a place: an allowed incomplete flute has no rake face at its end.
 bool counts(const ToolFigureRow& row, const FigurePlace& p) {
   return !row.of_complete || p.tooth().complete || !p.job->process.incomplete_ok;
 }
 
-/// Takes what is farthest off of all teeth in all sections.
+/// Adds the value with the largest excess of all teeth in all sections.
 void addFigure(Criterion& criterion, const ToolFigureRow& row, const GroundTool& tool, const Tolerances& tolerances) {
   for (const MeasuredSection& section : tool.sections) {
     for (std::size_t tooth = 0; tooth < section.ground.teeth.size(); ++tooth) {
@@ -116,7 +116,7 @@ void addFigure(Criterion& criterion, const ToolFigureRow& row, const GroundTool&
 }
 
 Criterion gougeOf(const ValidJob& job, const GroundTool* tool) {
-  // The core's tolerance, which is of a diameter, holds for the whole flute.
+  // Half of the core's tolerance, which is for a diameter; it holds for the whole flute.
   const double allowed = job->cutter.core_tolerance / 2;
   Criterion gouge{"gouge", "mm", true, 3, 0, allowed / kMillimetre, {}, false, "", ""};
   if (tool == nullptr) return gouge;
@@ -161,7 +161,7 @@ Criterion followingErrorOf(const RunFacts& run) {
   return following;
 }
 
-/// Where the plan itself slows down within the flute; null if it does not.
+/// The limit that slows the plan down within the flute; null if there is none.
 const FeedLimit* slowedWithin(double flute_length, const std::vector<FeedLimit>& limits) {
   const auto found = std::find_if(limits.begin(), limits.end(), [&](const FeedLimit& limit) {
     const auto [low, high] = std::minmax(limit.from_x, limit.to_x);
@@ -195,7 +195,7 @@ Criterion lateCyclesOf(const RunFacts& run) {
   return late;
 }
 
-/// Calls `visit(key, member)` for what a file has of a criterion.
+/// Calls `visit(key, member)` for each field of a criterion in a file.
 template <typename AnyCriterion, typename Visit>
 void visitCriterion(AnyCriterion& criterion, const Visit& visit) {
   visit("name", criterion.name);
@@ -259,7 +259,7 @@ std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* too
     const FigurePlace first{job, small_end, 0};
     if (!isJudged(row, first)) continue;
     Criterion& criterion = criteria.emplace_back(criterionOf(row, first, tolerances));
-    // Flutes that are taken as planned were not measured.
+    // Flutes taken from the plan were not measured.
     const bool is_measured = tool != nullptr && tool->allTeethGround() && !(tool->on_planned && !row.of_relief);
     if (is_measured) addFigure(criterion, row, *tool, tolerances);
   }

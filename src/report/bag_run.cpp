@@ -32,7 +32,7 @@ namespace {
 constexpr std::uint64_t kMinRows = 3;
 constexpr char kBagHead[] = "#ROSBAG ";
 
-/// Types that are read of the grinder's topics, with the digests of their definitions.
+/// The message types to read, with the digests of their definitions.
 template <typename... Messages>
 std::map<std::string, std::string> digestsOf() {
   return {{ros::message_traits::datatype<Messages>(), ros::message_traits::md5sum<Messages>()}...};
@@ -57,7 +57,7 @@ MachineInfo fromMessage(const flute_grinder::MachineInfo& m) {
           Axes(m.max_following_error.data())};
 }
 
-/// @throw FileError if reading fails.
+/// Reads a bag. @throw FileError if reading fails.
 template <typename Read>
 void readBag(const std::string& path, const Read& read) {
   const std::string not_whole =
@@ -107,7 +107,7 @@ BagRun::BagRun(std::string path, int job) : path_(std::move(path)), asked_(job) 
   try {
     if (const auto job = jobs_.find(goal_); job != jobs_.end()) job_.emplace(job->second);
   } catch (const InvalidJob&) {
-    // Of another version: reported as if the bag did not have it.
+    // A goal of another version: reported as if the bag did not have it.
   }
   findBefore(static_cast<int>(number));
   selectStates();
@@ -139,7 +139,7 @@ void BagRun::summarise(const RunRow& row) {
   const std::string named = "cycle " + std::to_string(s.cycle);
   if (cycle <= last_cycle_)
     fail(named + " follows cycle " + std::to_string(last_cycle_) + "; allowed: ascending cycles");
-  // The position read may be NaN, of a faulty drive: the report of its job is wanted most.
+  // A faulty drive may have read NaN as position: a report on such a job is wanted most.
   const auto require = [&](bool finite, const char* name) {
     if (!finite) fail(named + ": " + name + " is not a finite number");
   };
@@ -229,7 +229,7 @@ void BagRun::takeBatch(const flute_grinder::SetpointBatch& batch) {
 void BagRun::visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const {
   const std::size_t count = batch.setpoints.size();
   const double begin = batch.header.stamp.toSec();
-  // A batch is a few hundredths of a second: between its ends the cycles are evenly spaced.
+  // A batch lasts a few hundredths of a second: its cycles count as evenly spaced.
   const double step = (batch.end_stamp.toSec() - begin) / static_cast<double>(std::max<std::size_t>(count, 2) - 1);
   RunRow row;
   for (std::size_t i = 0; i < count; ++i) {

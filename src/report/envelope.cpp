@@ -6,7 +6,7 @@ namespace grinder {
 
 namespace {
 
-constexpr int kColumns = 450;  ///< about the pixels across a picture
+constexpr int kColumns = 450;  ///< columns, about as many as a picture has pixels across
 
 }  // namespace
 

@@ -120,14 +120,14 @@ Json Survey::holdsAndOverrides() const {
   JobEvents events;
   double feed_override = 1;
   for (const StateChange& change : run_.states()) {
-    // What is changed after the job is not part of it.
+    // A change of the override after the job is not part of it.
     if (change.time < run_.summary().end) feed_override = change.feed_override;
     events.add(std::max(change.time, 0.0), change.held, change.reason, feed_override, change.pass);
   }
   return {{"holds", events.holds()}, {"overrides", events.overrides()}};
 }
 
-/// @param machine of a record; empty if it is not known.
+/// @param machine machine of a record; empty if unknown.
 Json Survey::axesJson(const Json& machine) const {
   struct Quantity {
     const char* key;
@@ -174,7 +174,7 @@ Json Survey::loopJson() const {
 
 namespace {
 
-/// A record in the keys of a bag's findings.
+/// A record with the keys of a bag's findings.
 Json documentOf(const Record& record) {
   Json data = toJson(record.head);
   data.update(record.body);

@@ -7,19 +7,19 @@
 
 namespace grinder {
 
-/// What the axes do at a row; nothing where it is not known. Commanded [m, A rad; per s and per s^2].
+/// The commanded motion of the axes at a row; nothing where unknown [m, A rad; per s and per s^2].
 struct AxisMotion {
-  std::optional<Axes> speed;            ///< from the cycle before
-  std::optional<Axes> acceleration;     ///< between the ends of odd-even pairs, as the plan checks it
-  std::optional<Axes> following_error;  ///< command of the cycle before less the position read
+  std::optional<Axes> speed;            ///< speed since the previous cycle
+  std::optional<Axes> acceleration;     ///< acceleration between the ends of odd-even pairs, as checked by the plan
+  std::optional<Axes> following_error;  ///< command of the previous cycle less the position read
 };
 
-/// Follows the rows of a file. Where cycles are missing there is no motion.
+/// Computes the motion from the rows of a file; nothing where cycles are missing.
 class MotionOfRows {
  public:
   explicit MotionOfRows(const BagRun& run);
 
-  /// @param row the next one.
+  /// Adds a row. @param row the next row.
   AxisMotion add(const RunRow& row);
 
  private:
@@ -29,7 +29,7 @@ class MotionOfRows {
   };
 
   const double period_;
-  std::array<Point, 4> before_;  ///< the newest first
+  std::array<Point, 4> before_;  ///< previous points, the newest first
 };
 
 }  // namespace grinder

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kEnlarged = 10;        ///< points at either end, like the rows of the paper's Table 1
 constexpr std::size_t kMaxShown = 600;       ///< points of the whole curve
-constexpr std::size_t kMaxCounts = 1 << 16;  ///< far beyond what the picture shows
+constexpr std::size_t kMaxCounts = 1 << 16;  ///< limit far beyond what the picture shows
 constexpr double kCountsPerPeriod = 50;
 
 Envelope overTime(const BagRun& run, std::size_t curves) {
@@ -45,7 +45,7 @@ void Plots::Curve::add(const Setpoint& setpoint) {
   if (ToothPass{setpoint.tooth, setpoint.pass} != worst) return;
   if (count++ % every == 0) whole.push_back(setpoint);
   if (whole.size() > kMaxShown) {
-    // Thinned whenever there are too many, so that no more are kept of a long stroke.
+    // Thinned whenever there are too many points, so that a long stroke needs no more memory.
     for (std::size_t i = 0; 3 * i < whole.size(); ++i) whole[i] = whole[3 * i];
     whole.resize((whole.size() + 2) / 3);
     every *= 3;

@@ -18,7 +18,7 @@ class Plots {
   Json json() const;
 
  private:
-  /// A quantity of the axes over time, in the strokes and apart from them.
+  /// A quantity of the axes over time, in the strokes and outside them.
   struct OfAxes {
     OfAxes(const BagRun& run);
     void add(const RunRow& row, const std::optional<Axes>& value);
@@ -26,7 +26,8 @@ class Plots {
 
     Envelope stroke, rapid;
   };
-  /// The curve and its errors. Of the stroke with the maximum error, thinned to some hundred points, and its ends.
+  /// The curve and its errors in the stroke with the maximum error: thinned to some hundred points, and its ends in
+  /// full.
   struct Curve {
     explicit Curve(const BagRun& run);
     void add(const Setpoint& setpoint);
@@ -34,7 +35,7 @@ class Plots {
 
     ToothPass worst;
     std::uint64_t count = 0;
-    std::uint64_t every = 1;  ///< odd, so that odd and even points alternate
+    std::uint64_t every = 1;  ///< interval of the points kept; odd, so that odd and even points alternate
     std::vector<Setpoint> whole, start, end;
     Envelope odd, even;
   };

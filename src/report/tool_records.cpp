@@ -17,13 +17,13 @@ namespace grinder {
 
 namespace {
 
-/// A run of an operation: the record that began it, and those that continued it.
+/// A run of an operation: the record that began it, and the records that continued it.
 struct Run {
   int operation;
   std::vector<std::string> paths;
 };
 
-/// The runs of a job's operations in a folder, in their order. @param operations by their digests.
+/// The runs of a job's operations in a folder, in order. @param operations operations by their digests.
 std::vector<Run> runsIn(const std::string& folder, const std::map<std::string, int>& operations) {
   std::vector<Run> runs;
   for (const std::string& path : recordFilesIn(folder).records) {
@@ -35,7 +35,7 @@ std::vector<Run> runsIn(const std::string& folder, const std::map<std::string, i
       if (!goes_on) runs.push_back({found->second, {}});
       runs.back().paths.push_back(path);
     } catch (const FileError&) {
-      // `grind history` names it; the operation is not in the records.
+      // An unreadable record, which `grind history` names, does not count.
     }
   }
   return runs;
@@ -76,7 +76,7 @@ ToolRecords::ToolRecords(const std::string& path) {
     return std::any_of(run.paths.begin(), run.paths.end(), [&](const std::string& one) { return isSame(one, path); });
   };
   auto own = std::find_if(runs.begin(), runs.end(), has_path);
-  // One that does not have the name of a record stands for itself.
+  // A record without the name of a record stands for itself.
   if (own == runs.end()) own = runs.insert(own, {job.operation, {path}});
   const auto take = [&](const Run& run) {
     Operation& operation = operations_[static_cast<std::size_t>(run.operation)];

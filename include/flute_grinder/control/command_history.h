@@ -10,10 +10,10 @@
 
 namespace grinder {
 
-/// The progress of a job: the setpoints that were written, or those that reached the axes.
+/// The progress of a job: the setpoints that were written, or that reached the axes.
 struct JobTrack {
   std::uint64_t job = 0;        ///< number of the job; 0 for none
-  std::uint64_t setpoints = 0;  ///< count so far
+  std::uint64_t setpoints = 0;  ///< setpoints counted so far
   std::uint32_t strokes_ended_at = 0;
   Place place;
 
@@ -30,7 +30,7 @@ struct JobTrack {
 class CommandHistory {
  public:
   struct Entry {
-    Axes command = Axes::Zero();  ///< [m], A [rad]
+    Axes command = Axes::Zero();  ///< command to the axes [m], A [rad]
     JobTrack track;
   };
 
@@ -53,7 +53,7 @@ class CommandHistory {
   }
 
  private:
-  std::array<Entry, kMaxCommandsWaiting + 1> entries_;  ///< a ring
+  std::array<Entry, kMaxCommandsWaiting + 1> entries_;  ///< ring buffer
   std::size_t next_ = 0;                                ///< position of the next entry
   std::size_t count_ = 0;
 };

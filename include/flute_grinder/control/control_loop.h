@@ -44,15 +44,15 @@ class ControlLoop : public RequestBox {
   void startThread();
   /// Ends the thread after its current cycle; the drive is then without power.
   void stopThread();
-  /// The same without waiting for the end, which does not come while the drive hangs. Thread safe.
+  /// Asks the thread to end, without waiting; while the drive hangs, the thread does not end. Thread safe.
   void requestEnd() noexcept { running_ = false; }
   bool hasEnded() const noexcept { return ended_; }
 
-  /// For the watchdog, before and after the drive's powerOff(). The loop that comes round after all finds a fault of
-  /// the drive, and there is no power before the return. Thread safe; never waits.
+  /// For the watchdog, to be called before and after the drive's powerOff(). If the loop runs again after all, it
+  /// reports a drive fault, and gives no power until powerOff() has returned. Thread safe; never waits.
   void beginPowerOff() noexcept { power_off_ = PowerOff::kCalled; }
   void endPowerOff() noexcept { power_off_ = PowerOff::kReturned; }
-  /// Whether the drive's powerOff() has not returned. Thread safe.
+  /// Whether the drive's powerOff() is in progress. Thread safe.
   bool isPoweringOff() const noexcept { return power_off_ == PowerOff::kCalled; }
 
   /// The status of the most recent cycle. For any thread; never waits.
@@ -76,28 +76,28 @@ class ControlLoop : public RequestBox {
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
   const LoopConfig& config() const { return config_; }
-  /// Whether the drive's prepare() has not returned. Thread safe.
+  /// Whether the drive's prepare() is in progress. Thread safe.
   bool isPreparing() const noexcept {
     return preparation_ && preparation_->state() == DrivePreparation::State::kPreparing;
   }
-  const DriveCapabilities& capabilities() const { return capabilities_; }  ///< of the drive
+  const DriveCapabilities& capabilities() const { return capabilities_; }  ///< capabilities of the drive
 
  private:
   using Clock = std::chrono::steady_clock;
   using AxisFlags = Eigen::Array<bool, kAxisCount, 1>;
 
-  /// The drive's powerOff(), since the loop last looked.
+  /// Progress of the drive's powerOff() since the loop last looked.
   enum class PowerOff : std::uint8_t { kNotCalled, kCalled, kReturned };
 
   void run();
 
-  /// Calls the drive; what it throws becomes a fault of the drive in the next readDrive().
+  /// Calls the drive; an exception becomes a drive fault in the next readDrive().
   template <typename Call>
   void callDrive(const char* function, const Call& call) noexcept;
-  /// Waits for the next cycle, by the monotonic clock if the drive's own wait fails, which becomes a fault of the drive
-  /// too. @param last when the last one began. @return time since then.
+  /// Waits for the next cycle. If the drive's own wait fails, this is a drive fault, and the monotonic clock is used.
+  /// @param last start of the last cycle. @return time since then.
   ros::Duration awaitCycle(Clock::time_point last) noexcept;
-  /// Tells the drive to switch the power off, when no cycle follows.
+  /// Tells the drive to switch the power off, after the last cycle.
   void writeOff(const DriveCycle& cycle) noexcept;
 
   void readDrive(const DriveCycle& cycle);
@@ -170,50 +170,50 @@ class ControlLoop : public RequestBox {
   Drive& drive_;
   const DriveCapabilities capabilities_;
   const LoopConfig config_;
-  std::optional<DrivePreparation> preparation_;  ///< of a drive that prepares
+  std::optional<DrivePreparation> preparation_;  ///< present if the drive has a prepare()
 
   // Used only by the control thread.
   MachineState state_ = MachineState::kDisabled;
   SetpointStream* stream_ = nullptr;
-  double job_swivel_ = 0;           ///< that the stream's job needs [rad]
+  double job_swivel_ = 0;           ///< swivel that the stream's job needs [rad]
   Axes job_offset_ = Axes::Zero();  ///< machine position - position of the stream's setpoints [m], A [rad]
-  bool in_journal_ = true;          ///< the job, when it was started
-  AxisMove axis_move_;              ///< of a lift or a jog
-  bool jogging_ = false;            ///< in the middle of a job too, whose stream then takes its setpoints over
-  bool continuous_ = false;         ///< the jog
-  bool touched_ = false;            ///< the probe, in the previous cycle
-  bool for_client_ = false;         ///< the jog
+  bool in_journal_ = true;          ///< the journal contained the job when it was started
+  AxisMove axis_move_;              ///< motion of the lift or jog
+  bool jogging_ = false;     ///< a jog is in progress; in the middle of a job the job's stream adopts its setpoints
+  bool continuous_ = false;  ///< the jog is continuous
+  bool touched_ = false;     ///< the probe was in contact in the previous cycle
+  bool for_client_ = false;  ///< the jog stops when its client is silent
   DeadMansSwitch dead_man_;
-  SilenceTimer client_;  ///< of a series
+  SilenceTimer client_;  ///< silence of a series' client
   std::uint32_t keep_alives_seen_ = 0;
   LimitCheck limit_check_;
   DriveChecks drive_checks_;
   WheelWatch wheel_;
-  FaultText thrown_;            ///< by the drive, since the last readDrive()
-  bool has_thrown_ = false;     ///< the drive
-  bool has_hung_ = false;       ///< the drive, until this cycle
-  bool settled_ = false;        ///< every axis can have come from the last but one reading to the last
-  bool has_positions_ = false;  ///< all have been finite once
-  bool y_homed_ = false;        ///< as the drive says, and it is not homing
+  FaultText thrown_;            ///< text of the drive's exception, since the last readDrive()
+  bool has_thrown_ = false;     ///< the drive has thrown since the last readDrive()
+  bool has_hung_ = false;       ///< the drive hung until this cycle
+  bool settled_ = false;        ///< the last two readings agree: every axis can have moved from one to the other
+  bool has_positions_ = false;  ///< all positions have been finite at least once
+  bool y_homed_ = false;        ///< the drive reports the reference, and is not homing
   DriveFeedback feedback_;
   Axes command_ = Axes::Zero();
   CommandHistory history_;
-  JobTrack written_;                ///< for the running job, or else the last one
-  bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer has no more commands
-  bool may_lift_off_ = true;        ///< after stopping for a cancel, the job lifts the wheel
-  bool power_off_next_ = false;     ///< once the axes are at rest
+  JobTrack written_;                ///< setpoints written for the running job, or else the last one
+  bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer is empty
+  bool may_lift_off_ = true;        ///< a canceled job lifts the wheel once it has stopped
+  bool power_off_next_ = false;     ///< the power goes off once the axes are at rest
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
   DriveCommand drive_command_;
-  bool spindle_ = false;           ///< commanded, by a job or by hand
-  bool coolant_ = false;           ///< the same
-  bool switched_by_hand_ = false;  ///< either of them, since the job began or was resumed
-  double waited_ = 0;              ///< for power, the reference, or the interlocks of a job [s]
+  bool spindle_ = false;           ///< the spindle is commanded, by a job or by hand
+  bool coolant_ = false;           ///< the coolant is commanded, by a job or by hand
+  bool switched_by_hand_ = false;  ///< spindle or coolant, since the job began or was resumed
+  double waited_ = 0;              ///< time waited for power, the reference, or a job's interlocks [s]
   bool awaiting_power_ = false;
-  bool preparation_begun_ = false;  ///< for the power awaited
-  double unwanted_power_ = 0;       ///< for so long the drive has reported power that is commanded off [s]
-  bool homing_seen_ = false;
-  bool homing_of_before_ = false;  ///< reported since before the request
-  bool homing_over_ = false;       ///< and the axes were read since
+  bool preparation_begun_ = false;  ///< prepare() was called for the power awaited
+  double unwanted_power_ = 0;       ///< time for which the drive has reported power that is commanded off [s]
+  bool homing_seen_ = false;        ///< the drive has reported the homing requested
+  bool homing_of_before_ = false;   ///< the drive still reports a homing from before the request
+  bool homing_over_ = false;        ///< homing has ended, and the axes were read since
   CycleSample sample_;
   LoopStatus next_status_;  ///< published at the end of the cycle
 

@@ -15,16 +15,16 @@ namespace grinder {
 /// The data of one cycle, for the other threads. Positions and commands are in machine coordinates, a job's setpoints
 /// in its work coordinates.
 struct CycleSample {
-  double time = 0;    ///< time since the epoch of ROS time, but monotonic [s]
-  double period = 0;  ///< since the previous cycle [s]
-  double busy = 0;    ///< how much of it the previous cycle took, without the wait for this one; 0 in the first [s]
+  double time = 0;    ///< time since the ROS epoch, monotonic [s]
+  double period = 0;  ///< time since the previous cycle [s]
+  double busy = 0;    ///< duration of the previous cycle without the wait for this one; 0 in the first cycle [s]
   MachineState state = MachineState::kDisabled;
   DriveStatus drive;
-  bool power_stays = false;      ///< the drive still reports power, for enable_timeout after it was commanded off
+  bool power_stays = false;      ///< the drive still reports power enable_timeout after it was commanded off
   double feedback_age = 0;       ///< time since the drive last delivered fresh positions [s]
-  Axes position = Axes::Zero();  ///< as read in this cycle [m], A [rad]
-  Axes velocity = Axes::Zero();  ///< as read in this cycle [m/s], A [rad/s]
-  Axes command = Axes::Zero();   ///< as written in this cycle [m], A [rad]
+  Axes position = Axes::Zero();  ///< positions read in this cycle [m], A [rad]
+  Axes velocity = Axes::Zero();  ///< velocities read in this cycle [m/s], A [rad/s]
+  Axes command = Axes::Zero();   ///< command written in this cycle [m], A [rad]
   /// The command that the positions should follow; older than `command` if the drive buffers commands [m], A [rad].
   Axes command_in_effect = Axes::Zero();
   bool has_setpoint = false;
@@ -34,14 +34,15 @@ struct CycleSample {
   bool wheel_in_work = false;
   bool spindle_commanded = false;
   bool coolant_commanded = false;
-  Axes distance_to_go = Axes::Zero();      ///< from the positions to the end of the running move [m], A [rad]
-  Swivel swivel;                           ///< where it stands, as far as is known
+  Axes distance_to_go = Axes::Zero();      ///< distance from the positions to the end of the running move [m], A [rad]
+  Swivel swivel;                           ///< angle of the swivel, as far as it is known
   LoopFault fault;                         ///< the fault in state kFault, or why the last job did not begin
   Interlock interlock = Interlock::kNone;  ///< why the loop itself held the job; kept until the job is resumed
   double feed_override = 1;                ///< fraction
-  std::uint64_t samples_lost = 0;          ///< because the queue was full; counted since the loop started
+  std::uint64_t samples_lost = 0;          ///< samples dropped since the loop started, because the queue was full
 
-  /// How far an axis is from `command_in_effect`, from 0 [m], A [rad]; NaN if the drive read NaN. Real-time safe.
+  /// Following error of an axis, |command_in_effect - position| [m], A [rad]; NaN if the drive read NaN. Real-time
+  /// safe.
   double followingError(int axis) const noexcept { return std::abs(command_in_effect[axis] - position[axis]); }
 };
 

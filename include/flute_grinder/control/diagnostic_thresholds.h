@@ -8,12 +8,12 @@ struct DiagnosticLevels {
   double error = 0;
 };
 
-/// All thresholds of the diagnostics; fractions.
+/// All thresholds of the diagnostics.
 struct DiagnosticThresholds {
-  DiagnosticLevels late_cycles;      ///< upper, of all cycles since the last report
-  DiagnosticLevels following_error;  ///< upper, of the allowed following error
-  DiagnosticLevels limit_use;        ///< upper, of an axis limit
-  DiagnosticLevels buffer_fill;      ///< lower, of the maximum fill since power-on
+  DiagnosticLevels late_cycles;      ///< upper thresholds, as fractions of all cycles since the last report
+  DiagnosticLevels following_error;  ///< upper thresholds, as fractions of the allowed following error
+  DiagnosticLevels limit_use;        ///< upper thresholds, as fractions of an axis limit
+  DiagnosticLevels buffer_fill;      ///< lower thresholds, as fractions of the maximum fill since power-on
 };
 
 }  // namespace grinder

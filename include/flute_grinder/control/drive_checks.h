@@ -15,13 +15,13 @@ class DriveChecks {
   /// @param config must outlive this object.
   explicit DriveChecks(const LoopConfig& config) noexcept : config_(config) {}
 
-  /// Power has come on: counts underruns and slow cycles from now on.
+  /// To be called when power has come on: starts to count underruns and slow cycles.
   void powerOn(const DriveStatus& drive) noexcept {
     underruns_at_power_on_ = drive.underruns;
     time_ = bounded_time_ = cycles_ = slow_ = 0;
   }
 
-  /// The drive has been commanded to clear its fault.
+  /// To be called when the drive has been commanded to clear its fault.
   void reset() noexcept { was_reset_ = true; }
   /// To be called in each cycle.
   void observe(const CycleSample& sample) noexcept;
@@ -34,23 +34,23 @@ class DriveChecks {
   std::optional<LoopFault> findFault(const CycleSample& sample, bool moving_unbuffered) const noexcept;
 
  private:
-  double longestOnAverage() const noexcept;  ///< [s]
+  double longestOnAverage() const noexcept;  ///< longest allowed average cycle [s]
   bool feedbackIsFresh(const CycleSample& sample) const noexcept;
   std::optional<LoopFault> findFeedbackFault(const CycleSample& sample) const noexcept;
 
   const LoopConfig& config_;
   std::uint64_t underruns_at_power_on_ = 0;
-  bool was_reset_ = false;  ///< since the drive reported its present fault
-  // Of the cycles in the present second.
-  double time_ = 0;          ///< [s]
-  double bounded_time_ = 0;  ///< in which a cycle counts at most as the one from which the axes are slowed down [s]
+  bool was_reset_ = false;  ///< a reset was commanded since the drive reported its present fault
+  // Sums over the cycles of the present second.
+  double time_ = 0;          ///< sum of the cycles' periods [s]
+  double bounded_time_ = 0;  ///< same sum, with each cycle capped at the period from which the axes are slowed down [s]
   double cycles_ = 0;
-  double slow_ = 0;  ///< average time of a cycle in the second before, if that was too long; 0 if not [s]
+  double slow_ = 0;  ///< average cycle of the previous second if it was too long, else 0 [s]
 };
 
-/// The first open interlock; kNone if grinding is allowed. What is not commanded counts as missing, though the wheel
-/// may still be at speed. Real-time safe.
-/// @param spindle, coolant commanded.
+/// The first open interlock; kNone if grinding is allowed. A spindle or coolant that is not commanded counts as
+/// missing, even if the wheel is still at speed. Real-time safe.
+/// @param spindle, coolant whether each is commanded.
 Interlock openInterlock(const DriveStatus& drive, bool spindle, bool coolant) noexcept;
 
 }  // namespace grinder

@@ -16,16 +16,16 @@ class DrivePreparation {
  public:
   /// @param drive must outlive this object.
   explicit DrivePreparation(Drive& drive);
-  /// Waits for a call that has not returned.
+  /// Waits until a call in progress has returned.
   ~DrivePreparation();
 
   enum class State : std::uint8_t { kIdle, kPreparing, kReady, kFailed };
 
   // For the loop. Real-time safe.
-  /// @return false while the call before has not returned; nothing is asked for then.
+  /// Asks for a call. @return false, and nothing is asked for, while the previous call has not returned.
   bool begin() noexcept;
   State state() const noexcept { return state_.load(std::memory_order_acquire); }
-  /// What prepare() has thrown, while the state is kFailed.
+  /// Text of the exception that prepare() threw; valid while the state is kFailed.
   const FaultText& why() const noexcept { return why_; }
 
  private:
@@ -34,7 +34,7 @@ class DrivePreparation {
 
   Drive& drive_;
   std::atomic<State> state_{State::kIdle};
-  FaultText why_;  ///< of the thread while the state is kPreparing, of the loop otherwise
+  FaultText why_;  ///< owned by the thread while the state is kPreparing, otherwise by the loop
   std::mutex mutex_;
   std::condition_variable end_;
   bool ends_ = false;  ///< guarded by the mutex

@@ -8,11 +8,10 @@
 
 namespace grinder {
 
-/// How many durations of each length there were, in classes 4.4 % wide from a nanosecond on. Allocates nothing, however
-/// many are added. Not thread safe.
+/// A histogram of durations, in classes 4.4 % wide from 1 ns up. Never allocates. Not thread safe.
 class Durations {
  public:
-  /// @param duration [s]; one below a nanosecond, negative or NaN counts as 0, one above 17 s as that for quantiles.
+  /// @param duration [s]; below 1 ns, negative or NaN counts as 0; above 17 s counts as 17 s in quantiles.
   void add(double duration) noexcept {
     ++total_;
     if (!(duration >= kShortest)) {
@@ -24,7 +23,7 @@ class Durations {
     longest_ = std::max(longest_, duration);
   }
 
-  /// The duration that a fraction of all does not exceed, at most 4.4 % too long; 0 if there is none [s].
+  /// The duration that a fraction of all durations does not exceed, at most 4.4 % too long; 0 if there are none [s].
   /// @param fraction 0 to 1.
   double quantile(double fraction) const noexcept {
     std::uint64_t within = zeros_;
@@ -38,7 +37,7 @@ class Durations {
     return longest_;
   }
 
-  /// 0 if there is none [s].
+  /// The longest duration; 0 if there are none [s].
   double longest() const noexcept { return longest_; }
 
  private:
@@ -46,7 +45,7 @@ class Durations {
     return static_cast<double>(count) >= fraction * static_cast<double>(total_);
   }
 
-  static constexpr double kShortest = 1e-9;  ///< of the first class [s]
+  static constexpr double kShortest = 1e-9;  ///< lower end of the first class [s]
   static constexpr std::size_t kClassesPerOctave = 16;
   static constexpr std::size_t kOctaves = 34;
 

@@ -11,17 +11,17 @@ namespace grinder {
 struct JogRequest {
   int axis = kX;
   bool continuous = false;
-  double distance = 0;  ///< of a step, signed [m], A [rad]
-  double velocity = 0;  ///< of a step, its speed; of a continuous jog, signed, and 0 stops it [m/s], A [rad/s]
-  /// LoopStatus::stops when this step was decided on, for a step of a series: a stop since then refuses it. 0 if no
-  /// stop does.
+  double distance = 0;  ///< distance of a step, signed [m], A [rad]
+  double velocity = 0;  ///< speed of a step; signed velocity of a continuous jog, 0 stops it [m/s], A [rad/s]
+  /// For a step of a series, LoopStatus::stops when the step was decided on: any stop since then refuses the step. 0 to
+  /// skip this check.
   std::uint64_t stops = 0;
-  bool to_touch = false;    ///< refused if the measuring probe touches already
-  bool for_client = false;  ///< a step that ends where RequestBox::keepAlive() has not been called for jog_timeout
+  bool to_touch = false;    ///< the jog is refused if the measuring probe already touches
+  bool for_client = false;  ///< the step stops if RequestBox::keepAlive() is not called for jog_timeout
 };
 
-/// Counts how long a client is silent, whose messages must come again and again. Counts the cycles, so that no other
-/// thread can keep an axis moving. Real-time safe.
+/// Times the silence of a client that must keep sending messages. Counts the loop's cycles, so that no other thread can
+/// keep an axis moving. Real-time safe.
 class SilenceTimer {
  public:
   /// @param timeout longest allowed time between messages [s].
@@ -29,13 +29,13 @@ class SilenceTimer {
 
   /// To be called in every cycle. @param period since the previous cycle [s].
   void wait(double period) noexcept { age_ += period; }
-  /// A message has come.
+  /// To be called when a message has come.
   void restart() noexcept {
     age_ = 0;
     forgiven_ = false;
   }
-  /// The whole process was stalled, so that a message may still wait to be read: once, until the next one, the count
-  /// begins anew.
+  /// To be called after a stall of the whole process, when a message may still wait to be read: restarts the count,
+  /// once per message.
   void forgive() noexcept {
     if (!forgiven_ && !expired()) age_ = 0;
     forgiven_ = true;
@@ -45,21 +45,21 @@ class SilenceTimer {
 
  private:
   double timeout_;
-  double age_ = std::numeric_limits<double>::infinity();  ///< of the last message [s]
+  double age_ = std::numeric_limits<double>::infinity();  ///< time since the last message [s]
   bool forgiven_ = false;
 };
 
-/// The dead man's switch of a continuous jog. Once the jog was stopped or refused, or its messages have failed to come,
-/// a switch that is still pressed moves nothing: only a message that stops releases it. A client that was stalled does
-/// not know whether its button is still pressed, so its silence releases nothing. From the first message that moves to
-/// the release it is the switch of that message's axis. Real-time safe.
+/// The dead man's switch of a continuous jog. It belongs to the axis of the first message that moves, until a message
+/// that stops releases it. Once the jog was stopped or refused, or its messages have failed to come, a switch that is
+/// still pressed moves nothing until it is released. Silence does not release it, because a stalled client does not
+/// know whether its button is still pressed. Real-time safe.
 class DeadMansSwitch {
  public:
   enum class State : std::uint8_t {
     kReleased,
-    kPressed,   ///< the only one in which the axis may move
-    kTimedOut,  ///< no message came in time, and none that stops since
-    kStopped,   ///< the jog was stopped or refused, and no message that stops came since
+    kPressed,   ///< the axis may move, in this state alone
+    kTimedOut,  ///< no message came in time, and no message that stops has come since
+    kStopped,   ///< the jog was stopped or refused, and no message that stops has come since
   };
 
   /// @param timeout longest allowed time between messages [s].
@@ -70,9 +70,10 @@ class DeadMansSwitch {
     silence_.wait(period);
     if (state_ == State::kPressed && silence_.expired()) state_ = State::kTimedOut;
   }
-  /// The whole process was stalled, see SilenceTimer.
+  /// To be called after a stall of the whole process, see SilenceTimer.
   void forgive() noexcept { silence_.forgive(); }
-  /// A message that moves has come. @return whether it is for the switch's axis; one for another axis changes nothing.
+  /// To be called when a message that moves has come. @return whether it is for the switch's axis; if not, nothing
+  /// changes.
   bool press(int axis) noexcept {
     if (state_ == State::kReleased) {
       state_ = State::kPressed;
@@ -82,9 +83,9 @@ class DeadMansSwitch {
     silence_.restart();
     return true;
   }
-  /// A message that stops has come.
+  /// To be called when a message that stops has come.
   void release() noexcept { state_ = State::kReleased; }
-  /// The jog was stopped or refused.
+  /// To be called when the jog was stopped or refused.
   void block() noexcept {
     if (state_ == State::kPressed) state_ = State::kStopped;
   }

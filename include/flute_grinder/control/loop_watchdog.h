@@ -11,23 +11,23 @@
 
 namespace grinder {
 
-/// Switches the drive's power off when the control loop no longer comes round: when read(), write() or wait() of the
-/// drive hangs, and nobody is left to call write().
+/// Switches the drive's power off when the control loop hangs in the drive's read(), write() or wait(), and cannot call
+/// write() any more.
 class LoopWatchdog {
  public:
-  /// Looks as often as that, and acts when it has found the same cycle kMostLooks times in a row. A computer that
-  /// stalls as a whole delays the looks as well, and is no hang: 0.25 s.
+  /// Interval between looks. The watchdog acts when it has found the same cycle kMostLooks times in a row, after 0.25
+  /// s. A stall of the whole computer delays the looks too, and so does not count as a hang.
   static constexpr std::chrono::milliseconds kLook{10};
   static constexpr int kMostLooks = 25;
 
-  /// @param loop whose thread has been started. @param drive its own. Both must outlive this object.
+  /// @param loop loop whose thread has been started. @param drive the loop's drive. Both must outlive this object.
   LoopWatchdog(ControlLoop& loop, Drive& drive);
   ~LoopWatchdog();
 
-  /// What is known of the loop. Thread safe.
+  /// The state of the loop as the watchdog last found it.
   enum class Finding : std::uint8_t {
     kRuns,
-    kSwitchingOff,  ///< it hangs, and the drive's powerOff() has not returned
+    kSwitchingOff,  ///< the loop hangs, and the drive's powerOff() has not returned
     kHangs,
     kHangsPowerIsOff
   };
@@ -39,8 +39,8 @@ class LoopWatchdog {
 
   ControlLoop& loop_;
   Drive& drive_;
-  std::atomic<Finding> finding_{Finding::kRuns};  ///< as of the last look
-  std::atomic<std::uint64_t> hangs_at_{0};        ///< the cycles done by a loop that hangs
+  std::atomic<Finding> finding_{Finding::kRuns};  ///< result of the last look
+  std::atomic<std::uint64_t> hangs_at_{0};        ///< number of cycles at which the loop hangs
   std::mutex mutex_;
   std::condition_variable end_;
   bool ends_ = false;  ///< guarded by the mutex

@@ -12,14 +12,14 @@
 
 namespace grinder {
 
-/// All that a machine's file says but the parameters of its drive.
+/// The parameters in a machine's file, without the drive's.
 struct MachineConfig {
   LoopConfig loop;
-  Axes offset_change_limit;         ///< [m], A [rad]
-  std::uint64_t history_limit = 0;  ///< [bytes]
+  Axes offset_change_limit;         ///< largest change of a work offset [m], A [rad]
+  std::uint64_t history_limit = 0;  ///< size limit of the history [bytes]
   DiagnosticThresholds thresholds;
   FirstView first_view;
-  std::string drive;  ///< type of the plugin
+  std::string drive;  ///< type of the drive's plugin
 };
 
 /// Reads what the control loop needs: limits from the URDF, overridden by the parameters joint_limits/<joint>/..., as
@@ -31,14 +31,14 @@ struct MachineConfig {
 /// @throw ParameterError
 LoopConfig readLoopConfig(const MachineModel& model, const ParameterReader& parameters);
 
-/// Reads all: beside the above history_limit, offset_change_limit/<joint>, diagnostics/..., first_view/... and
-/// hardware/type.
-/// @param drives the types of plugins that there are, for a message.
-/// @throw ParameterError also for a parameter that nobody reads, but for those of the drive, in hardware/.
+/// Reads all of MachineConfig: the parameters of readLoopConfig(), and history_limit, offset_change_limit/<joint>,
+/// diagnostics/..., first_view/... and hardware/type.
+/// @param drives the available types of plugins, for error messages.
+/// @throw ParameterError also for an unknown parameter, unless it is in hardware/, which the drive reads.
 MachineConfig readMachineConfig(const MachineModel& model, const ParameterReader& parameters,
                                 const std::string& drives);
 
-/// Reads the parameters geometry/... alone; geometry/probe may be missing, on a machine without one.
+/// Reads only the parameters geometry/...; geometry/probe is missing on a machine without a probe.
 /// @throw ParameterError
 MachineGeometry readMachineGeometry(const ParameterReader& parameters);
 

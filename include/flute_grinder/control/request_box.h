@@ -17,8 +17,8 @@ namespace grinder {
 struct JobStart {
   SetpointStream* stream = nullptr;  ///< stays alive until the job has ended, see LoopStatus, or its start is refused
   Wheel wheel;                       ///< wheelOf() the stream's program
-  /// Whether the journal contains the job; one that it does not contain yet waits for confirmJournal() before it moves,
-  /// as for any other interlock.
+  /// Whether the journal contains the job. If not, the job waits for confirmJournal() before it moves, as for any other
+  /// interlock.
   bool in_journal = true;
 };
 
@@ -34,19 +34,19 @@ class RequestBox {
   /// axes are homed, otherwise by the distance from the deepest point of the last job. Until the wheel is off the
   /// workpiece, no job starts and the machine does not home.
   RequestReply request(MachineEvent event);
-  /// The same without waiting: the next cycle executes it.
+  /// As request(), without waiting: the next cycle executes the request.
   /// @return false while the previous request is unanswered; this one is then not posted.
   bool post(MachineEvent event) noexcept { return requests_.post(event); }
   /// The answer to the last post(), once available.
   std::optional<RequestReply> reply();
 
-  /// States where the swivel stands, and waits for the answer. For one thread at a time.
+  /// Confirms the angle of the swivel, and waits for the answer. For one thread at a time.
   ///
-  /// Refused if the drive measures the swivel, and while a job is in progress unless it is the job's angle: the swivel
-  /// must not be turned then. A start is refused unless the swivel is at the job's angle.
+  /// Refused if the drive measures the swivel. While a job is in progress only the job's angle is accepted, because the
+  /// swivel must not be turned then. A start is refused unless the swivel is at the job's angle.
   /// @param angle -kMaxSwivel to kMaxSwivel [rad].
   RequestReply confirmSwivel(double angle);
-  /// The same without waiting; the angle is not checked.
+  /// As confirmSwivel(), without waiting and without a check of the angle.
   /// @return false while the previous confirmation is unanswered; this one is then not posted.
   bool postSwivel(double angle) noexcept { return swivels_.post(angle); }
   /// The answer to the last postSwivel(), once available.
@@ -55,11 +55,11 @@ class RequestBox {
   /// Requests a stop - hold, cancel or disable - and waits at most 100 ms for the answer. For one thread at a time.
   ///
   /// Hold stops a job on its path, even before its first setpoint. Cancel stops the job on its path, lifts the wheel
-  /// off the workpiece and ends the job. Disable does the same and then switches the power off. Each of them also stops
-  /// a lift or a jog; a hold stops even the lift of a canceled job, which then ends there. During homing the drive
-  /// controls the motion, so each stop switches the power off.
+  /// off the workpiece and ends the job. Disable cancels the job and then switches the power off. Each of them also
+  /// stops a lift or a jog; a hold stops even the lift of a canceled job, which then ends there. During homing the
+  /// drive controls the motion, so each stop switches the power off.
   RequestReply stop(MachineEvent event);
-  /// The same without waiting.
+  /// As stop(), without waiting.
   /// @return a ticket for stopReply().
   std::uint32_t postStopWithReply(MachineEvent event) noexcept { return stops_.postWithReply(event); }
   /// The answer to postStopWithReply(), once available.
@@ -70,7 +70,7 @@ class RequestBox {
   /// Requests to start a job, without waiting. For one thread at a time.
   /// @return false while the previous start is unanswered; this one is then not posted.
   bool startJob(const JobStart& start) noexcept { return job_starts_.post(start); }
-  /// States that the journal contains a job. Thread safe.
+  /// Reports that the journal contains a job. Thread safe.
   /// @param number the loop's number for this job, see LoopStatus::jobs_started.
   void confirmJournal(std::uint64_t number) noexcept { job_in_journal_.store(number, std::memory_order_release); }
   /// The answer to the last startJob(), once available. For one thread at a time.
@@ -80,17 +80,17 @@ class RequestBox {
   ///
   /// A step moves its axis by its distance, or is refused if that would lead beyond a limit. A continuous jog moves its
   /// axis toward its limit, and must be requested again and again: without a request for jog_timeout the axis stops,
-  /// and only a request for velocity 0 lets it be jogged on.
+  /// and the next jog needs a request for velocity 0 first.
   /// In the middle of a job only a retracted wheel is jogged, and never down to the workpiece.
   RequestReply jog(const JogRequest& jog);
-  /// The same without waiting: the next cycle answers it.
+  /// As jog(), without waiting: the next cycle answers.
   /// @return false while the previous jog is unanswered; this one is then not posted.
   bool postJog(const JogRequest& jog) noexcept { return jogs_.post(jog); }
   /// The answer to the last postJog(), once available.
   std::optional<RequestReply> jogReply();
-  /// As jog(), for the steps of a series, whose JogRequest::stops is set. For one other thread at a time.
+  /// As jog(), for the steps of a series, which set JogRequest::stops. For another single thread.
   RequestReply jogInSeries(const JogRequest& jog);
-  /// States that the client for whom a series is run is alive. Thread safe.
+  /// Reports that the client of a series is alive. Thread safe.
   void keepAlive() noexcept { keep_alives_.fetch_add(1, std::memory_order_relaxed); }
 
  protected:
@@ -98,7 +98,7 @@ class RequestBox {
   explicit RequestBox(double enable_timeout) noexcept : enable_timeout_(enable_timeout) {}
   ~RequestBox() = default;
 
-  // For the loop, which takes and answers. Real-time safe.
+  // For the loop, which takes the requests and answers them. Real-time safe.
   std::uint64_t jobInJournal() const noexcept { return job_in_journal_.load(std::memory_order_acquire); }
   std::uint32_t keepAlives() const noexcept { return keep_alives_.load(std::memory_order_relaxed); }
   StopRequests stops_;
@@ -110,8 +110,8 @@ class RequestBox {
 
  private:
   const double enable_timeout_;
-  std::atomic<std::uint64_t> job_in_journal_{0};  ///< the last one confirmed
-  std::atomic<std::uint32_t> keep_alives_{0};     ///< calls of keepAlive()
+  std::atomic<std::uint64_t> job_in_journal_{0};  ///< number of the last job confirmed
+  std::atomic<std::uint32_t> keep_alives_{0};     ///< number of calls of keepAlive()
 };
 
 }  // namespace grinder

@@ -28,7 +28,7 @@ class RequestSlot {
     stage_.store(Stage::kFree, std::memory_order_relaxed);
     return answer;
   }
-  /// For the requesting thread, which waits no longer: a request that the loop has not taken is not executed any more.
+  /// For the requesting thread, when it stops waiting: a request that the loop has not taken is dropped.
   void withdraw() noexcept {
     Stage posted = Stage::kPosted;
     stage_.compare_exchange_strong(posted, Stage::kFree, std::memory_order_relaxed);

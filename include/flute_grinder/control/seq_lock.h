@@ -48,7 +48,7 @@ class SeqLock {
   static constexpr std::size_t kWords = (sizeof(T) + kWord - 1) / kWord;
   using Words = std::array<std::uint64_t, kWords>;
 
-  /// Without a loop or a copy of the value in between: this is a good part of a cycle.
+  /// Unrolled, and without an intermediate copy of the value: the store is a good part of a cycle.
   template <std::size_t... Index>
   void storeWords(const char* bytes, std::index_sequence<Index...>) noexcept {
     (storeWord<Index>(bytes), ...);

@@ -31,7 +31,7 @@ class StopRequests {
   /// For any thread and for signal handlers; an event that is not a stop is ignored.
   void post(MachineEvent stop) noexcept { bits_.fetch_or(bit(stop)); }
 
-  /// The same with an answer. For one thread at a time.
+  /// As post(), with an answer. For one thread at a time.
   /// @return a ticket for reply().
   std::uint32_t postWithReply(MachineEvent stop) noexcept;
   /// The answer to a ticket, once available. For the requesting thread.

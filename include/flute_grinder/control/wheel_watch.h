@@ -25,9 +25,10 @@ class WheelWatch {
     seen_clear_ = 0;
     left_by_job_ = true;
   }
-  /// To be called in every cycle in which no job moves the axes; the drive or an operator may have moved the wheel
-  /// clear of the workpiece. A reading or two may be wrong. What a job has left without power may also rest in it.
-  /// @param y position relative to the machine's reference, if that is known [m].
+  /// To be called in every cycle in which no job moves the axes, because the drive or an operator may move the wheel
+  /// clear of the workpiece. The wheel counts as clear only after readings for kSeenClear, because a single reading may
+  /// be wrong. A wheel that a job has left without power may also come to rest in the workpiece.
+  /// @param y position relative to the machine's reference, if the reference is known [m].
   /// @param powered whether the axes have power.
   /// @param period of the control loop [s].
   void observePosition(const std::optional<double>& y, bool powered, double period) noexcept {
@@ -37,15 +38,15 @@ class WheelWatch {
     if (seen_clear_ >= kSeenClear) clear();
     if (left_by_job_ && (wheel_.y_doubted || (y && !is_clear))) wheel_.in_work = true;
   }
-  /// To be called when Y was read where it cannot have been, and once it is homed.
+  /// To be called with true when Y was read where the axis cannot have been, and with false when it is trusted again.
   void doubtY(bool doubted) noexcept { wheel_.y_doubted = doubted; }
   /// To be called when a lift without a job begins.
-  /// @param target of it, see liftTarget() [m].
+  /// @param target Y at the end of the lift, see liftTarget() [m].
   void beginLift(double target) noexcept { last_target_ = target; }
   /// To be called when a lift without a job is complete.
   void finishLift() noexcept { clear(); }
-  /// To be called when Y may no longer count from where it did when the last lift began: without power, or when the
-  /// reference is found.
+  /// To be called when the zero of Y may have changed since the last lift began: without power, or when the reference
+  /// is found.
   void forgetLift() noexcept { last_target_.reset(); }
 
   /// Target Y for lifting the wheel [m].
@@ -53,7 +54,7 @@ class WheelWatch {
   ///        lift that was stopped continues.
   /// @param y current Y of the wheel [m].
   double liftTarget(bool homed, double y) const noexcept {
-    // Of an unknown job, the top of the travel is all there is; it is none above it.
+    // For an unknown job the target is the top of the travel, unless the wheel is already above it.
     const bool to_top = !wheel_.known && y < wheel_.clear_y;
     return homed ? wheel_.clear_y : last_target_.value_or(to_top ? wheel_.clear_y : y + wheel_.lift);
   }
@@ -64,13 +65,13 @@ class WheelWatch {
     wheel_.known = true;
   }
 
-  static constexpr double kSeenClear = 0.1;  ///< [s]
-  /// By which an axis may rest below where it was lifted to. The least clearance of a job is ten times that [m].
+  static constexpr double kSeenClear = 0.1;  ///< time for which Y must read clear [s]
+  /// How far below its target a lifted axis may rest; a tenth of the least clearance of a job [m].
   static constexpr double kBelow = 10e-6;
 
   Wheel wheel_;
-  double seen_clear_ = 0;     ///< for so long [s]
-  bool left_by_job_ = false;  ///< where it is; not moved with power since
+  double seen_clear_ = 0;     ///< time for which Y has read clear [s]
+  bool left_by_job_ = false;  ///< a job left the wheel where it is, and it was not moved with power since
   std::optional<double> last_target_;
 };
 

@@ -9,9 +9,9 @@
 /// against.
 namespace grinder {
 
-/// Version of the drive interface as a compiled plugin sees it: the layout of all that flute_grinder/drive/ and
-/// flute_grinder/job/axes.h and fault_text.h declare, and the order of Drive's virtual functions. To be increased
-/// whenever one of them changes. The node refuses plugins that were built against another version.
+/// Binary version of the drive interface: the layout of everything declared in flute_grinder/drive/, and in
+/// axes.h and fault_text.h in flute_grinder/job/, and the order of Drive's virtual functions. Increase it whenever one
+/// of them changes. The node refuses plugins that were built against another version.
 constexpr std::uint32_t kDriveAbi = 4;
 
 }  // namespace grinder

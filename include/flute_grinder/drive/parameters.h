@@ -21,7 +21,7 @@ class ParameterError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The number that a parameter is; nothing if it is none. YAML reads `0` as a whole number, and `0.0` as another kind.
+/// The value of a numeric parameter; nothing for any other type. YAML reads `0` and `0.0` as different types of number.
 std::optional<double> numberOf(XmlRpc::XmlRpcValue value);
 
 /// Reads parameters of one namespace; rejects any that are missing, of the wrong type or out of range.
@@ -30,7 +30,7 @@ class ParameterReader {
   /// @param parameters all parameters of the namespace, as a struct.
   /// @param ns the namespace, for messages, e.g. "/grinder".
   ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::string ns);
-  /// Of all parameters that the master has of the handle's namespace.
+  /// Reads all parameters in the handle's namespace from the master.
   explicit ParameterReader(const ros::NodeHandle& nh);
 
   bool has(const std::string& path) const;
@@ -42,14 +42,14 @@ class ParameterReader {
   bool flag(const std::string& path) const;
   /// @throw ParameterError unless the parameter is a non-empty string.
   std::string text(const std::string& path) const;
-  /// The same. @param what the texts that are allowed, for the message.
+  /// As text(path). @param what the allowed texts, for the message.
   std::string text(const std::string& path, const std::string& what) const;
-  /// To be called when all have been read: a parameter that nobody has asked for is misspelled.
-  /// @param others those that other programs read, with all that is below them.
-  /// @throw ParameterError naming the first such parameter, and the nearest that is known.
+  /// To be called when all parameters have been read: any other parameter must be misspelled.
+  /// @param others parameters and groups that other programs read.
+  /// @throw ParameterError naming the first unknown parameter and the most similar known one.
   void refuseUnknown(const std::vector<std::string>& others = {}) const;
-  /// A file or a folder, with a leading `~` replaced by HOME. @throw ParameterError unless the parameter is then an
-  /// absolute path: what is relative would depend on where the program was started.
+  /// The path of a file or folder, with a leading `~` replaced by HOME. @throw ParameterError unless the path is then
+  /// absolute: a relative path would depend on where the program was started.
   std::string path(const std::string& path) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }
@@ -59,12 +59,12 @@ class ParameterReader {
   XmlRpc::XmlRpcValue require(const std::string& path, const std::string& what) const;
   void refuseUnknown(const XmlRpc::XmlRpcValue& group, const std::string& begin,
                      const std::vector<std::string>& others) const;
-  /// The next words of the paths so far that begin so.
+  /// The next words of the paths asked for so far that start with `begin`.
   std::vector<std::string> asked(const std::string& begin) const;
 
   XmlRpc::XmlRpcValue parameters_;
   std::string ns_;
-  std::shared_ptr<std::set<std::string>> asked_ = std::make_shared<std::set<std::string>>();  ///< paths
+  std::shared_ptr<std::set<std::string>> asked_ = std::make_shared<std::set<std::string>>();  ///< asked paths
 };
 
 }  // namespace grinder

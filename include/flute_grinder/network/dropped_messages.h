@@ -7,17 +7,17 @@
 
 namespace grinder {
 
-/// Called with a message that is dropped because it is longer than kMaxPeerMessage: its length as announced [bytes],
-/// and its beginning, at most kDroppedHead bytes. In roscpp's network thread: it must not wait, and not throw.
+/// Called for a message that is dropped because it is longer than kMaxPeerMessage, with its announced length [bytes]
+/// and at most the first kDroppedHead bytes. Called in roscpp's network thread: must not wait or throw.
 using OnDropped = std::function<void(std::uint32_t length, std::vector<std::uint8_t> head)>;
 
-constexpr std::uint32_t kDroppedHead = 1024;  ///< [bytes]
+constexpr std::uint32_t kDroppedHead = 1024;  ///< longest beginning of a dropped message [bytes]
 
-/// Sets who is called for a topic, for instance to answer. Thread safe.
-/// @param topic resolved name. @param on_dropped empty for nobody.
+/// Sets the function to call for a topic, for instance to answer. Thread safe.
+/// @param topic resolved name. @param on_dropped empty for none.
 void setOnDropped(const std::string& topic, OnDropped on_dropped);
 
-/// Calls whoever is set for the topic, if anybody is. Thread safe.
+/// Calls the function set for the topic, if there is one. Thread safe.
 void reportDropped(const std::string& topic, std::uint32_t length, std::vector<std::uint8_t> head);
 
 }  // namespace grinder

@@ -6,12 +6,12 @@
 
 namespace grinder {
 
-/// ros::init() without a disk: by itself it makes the folder `~/.ros/log`, in which roscpp writes nothing, and throws
-/// where that cannot be made.
-/// @param name of the node. @param options as of ros::init().
+/// Calls ros::init() without the use of a disk: by itself ros::init() makes the folder `~/.ros/log`, which roscpp does
+/// not use, and throws if it cannot.
+/// @param name name of the node. @param options see ros::init().
 /// @return the arguments without ROS's own, with a null pointer at the end, as main() gets them.
-/// @throw std::invalid_argument if no ROS master is named, or not as roscpp reads it; ros::Exception if the command
-/// line or the environment has an invalid name.
+/// @throw std::invalid_argument if no ROS master is named, or roscpp cannot read its name; ros::Exception if the
+/// command line or the environment has an invalid name.
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options);
 
 }  // namespace grinder

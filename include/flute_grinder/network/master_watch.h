@@ -19,21 +19,21 @@ enum class Master { kAnswers, kMissing };
 
 /// Checks once a second whether the ROS master answers, and registers the whole process again with a master that does
 /// not know it: its services, and every topic that it publishes or subscribes to. Connections between nodes survive
-/// their master; but without this, a node could not be found under a new master, nor find others, until restarted. The
-/// old master's parameters are not restored.
+/// their master, but under a new master an unregistered node neither is found nor finds others. The old master's
+/// parameters are not restored.
 ///
 /// Uses its own thread and connections, with bounded waits: a master that hangs counts as missing.
 class MasterWatch {
  public:
   /// To be created after ros::start() and destroyed before ros::shutdown().
-  /// @param services resolved names of the process' services, beyond those of every roscpp node. Any not advertised at
-  ///        the time are skipped.
+  /// @param services resolved names of the process' services, without the services of every roscpp node. Services not
+  ///        advertised at the time are skipped.
   explicit MasterWatch(std::vector<std::string> services = {});
   MasterWatch(const MasterWatch&) = delete;
   MasterWatch& operator=(const MasterWatch&) = delete;
   ~MasterWatch();
 
-  /// As of the last check, at most a few seconds ago. Thread safe; never blocks.
+  /// The result of the last check, at most a few seconds ago. Thread safe; never blocks.
   Master master() const noexcept { return master_; }
 
  private:

@@ -10,8 +10,8 @@
 namespace grinder {
 
 /// Calls a method of a ROS master's or node's XML-RPC API over a connection of its own, for a second at most.
-/// @param arguments after this node's name.
-/// @param stop ends the call within some hundredths of a second.
+/// @param arguments arguments after this node's name.
+/// @param stop set to true to end the call within some hundredths of a second.
 /// @return nothing if no answer came, or it is malformed or reports an error.
 std::optional<XmlRpc::XmlRpcValue> callRosApi(const std::string& host, unsigned port, const char* method,
                                               const std::vector<XmlRpc::XmlRpcValue>& arguments,

@@ -14,16 +14,16 @@
 
 namespace grinder {
 
-/// A service call in its own thread, which can be aborted. ros::ServiceClient would wait for ever for a node that
-/// hangs, and must not be shut down by another thread meanwhile.
+/// A service call in its own thread, which can be aborted. ros::ServiceClient would wait for ever for a hanging
+/// node, and another thread must not shut it down meanwhile.
 class ServiceCall {
  public:
   /// Called in the call's thread. @param answer null if none came.
   using Done = std::function<void(ros::SerializedMessage* answer)>;
 
   /// @param name resolved name of the service.
-  /// @param md5sum of its type.
-  /// @param timeout for the answer; takes effect when abortIfOverdue() is called.
+  /// @param md5sum digest of its type.
+  /// @param timeout longest wait for the answer; takes effect when abortIfOverdue() is called.
   ServiceCall(std::string name, std::string md5sum, ros::SerializedMessage request, ros::WallDuration timeout,
               Done done);
   ServiceCall(const ServiceCall&) = delete;
@@ -45,7 +45,7 @@ class ServiceCall {
   const ros::SteadyTime due_;
   const Done done_;
   std::atomic<bool> finished_{false};
-  std::mutex mutex_;  ///< guards the next two
+  std::mutex mutex_;  ///< guards the next two members
   ros::ServiceServerLinkPtr link_;
   bool closed_ = false;
   std::thread thread_;

@@ -4,7 +4,7 @@
 
 namespace grinder {
 
-/// Who runs this program, as `user@host`: for requests of which the grinder remembers who made them.
+/// The user of this program as `user@host`, for requests whose author the grinder stores.
 std::string userAtHost();
 
 }  // namespace grinder

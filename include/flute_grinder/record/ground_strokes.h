@@ -6,13 +6,13 @@
 #include <vector>
 
 /// @file
-/// Where the wheel went in a job, as its record keeps it: of each stroke how far the axes were off their path, to 1 nm
-/// and 1 nrad. From this the tool is computed again.
+/// The path of the wheel in a job, as kept in its record: for each stroke, the deviations of the axes from their path,
+/// to 1 nm and 1 nrad. The tool is computed from it.
 namespace grinder {
 
 Json toJson(const std::vector<RunStroke>& strokes);
 
-/// @throw std::exception for what toJson() does not write.
+/// @throw std::exception for JSON that toJson() does not write.
 std::vector<RunStroke> runStrokesFrom(const Json& json);
 
 }  // namespace grinder

@@ -10,18 +10,18 @@
 
 namespace grinder {
 
-/// Holds and changes of the feed override of a job, up to 10,000 of each. Not thread safe.
+/// The holds and the changes of the feed override of a job, up to 10,000 of each. Not thread safe.
 class JobEvents {
  public:
-  /// Adds a cycle, or a message of the state; in the order of time.
-  /// @param time since the start [s]. @param held in a state in which the job is held.
+  /// Adds a cycle, or a message of the state, in the order of time.
+  /// @param time time since the start [s]. @param held whether the job is held.
   /// @param reason why it is held; empty if the operator has held it. @param feed_override fraction.
   void add(double time, bool held, std::string_view reason, double feed_override, const ToothPass& pass);
 
-  /// As records have them, see docs/ros-interface.md.
+  /// The events as written in records, see docs/ros-interface.md.
   Json holds() const;
   Json overrides() const;
-  /// How many were too many.
+  /// The number of events beyond the limit.
   std::uint64_t omitted() const noexcept { return omitted_; }
 
  private:

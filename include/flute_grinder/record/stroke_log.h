@@ -9,42 +9,41 @@
 
 namespace grinder {
 
-/// Figures of a stroke as it was ground; the feed is that within the flute, or along the relief's edge. A stroke that
-/// was held, and resumed, is one.
+/// Figures of a stroke as ground, with the feed within the flute or along the relief's edge. A stroke that was held and
+/// resumed counts once.
 struct StrokeFigures {
   ToothPass place;
-  double from = 0, to = 0;  ///< since the start [s]
-  bool complete = false;    ///< ground to its end
+  double from = 0, to = 0;  ///< begin and end since the start [s]
+  bool complete = false;    ///< the stroke was ground to its end
   bool has_feed = false;
-  double min_feed = 0, max_feed = 0;    ///< [m/s]
-  double min_feed_x = 0;                ///< where the feed was lowest [m]
-  double deviation = 0;                 ///< maximum [m]
-  double deviation_x = 0;               ///< where [m]
-  Axes following_error = Axes::Zero();  ///< maximum of each axis [m], A [rad]
+  double min_feed = 0, max_feed = 0;    ///< lowest and highest feed [m/s]
+  double min_feed_x = 0;                ///< X of the lowest feed [m]
+  double deviation = 0;                 ///< maximum deviation [m]
+  double deviation_x = 0;               ///< X of the maximum deviation [m]
+  Axes following_error = Axes::Zero();  ///< maximum following error of each axis [m], A [rad]
 };
 
-/// The strokes of a job, setpoint by setpoint. Not thread safe.
+/// Gathers the figures of a job's strokes, setpoint by setpoint. Not thread safe.
 class StrokeLog {
  public:
-  /// Of a job that is not known: depth and deviation are missing, and the overtravel counts as flute.
+  /// Makes a log for an unknown job: without depth and deviation, and with the overtravel counted as flute.
   StrokeLog() = default;
   explicit StrokeLog(const ValidJob& job);
 
-  /// Adds a setpoint of a stroke. @param time since the start [s].
+  /// Adds a setpoint of a stroke. @param time time since the start [s].
   void add(const Setpoint& setpoint, double time);
-  /// Adds how far the axes were from their command in that cycle, from 0; NaN stays [m], A [rad].
+  /// Adds the following errors of that cycle, from 0; NaN stays [m], A [rad].
   void addFollowingError(const Axes& error);
 
   const std::vector<StrokeFigures>& strokes() const noexcept { return strokes_; }
-  /// The strokes as records have them, see docs/ros-interface.md.
+  /// The strokes as written in records, see docs/ros-interface.md.
   Json json() const;
 
  private:
-  std::vector<FormedEdge> edges_;  ///< of the teeth
-  /// Where the part of the strokes begins whose feed counts, of the teeth: X of the small end, or of the wheel there as
-  /// a relief begins [m].
+  std::vector<FormedEdge> edges_;  ///< edges of the teeth
+  /// For each tooth, the X from which the feed counts: the small end, or the wheel's X at the start of a relief [m].
   std::vector<double> starts_;
-  std::vector<double> depths_;  ///< of the passes at the small end [m]
+  std::vector<double> depths_;  ///< depths of the passes at the small end [m]
   std::vector<StrokeFigures> strokes_;
 };
 

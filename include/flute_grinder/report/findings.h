@@ -16,21 +16,21 @@ namespace grinder {
 class MotionOfRows;
 class Plots;
 
-/// What a report says beside what its file has.
+/// The contents of a report that do not come from its file.
 struct ReportContext {
-  std::string file;                ///< its name for the reader
-  Json words;                      ///< note, operator and serial, of whoever asks for the report
-  std::optional<GroundTool> tool;  ///< as the run ground it; nothing if that is not known
-  Json tool_json;                  ///< the same as `grind simulate` has it
-  std::string no_tool;             ///< why it is not known
-  Tolerances tolerances;           ///< by which the tool is passed
+  std::string file;                ///< name of the file for the reader
+  Json words;                      ///< note, operator and serial number from the command line
+  std::optional<GroundTool> tool;  ///< tool as the run ground it; nothing if unknown
+  Json tool_json;                  ///< the tool in the JSON of `grind simulate`
+  std::string no_tool;             ///< why the tool is unknown
+  Tolerances tolerances;           ///< tolerances by which the tool is judged
 };
 
-/// Goes through the rows of a bag once, and works out all that a report says of them.
+/// Goes through the rows of a bag once, and computes all that a report shows of them.
 class Survey {
  public:
-  /// @param run must outlive this object. @param job of the run, with its laws; nothing if it has none.
-  /// @param draws pictures are wanted.
+  /// @param run must outlive this object. @param job job of the run, with its laws; nothing if the run has none.
+  /// @param draws whether pictures are wanted.
   Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws);
   Survey(const Survey&) = delete;
   Survey& operator=(const Survey&) = delete;
@@ -40,7 +40,7 @@ class Survey {
 
   /// The data of the report.
   Json findings(const ReportContext& context) const;
-  /// The points of its pictures. Only if they are wanted.
+  /// The points of the report's pictures; only if they are wanted.
   Json plots() const;
 
  private:
@@ -61,11 +61,11 @@ class Survey {
   std::unique_ptr<Plots> plots_;
   StrokeLog strokes_;
   MaxOfAxes speed_, acceleration_, following_;
-  double shortest_ = 0, longest_ = 0, sum_ = 0;  ///< of the cycles' measured periods [s]
+  double shortest_ = 0, longest_ = 0, sum_ = 0;  ///< shortest, longest and sum of the measured periods [s]
   std::uint64_t late_ = 0, count_ = 0;
 };
 
-/// What a report says of a tool by the grinder's own records.
+/// The data of a report on a tool from the grinder's own records.
 Json findingsOfTool(const ToolRecords& tool, const ReportContext& context);
 
 }  // namespace grinder

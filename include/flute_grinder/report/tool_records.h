@@ -12,35 +12,35 @@ namespace grinder {
 /// The records of one tool, by the operations of its job.
 class ToolRecords {
  public:
-  /// What the records say of an operation.
+  /// An operation, with its records.
   struct Operation {
     GrindJob asked;
-    std::optional<ValidJob> job;     ///< with its laws; nothing if the operation is not in the records
-    std::vector<std::string> files;  ///< names of the records: of the run that began it, and of those that continued it
-    std::vector<Record> records;     ///< of these; none if the operation is not in the records
+    std::optional<ValidJob> job;     ///< job with its laws; nothing if the operation is not in the records
+    std::vector<std::string> files;  ///< names of the records, of the run that began the job and of its continuations
+    std::vector<Record> records;     ///< the records; none if the operation is not in the records
 
-    /// Strokes of the job that none of the records has ground to its end; none without a record.
+    /// The strokes of the job that no record has ground to the end; none without a record.
     std::vector<ToothPass> missing() const;
-    /// In words.
+    /// The name of the operation in words.
     std::string name() const { return rowOf(asked.process.kind).words; }
   };
 
-  /// Looks for the other operations among the records of the same folder: those ahead of the record, of the same job,
-  /// with no other tool of it in between, and those behind it.
-  /// @param path of one of the tool's records. @throw FileError if it is none; JobFileError, InvalidJob or ReasonError
-  /// if its job is none.
+  /// Finds the tool's other operations among the records of the same folder: before and after the given record, of the
+  /// same job, with no other tool of that job in between.
+  /// @param path one of the tool's records. @throw FileError if it is not a record; JobFileError, InvalidJob or
+  /// ReasonError if its job is not valid.
   explicit ToolRecords(const std::string& path);
 
-  /// In the order of the job.
+  /// The operations in the order of the job.
   const std::vector<Operation>& operations() const noexcept { return operations_; }
-  /// The last one that the records have.
+  /// The last operation in the records.
   const Operation& last() const { return operations_[last_]; }
   /// Of the record that was named.
   const Operation& own() const { return operations_[own_]; }
 
-  /// The strokes of an operation, on the cutter as those ahead of it ground it; where one of these is not in the
-  /// records, they are taken as planned. @param operation of operations(), in the records. @throw std::exception, with
-  /// the reason, if a record does not have its strokes.
+  /// The strokes of an operation, on the cutter ground by the operations ahead of it; if one of these is not in the
+  /// records, all are taken as planned. @param operation one of operations() that has records.
+  /// @throw std::exception with the reason, if a record lacks the path of the wheel.
   RunStrokes strokes(const Operation& operation) const;
 
  private:

@@ -1,4 +1,4 @@
-"""Draws a report. `grind report` starts it, and hands it all that the report says as a JSON document on standard input."""
+"""Draws a report. `grind report` starts it, and hands it the contents of the report as a JSON document on standard input."""
 
 import argparse
 
@@ -13,7 +13,7 @@ def arguments():
 
 
 def draw(data, given):
-    """@raise Failure"""
+    """Draws the report of a document into its files. @raise Failure"""
     if given.pdf:
         from pdf import find_browser
         browser = find_browser(given.pdf)

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 
 class Failure(Exception):
-    """What to print, if anything, and the exit status: 2 for a file that cannot be made, 1 for a write that failed."""
+    """An error with its message, if any, and the exit status: 2 for a file that cannot be made, 1 for a write that failed."""
 
     def __init__(self, text, status=2):
         super().__init__(text)
@@ -17,7 +17,7 @@ class Failure(Exception):
 
 @contextmanager
 def writing(path):
-    """Names the file where an error does not, as that of a write. @raise Failure"""
+    """Turns an error of writing into a Failure that names the file. @raise Failure"""
     try:
         yield
     except BrokenPipeError:
@@ -30,14 +30,14 @@ def writing(path):
 
 
 class Output:
-    """A file that `grind` has opened, which gives it its name when all is written: 'DESCRIPTOR:PATH'."""
+    """A file opened by `grind`, which names it once all is written; given as 'DESCRIPTOR:PATH'."""
 
     def __init__(self, word):
         descriptor, self.path = word.split(':', 1)
         self.descriptor = int(descriptor)
 
     def write(self, content):
-        """@raise Failure"""
+        """Writes the whole file. @raise Failure"""
         with writing(self.path), open(self.descriptor, 'wb') as file:
             file.write(content)
 

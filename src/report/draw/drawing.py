@@ -1,4 +1,4 @@
-"""The drawing of the tool that was asked, with the dimensions of its job file."""
+"""The drawing of the tool asked for, with the dimensions of its job file."""
 
 import math
 from itertools import cycle
@@ -8,7 +8,7 @@ import numpy as np
 from cutter import max_radius, radius, spiral_angles, tooth_angles
 from style import CURVE, INK, METAL, THEORY, new_figure, picture
 
-SHANK_SHOWN = 0.9  # of its diameter
+SHANK_SHOWN = 0.9  # length of shank shown, as a fraction of its diameter
 
 
 class Outline:
@@ -21,7 +21,7 @@ class Outline:
         self.large = radius(cutter, self.length)
         self.neck = cutter.get('neck_length_mm') or 0
         self.shank = cutter['shank_diameter_mm'] / 2
-        # Where the neck's length is not known, a shoulder of 45 deg, as the machine's model has it.
+        # Without a known length of the neck, a shoulder of 45 deg, as in the machine's model.
         self.shoulder = self.length + self.neck
         self.shank_at = self.shoulder + (0 if self.neck else abs(self.shank - self.large))
         self.total = self.shank_at + max(2 * self.shank * SHANK_SHOWN, 0.15 * self.length)
@@ -51,7 +51,7 @@ def dimension(axes, begin, end, text, offset=(0, 0), **how):
 
 
 def tool_drawing(cutter):
-    """@param cutter of a job file."""
+    """The picture of the tool. @param cutter cutter of a job file."""
     outline = Outline(cutter)
     half = max(max_radius(cutter), outline.shank)
     x, r = np.array(outline.points()).T

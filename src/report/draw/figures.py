@@ -12,7 +12,7 @@ DEG = np.pi / 180
 LATE = 1.5  # periods after which a cycle counts as late, as in /diagnostics
 TIMING_COLUMNS = 200
 
-# Of the axes: key in the document, title, per, caption.
+# Quantities of the axes: key in the document, title, suffix of the unit, caption.
 QUANTITIES = [
     ('following', 'Following error', '',
      'Command of the cycle before less the position read; dashed: where the machine stops.'),
@@ -23,12 +23,12 @@ QUANTITIES = [
 
 
 def points(line, curve=0):
-    """x and y of a curve of a line: its points, or the minimum and maximum in each column of the picture."""
+    """x and y of one curve of `line`: its points, or the minimum and maximum in each column of the picture."""
     return np.array(line['x'], 'f8'), np.array([row[curve] for row in line['y']], 'f8')
 
 
 def broken(line, gap, curve=0, columns=1.5):
-    """The same, broken where x has a gap larger than `gap` and than this number of columns."""
+    """As points(), with the curve broken where x has a gap larger than `gap` and than `columns` columns."""
     x, y = points(line, curve)
     breaks = np.flatnonzero(np.diff(x) > max(gap, 0 if line['exact'] else columns * line['width'])) + 1
     return np.insert(x, breaks, np.nan), np.insert(y, breaks, np.nan)
@@ -43,14 +43,13 @@ def angle_unit(largest):
 
 
 def axis_unit(axis, per, largest):
-    """Of the operator's unit, or of a thousandth of it where the maximum [mm or deg] is small: how many are one mm or deg, and
-    its name."""
+    """Number per mm or deg, and name, of an axis' unit: the operator's, or a thousandth for a small maximum [mm or deg]."""
     unit, fine = ('deg', 'mdeg') if axis == 'A' else ('mm', 'µm')
     return (1, unit + per) if largest >= 0.1 else (1000, fine + per)
 
 
 def curve_pictures(data):
-    """As the paper's Figures 3 to 5, and of the error; of the stroke with the maximum error."""
+    """Pictures like the paper's Figures 3 to 5, and of the error, for the stroke with the maximum error."""
     curve, every = data['plots']['curve'], data['plots']['curve']['every']
     which = 'tooth %d, pass %d, the stroke with the maximum error' % (curve['tooth'] + 1, curve['pass'] + 1)
     whole = 'A in rad over X in mm for %s; the line is the theoretical curve, %s.' % (
@@ -136,7 +135,7 @@ def feed_picture(data, clock):
 
 
 def axis_picture(data, clock, quantity, curve):
-    """A quantity of an axis over time, in the strokes and apart from them."""
+    """A quantity of an axis over time, in the strokes and outside them."""
     key, title, per, caption = quantity
     row = data['axes'][curve]
     axis, maxima = row['axis'], row[key]
@@ -150,7 +149,7 @@ def axis_picture(data, clock, quantity, curve):
         axes.plot(time, values / scale * many, color=CURVE)
         for sign in (-1, 1) if limit is not None else ():
             axes.axhline(sign * limit * many, color=LIMIT, linestyle='--')
-        # Following errors in a stroke are a small part of the limit, which would hide them.
+        # Scaled by the maximum: a following error in a stroke is a small part of the limit.
         span = 1.1 * top * many or 1.0
         axes.set(ylim=(-span, span), ylabel=unit)
         of_limit = '' if limit is None else ', %.3g %% of the limit' % (100 * top / limit)
@@ -184,7 +183,7 @@ def timing_picture(data, clock):
 
 
 def plot_pictures(data):
-    """Lists by the part of the report."""
+    """Lists of pictures by the part of the report."""
     plots, found = data['plots'], {}
     if 'clock' in plots:
         clock = Clock(data)

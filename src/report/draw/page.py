@@ -1,4 +1,4 @@
-"""Writes what a report says, and its pictures, into a self-contained HTML file."""
+"""Writes the contents and pictures of a report into a self-contained HTML file."""
 
 import html
 import os
@@ -24,9 +24,9 @@ PAGE = '''<!DOCTYPE html>
 '''
 
 LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
-MOST_ROWS = 1000  # of a table; --json has all
-MOST_PLACES = 6  # of missing strokes
-ROUNDING = 1e-6  # below that a deviation [um] is rounding
+MOST_ROWS = 1000  # most rows of a table; --json has all
+MOST_PLACES = 6  # most places of missing strokes named
+ROUNDING = 1e-6  # deviation [um] below which it is rounding
 PROFILES = {'straight': 'straight', 'angled': 'angled', 'full_radius': 'full radius', 'cup': 'cup', 'points': 'by points'}
 
 
@@ -35,19 +35,19 @@ def text(value):
 
 
 def facts(rows):
-    """Names and values, without those that are None."""
+    """A table of names and values, without values that are None."""
     lines = ['<tr><th scope="row">%s</th><td>%s</td></tr>' % (text(name), text(value)) for name, value in rows if value is not None]
     return '<table class="facts">\n%s\n</table>' % '\n'.join(lines)
 
 
 class Table:
-    """Rows under a head; on a narrow screen each row is a card. numbers: the columns that are numbers, from 1."""
+    """Rows under a head; on a narrow screen each row is a card. numbers: the columns with numbers, from 1."""
 
     def __init__(self, head, numbers=()):
         self._head, self._numbers, self._rows, self._more = head, numbers, [], 0
 
     def add(self, *cells, classes=None):
-        """classes: of cells by column."""
+        """Adds a row. classes: classes of the cells, by column."""
         if len(self._rows) == MOST_ROWS:
             self._more += 1
             return
@@ -74,12 +74,12 @@ def number(value, digits):
 
 
 def three_digits(value):
-    """At least three digits, never with an exponent for large ones."""
+    """A number with at least three digits; large ones without an exponent."""
     return None if value is None else '0' if abs(value) < ROUNDING else '%.3g' % value if abs(value) < 1000 else '%.0f' % value
 
 
 def local(stamp):
-    """A point in time on the clock of this computer."""
+    """A point in time as local time of this computer."""
     return datetime.fromisoformat(stamp.replace('Z', '+00:00')).astimezone().strftime('%Y-%m-%d %H:%M:%S %z')
 
 
@@ -116,7 +116,7 @@ def tool_facts(cutter):
 
 
 def clearances(cutter):
-    """None without reliefs."""
+    """The clearances asked for; None without reliefs."""
     if not cutter.get('clearance_deg'):
         return None
     asked = '%g ± %g deg' % (cutter['clearance_deg'], cutter['clearance_tolerance_deg'])
@@ -144,7 +144,7 @@ def process_facts(process):
 
 
 def operations_of(data):
-    """Each with its runs: those of the records, or the only one of a bag."""
+    """The operations with their runs, from the records, or with the single run of a bag."""
     if 'operations' in data or not data.get('job'):
         return data.get('operations', [])
     file = data['job']['file']
@@ -160,7 +160,7 @@ def who_and_when(data):
 
 
 def run_facts(run):
-    """What a run was like; for a developer."""
+    """The facts of a run, for a developer."""
     machine, offsets, setpoints = run.get('machine', {}), run.get('work_offsets'), run.get('setpoints', {})
     return [('drive', machine.get('drive')), ('software', 'flute_grinder ' + machine['software'] if machine else None),
             ('duration', clock(run['duration_s']) if run.get('duration_s') is not None else None),
@@ -171,14 +171,14 @@ def run_facts(run):
 
 
 def sources(data):
-    """Of what the report is made."""
+    """The sources of the report."""
     files = [name for operation in data.get('operations', []) for name in operation['files']] or [data['file']]
     return [('file', '%s (%s)' % (', '.join(files), data['type'])), ('job in the bag', data.get('in_bag')),
             ('ground tool', data['tool']['source'] if 'operation' in data.get('tool', {}).get('job', {}) else None)]
 
 
 def operation_table(data):
-    """What was ground, with which wheel, and whether to its end."""
+    """The operations, with their wheels and outcomes."""
     table = Table(['operation', 'wheel', 'Ø mm', 'wear mm', 'dressed', 'ground', 'strokes', 'outcome'], (2, 3))
     for operation in operations_of(data):
         wheel, runs = operation['process']['wheel'], operation['runs']
@@ -201,7 +201,7 @@ def strokes_text(operation):
 
 
 def zero_points(data):
-    """When, by whom and how; of each run that has them."""
+    """The zero points of each run that has them: when, by whom and how they were set."""
     ignored, table = [], Table(['zero points', 'X', 'Y', 'Z', 'A', 'for'])
     for operation in operations_of(data):
         for run in operation['runs']:
@@ -258,7 +258,7 @@ def criteria_table(data, of_tool):
 
 
 def by_hand(cutter):
-    """What only a measurement of the tool itself can tell, with room for it."""
+    """A form for the figures that only a measurement of the tool itself can show."""
     table = Table(['', 'asked', 'measured', 'instrument'], (1,))
     figures = [('diameter at the small end', '%g mm' % cutter['end_diameter_mm'])]
     if cutter['cone_angle_deg']:
@@ -298,7 +298,7 @@ def stroke_table(data):
 
 
 def events_between(data):
-    """Holds and overrides that are in no stroke."""
+    """The holds and overrides outside the strokes."""
     inside = ' '.join(events_of(data, stroke) for stroke in data['strokes'])
     events = ['Held for %.1f s at %.1f s (%s).' % (h['duration_s'], h['at_s'], h['reason']) for h in data['holds']
               if 'held %.1f s at %.1f s' % (h['duration_s'], h['at_s']) not in inside]
@@ -348,7 +348,7 @@ def css_string(words):
 
 
 def margins(data):
-    """What is on every printed page beside its number."""
+    """The texts in the margins of every printed page."""
     left = [name_of(data), data.get('tool', {}).get('tool')]
     right = ['No. ' + data['serial'] if 'serial' in data else None, local(data['started'])[:16] if 'started' in data else None]
     return '@page { @top-left { content: %s } @top-right { content: %s } @bottom-left { content: %s } }' % tuple(
@@ -378,7 +378,7 @@ def first_page(data, parts):
 
 
 def runs(data):
-    """Of each operation, its set-up and strokes."""
+    """The runs: for each operation, its set-up and strokes."""
     body = ['<h2>The run</h2>', criteria_table(data, False)] if 'criteria' in data else []
     for operation in operations_of(data) or [{'operation': '', 'process': None, 'runs': [data]}]:
         for run in operation['runs']:
@@ -393,7 +393,7 @@ def runs(data):
 
 
 def for_developers(data, parts):
-    """In a folded part: what nobody needs to judge the tool by."""
+    """The folded appendix, which is not needed to judge the tool."""
     body = [facts(sources(data))]
     for name, title, *_ in QUANTITIES:
         if parts.get(name):
@@ -412,7 +412,7 @@ def for_developers(data, parts):
 
 
 def page(data, parts):
-    """@param data the document. @param parts of draw_all()."""
+    """The page of a report. @param data the document. @param parts result of draw_all()."""
     body = first_page(data, parts)
     if parts.get('tool'):
         body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]

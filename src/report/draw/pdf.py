@@ -7,12 +7,12 @@ import tempfile
 
 from document import Failure, writing
 
-TIMEOUT = 300  # [s]
+TIMEOUT = 300  # longest time for the browser [s]
 BROWSERS = ('chromium', 'chromium-browser', 'google-chrome')
 
 
 def find_browser(output):
-    """@raise Failure"""
+    """The path of a browser that can print. @raise Failure"""
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if not browser:
         raise Failure(output.path +
@@ -21,7 +21,7 @@ def find_browser(output):
 
 
 def print_pdf(browser, text, output):
-    """By a browser without a window, on A4 as the page's style sheet says. @raise Failure"""
+    """Prints with a browser without a window, on A4 as set by the page's style sheet. @raise Failure"""
     with writing(output.path), tempfile.TemporaryDirectory() as folder:
         page, made = os.path.join(folder, 'report.html'), os.path.join(folder, 'report.pdf')
         with open(page, 'w', encoding='utf-8') as file:

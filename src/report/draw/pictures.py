@@ -1,4 +1,4 @@
-"""Which pictures a report has."""
+"""The pictures of a report."""
 
 from drawing import tool_drawing
 from figures import plot_pictures

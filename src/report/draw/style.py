@@ -1,5 +1,5 @@
-"""How the pictures look: small ones, so that their text can be read on a phone. Shapes repeat the meaning of colours, so that they
-can be read in grey."""
+"""The style of the pictures. They are small, so that their text can be read on a phone. Shapes repeat the meaning of colours, so
+that they can be read in grey."""
 
 import io
 import re
@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 
 Picture = namedtuple('Picture', 'name title caption svg')
 
-WIDTH = 4.6  # of a picture [in]
-NARROW = 3.0  # of one of three side by side
+WIDTH = 4.6  # width of a picture [in]
+NARROW = 3.0  # width of one of three pictures side by side [in]
 
-# Colours differ in lightness too. In a page each is a variable of its style sheet, which has another value in the dark.
+# Colours differ in lightness too. In a page each is a variable of its style sheet, with another value in dark mode.
 INK, GRID, THEORY, CURVE = '#222222', '#dddddd', '#888888', '#1f4e8c'
 LIMIT, ODD_COLOUR, METAL, HELD = '#c03020', '#d96c00', '#dfe5ec', '#c9c4b4'
 TEETH = [CURVE, ODD_COLOUR, '#2b8a3e', '#8e3b8e', '#00808a', '#8a6d00', '#555555', '#c2185b']
@@ -35,14 +35,14 @@ def new_figure(height, width=WIDTH):
 
 
 def svg_of(figure):
-    """A file of its own."""
+    """The SVG of a figure, as a file of its own."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format='svg', metadata={'Date': None})
     return buffer.getvalue().decode()
 
 
 def picture(name, title, caption, figure):
-    """A part of a page: ids that no other picture has, and colours by the page's variables."""
+    """A figure as part of a page: with unique ids, and with the page's variables for colours."""
     svg = svg_of(figure)
     svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
     svg = re.sub(r' (width|height)="[\d.]+pt"', '', svg, count=2)

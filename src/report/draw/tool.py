@@ -1,4 +1,4 @@
-"""The pictures of a ground cutter, from what `grind simulate --json` prints. As a program, draws them into one SVG file:
+"""The pictures of a ground cutter, from the output of `grind simulate --json`. As a program, draws them into one SVG file:
 tool.py FILE.svg < JSON."""
 
 import math
@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from document import Output, run
 from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
 
-LEAST_SPAN = 0.002  # of a picture's figures; what is less is rounding
+LEAST_SPAN = 0.002  # least span of a picture's figures; a smaller one is rounding
 
 
 def is_relieved(tool):
@@ -31,7 +31,7 @@ def point(radius, degrees):
 
 
 def draw_section(axes, tool, section):
-    """A section, Y to the right and Z up, but turned until the first tooth's edge is on top."""
+    """Draws a section, Y to the right and Z up, turned until the first tooth's edge is on top."""
     tooth = section['teeth'][0]
     radius, core = section['diameter_mm'] / 2, section['core_diameter_mm'] / 2
     turn = 90 - number(tooth['edge_deg'])
@@ -62,7 +62,7 @@ def draw_section(axes, tool, section):
 
 
 def draw_rake(axes, radius, tooth, sign):
-    """The radius to the edge on top, and against it the rake asked and the one ground."""
+    """Draws the rake asked for and the ground rake, against the radius to the edge on top."""
     axes.plot([0, 0], [0, 1.25 * radius], color=THEORY, linewidth=0.6)
     for rake, style in ((tooth['asked_rake_deg'], {'color': LIMIT, 'linestyle': '--'}), (tooth['rake_deg'], {'color': INK})):
         if rake is not None:
@@ -83,7 +83,7 @@ def land_text(tool, tooth):
 
 
 def draw_relief(axes, radius, tooth, sign):
-    """Against the circle's tangent behind the edge, the clearance asked and the one ground."""
+    """Draws the clearance asked for and the ground clearance, against the circle's tangent behind the edge."""
     axes.plot([0, -sign * 0.9 * radius], [radius, radius], color=THEORY, linewidth=0.6)
     for clearance, style in ((tooth['asked_clearance_deg'], {'color': LIMIT, 'linestyle': '--'}),
                              (tooth['clearance_deg'], {'color': INK})):
@@ -100,7 +100,7 @@ def draw_relief(axes, radius, tooth, sign):
 def draw_land(axes, radius, length, degrees, sign):
     if degrees is None:
         return
-    # Behind the edge; an arc with its length.
+    # An arc behind the edge, with its length.
     angles = np.radians(90 + sign * np.linspace(0, degrees, 60))
     axes.plot(1.08 * radius * np.cos(angles), 1.08 * radius * np.sin(angles), color=INK)
     for end in (90, 90 + sign * degrees):
@@ -110,13 +110,13 @@ def draw_land(axes, radius, length, degrees, sign):
 
 
 def shown_sections(tool):
-    """At both ends and in the middle."""
+    """The sections at both ends and in the middle."""
     sections = tool['sections']
     return [sections[i] for i in sorted({0, len(sections) // 2, len(sections) - 1})]
 
 
 def draw_curve(axes, tool, curve):
-    """A figure over X, of each tooth or of the section; what is asked dashed, its tolerance shaded."""
+    """Draws a figure over X, of each tooth or of the section; the value asked for is dashed, its tolerance shaded."""
     sections, key, tolerance = tool['sections'], curve['key'], curve['tolerance']
     x = [section['x_mm'] for section in sections]
     for i in range(1 if curve['of_section'] else tool['teeth']):
@@ -138,7 +138,7 @@ def draw_curve(axes, tool, curve):
 
 
 def tool_pictures(tool):
-    """For a report."""
+    """The pictures of a tool for a report."""
     pictures = []
     for i, section in enumerate(shown_sections(tool), 1):
         figure = new_figure(3.6, NARROW)
@@ -158,7 +158,7 @@ def tool_pictures(tool):
 
 
 def draw_file(tool):
-    """All in one picture."""
+    """All pictures of a tool in one SVG."""
     curves = tool['curves']
     heights = 4.1, 1.5 * len(curves)
     figure = Figure((9, sum(heights) + 0.1), constrained_layout=True, facecolor='white')

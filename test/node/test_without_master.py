@@ -220,9 +220,9 @@ class TestMasterWatch(unittest.TestCase):
         self.addCleanup(self.master.close)
         self.api = self.master.api
         self.node = self.start(gc.program('grinder'), '__name:=' + NODE[1:])
-        # The action's goals are what it registers last.
-        wait_for(lambda: NODE + '/grind/goal' in self.registered()['subscribers'] and self.api.lookupService(NODE + '/set_offset'),
-                 'node as it is once it has started')
+        # The action's goals and then its cancels are what it registers last.
+        wait_for(lambda: {NODE + '/grind/goal', NODE + '/grind/cancel'} <= self.registered()['subscribers'] and
+                 self.api.lookupService(NODE + '/set_offset'), 'node as it is once it has started')
         self.node_api = xmlrpc.client.ServerProxy(self.api.lookupNode(NODE))
 
     def start(self, *command):

@@ -2,13 +2,10 @@
 
 #include "cli/history.h"
 #include "cli/json_output.h"
-#include "cli/machine_file.h"
 #include "cli/recorded_run.h"
 #include "cli/tool_output.h"
-#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/file_error.h"
-#include "flute_grinder/record/record_file.h"
 #include "flute_grinder/report/findings.h"
 
 #include <spawn.h>

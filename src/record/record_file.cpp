@@ -1,9 +1,9 @@
 #include "flute_grinder/record/record_file.h"
 
+#include "flute_grinder/job/escaped.h"
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/regular_file.h"
-#include "flute_grinder/job/yaml_text.h"
 #include "flute_grinder/plan/sha256.h"
 
 #include <algorithm>

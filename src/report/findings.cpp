@@ -4,7 +4,6 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
-#include "flute_grinder/record/machine_info.h"
 #include "report/motion.h"
 #include "report/plots.h"
 

@@ -6,10 +6,9 @@
 #include "flute_grinder/record/ground_strokes.h"
 
 #include <algorithm>
-#include <exception>
 #include <filesystem>
+#include <iterator>
 #include <map>
-#include <set>
 #include <stdexcept>
 #include <utility>
 

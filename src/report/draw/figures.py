@@ -184,16 +184,11 @@ def timing_picture(data, clock):
 
 def plot_pictures(data):
     """Lists of pictures by the part of the report."""
-    plots, found = data['plots'], {}
-    if 'clock' in plots:
-        clock = Clock(data)
-        for quantity in QUANTITIES:
-            if quantity[0] in plots:
-                found[quantity[0]] = [axis_picture(data, clock, quantity, curve) for curve in range(len(data['axes']))]
-        if 'timing' in plots:
-            found['timing'] = [timing_picture(data, clock)]
-        if 'feed' in plots:
-            found['feed'] = [feed_picture(data, clock)]
+    plots, clock = data['plots'], Clock(data)
+    found = {quantity[0]: [axis_picture(data, clock, quantity, curve) for curve in range(len(data['axes']))] for quantity in QUANTITIES}
+    found['timing'] = [timing_picture(data, clock)]
+    if 'feed' in plots:
+        found['feed'] = [feed_picture(data, clock)]
     if 'curve' in plots:
         found['curve'] = curve_pictures(data)
     return found

@@ -130,7 +130,7 @@ BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 /// six teeth with both reliefs.
 void checkCutter(benchmark::State& state) {
   const GrindJob jobs[]{paperJob(600), readJobFile("jobs/unequal_d12_t4.yaml"),
-                        readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary")};
+                        readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary")};
   const ValidJob job = withLaws(ValidJob(jobs[state.range(0)]));
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }

@@ -373,7 +373,7 @@ std::string lastRecord(const std::string& node, const std::string& folder) {
 std::string doneOperations(const std::string& node, const std::string& job) {
   GrindJob tool;
   try {
-    tool = readJobFile(job, {}, "1");
+    tool = readJobFile(job, "1");
   } catch (const JobFileError&) {
     return "";
   }

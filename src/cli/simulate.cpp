@@ -86,7 +86,7 @@ Source sourceOfBag(const SimulateOptions& options, const std::string& name) {
     throw FileError(options.file + ": the bag does not have the goal of " + run.place() +
                     "; give its job file with --job");
   }
-  const ValidJob job = options.job.empty() ? *run.job() : ValidJob(readJobFile(options.job, {}, options.operation));
+  const ValidJob job = options.job.empty() ? *run.job() : ValidJob(readJobFile(options.job, options.operation));
   const std::string place = name + ", " + run.place() + recordedBeforeText(run);
   return {job, place, options.file, std::move(run), {}};
 }
@@ -96,7 +96,7 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
   const std::string file = options.last ? lastRecord(node, options.folder) : options.file;
   const std::string name = std::filesystem::path(file).filename();
   if (isBag(file)) return sourceOfBag(options, name);
-  if (!isRecord(file)) return {ValidJob(readJobFile(file, {}, options.operation)), name, file, {}, {}};
+  if (!isRecord(file)) return {ValidJob(readJobFile(file, options.operation)), name, file, {}, {}};
   ToolRecords records(file);
   const ValidJob job = *records.last().job;
   return {job, name, file, {}, std::move(records)};

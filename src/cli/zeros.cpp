@@ -22,7 +22,7 @@ using units::kMillimetre;
 
 /// The zero point [m]; nothing, with the reason on stderr, if the cutter does not stand out far enough.
 std::optional<Eigen::Vector3d> zeroOf(const ZerosOptions& options, const MachineGeometry& geometry) {
-  const GrindJob job = readJobFile(options.job, {}, options.operation);
+  const GrindJob job = readJobFile(options.job, options.operation);
   const double flange = flangeOf(options.job, job.operation, options.flange_mm);
   const double stickout = options.stickout_mm * kMillimetre;
   if (stickout >= job.cutter.flute_length) return workZero(geometry, job, {flange, stickout});
@@ -44,7 +44,7 @@ void printZero(const Eigen::Vector3d& metres, bool json) {
 
 double flangeOf(const std::string& job, int operation, const std::optional<double>& flange_mm) {
   if (flange_mm) return *flange_mm * kMillimetre;
-  const std::string wheel = wheelFileOf(job, operation);
+  const std::string wheel = filesOf(job, operation).wheel;
   if (wheel.empty()) throw std::invalid_argument("--flange is missing, and " + job + " names no wheel file");
   const std::optional<double> flange = readWheelFile(wheel).flange;
   if (!flange) throw std::invalid_argument("--flange is missing, and " + wheel + " has no flange_mm");

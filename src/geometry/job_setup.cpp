@@ -41,14 +41,6 @@ std::string textOf(double value, double scale, int decimals) {
   return number == "-0" ? "0" : number;
 }
 
-JobEdit editOf(const char* path, double value, int decimals) {
-  JobEdit edit{fieldName(path), ""};
-  visitJobFields([&](const JobField& field, auto) {
-    if (field.path == std::string_view(path)) edit.value = textOf(value, shopScale(field.unit), decimals);
-  });
-  return edit;
-}
-
 std::string asked(const char* path, double value, Unit unit) {
   return fieldName(path) + " = " + text(Quantity{value, unit}, 5);
 }
@@ -141,58 +133,29 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   return r;
 }
 
-/// The key of a process in a job's file, which may have several processes.
-std::string keyIn(const GrindJob& job, const std::string& key) {
-  if (job.operations.empty()) return key;
-  return "operations[" + std::to_string(job.operation) + "]" + key.substr(key.find('.'));
-}
-
-/// Puts a figure into the job as read back from a file, and adds an edit that writes it there.
-void takeFigure(JobSetup& setup, const char* path, double& field, double value, double scale, int decimals) {
-  field = rounded(value, scale, decimals);
-  JobEdit edit = editOf(path, field, decimals);
-  edit.key = keyIn(setup.job, edit.key);
-  const auto same = [&](const JobEdit& other) { return other.key == edit.key; };
-  setup.edits.erase(std::remove_if(setup.edits.begin(), setup.edits.end(), same), setup.edits.end());
-  setup.edits.push_back(edit);
-}
-
 /// Lengthens the overtravel to the set-up's requirement, where it is shorter.
 void takeOvertravel(JobSetup& setup) {
   GrindProcess& p = setup.job.process;
-  const auto lengthen = [&](const char* path, double& field, double needed) {
+  const auto lengthen = [](double& field, double needed) {
     if (field >= needed) return;
     const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
-    takeFigure(setup, path, field, needed + up, units::kMillimetre, kOvertravelDecimals);
+    field = rounded(needed + up, units::kMillimetre, kOvertravelDecimals);
   };
-  lengthen("process.overtravel_end", p.overtravel_end, setup.overtravel[0]);
-  lengthen("process.overtravel_shank", p.overtravel_shank, setup.overtravel[1]);
+  lengthen(p.overtravel_end, setup.overtravel[0]);
+  lengthen(p.overtravel_shank, setup.overtravel[1]);
 }
 
-/// Puts the solved figures into the job, as read back from a file.
+/// Puts the solved figures into the job, as read back from a file. A fixed depth keeps its decimals.
 void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
   GrindProcess& p = setup.job.process;
-  const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
-    takeFigure(setup, path, field, value, scale, decimals);
-  };
-  // A fixed depth keeps the file's decimals.
-  if (keep != SetupFigure::kDepth || solved.depth != p.depth)
-    take("process.depth", p.depth, solved.depth, units::kMillimetre, kLengthDecimals);
-  if (keep != SetupFigure::kSwivel) {
-    take("process.setup_swivel", p.setup_swivel, solved.setup.swivel, units::kDegree, kAngleDecimals);
-  }
-  if (keep != SetupFigure::kHeight) {
-    take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
-  }
+  const auto millimetres = [](double value) { return rounded(value, units::kMillimetre, kLengthDecimals); };
+  if (keep != SetupFigure::kDepth) p.depth = millimetres(solved.depth);
+  if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(solved.setup.swivel, units::kDegree, kAngleDecimals);
+  if (keep != SetupFigure::kHeight) p.setup_height = millimetres(solved.setup.height);
   // A flute of constant depth needs no depth at its end.
-  if (p.depth_end > 0 || solved.depth_end != solved.depth) {
-    take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
-  }
-  if (solved.setup.x_shift != p.setup_x_shift) {
-    take("process.setup_x_shift", p.setup_x_shift, solved.setup.x_shift, units::kMillimetre, kLengthDecimals);
-  }
+  if (p.depth_end > 0 || solved.depth_end != solved.depth) p.depth_end = millimetres(solved.depth_end);
+  p.setup_x_shift = millimetres(solved.setup.x_shift);
   setup.overtravel = solved.overtravel;
-  setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};
   takeOvertravel(setup);
   setup.limit = solved.limit;
   setup.margin = solved.margin;
@@ -237,7 +200,7 @@ void intoList(GrindJob& job) {
 std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const Range& swivel,
                                                      std::optional<SetupFigure> keep) {
   if (keep && *keep != SetupFigure::kSwivel) {
-    return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
+    return std::string("the ") + toString(*keep) + " of a relief is not kept; allowed: swivel";
   }
   const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
   const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
@@ -249,8 +212,8 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   JobSetup setup;
   setup.job = job;
   GrindProcess& p = setup.job.process;
-  if (!keep) takeFigure(setup, "process.setup_swivel", p.setup_swivel, found.swivel, units::kDegree, kAngleDecimals);
-  takeFigure(setup, "process.setup_height", p.setup_height, found.height, units::kMillimetre, kLengthDecimals);
+  if (!keep) p.setup_swivel = rounded(found.swivel, units::kDegree, kAngleDecimals);
+  p.setup_height = rounded(found.height, units::kMillimetre, kLengthDecimals);
   intoList(setup.job);
   setup.relief = JobSetup::Relief{found.width, found.next_edge, found.land_end_clearance};
   setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
@@ -292,12 +255,11 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
   return setupWith(std::get<SolvedSetup>(result), job, keep);
 }
 
-/// Transfers the set-up found for a job with rounded numbers to the job itself, with the numbers written into its file.
-JobSetup inJob(GrindJob job, JobSetup setup) {
+/// Transfers the set-up found for a job with rounded numbers to the job itself.
+JobSetup inJob(GrindJob job, JobSetup setup, std::optional<SetupFigure> keep) {
   visitJobFields([&](const JobField& field, auto of) {
-    const std::string key = keyIn(job, fieldName(field.path));
-    const auto is_own = [&](const JobEdit& edit) { return edit.key == key; };
-    if (std::any_of(setup.edits.begin(), setup.edits.end(), is_own)) of(job) = of(setup.job);
+    const bool is_kept = keep && field.path == std::string_view(rowOf(*keep).path);
+    if (isOfSetup(field) && !is_kept) of(job) = of(setup.job);
   });
   intoList(job);
   setup.job = std::move(job);
@@ -306,20 +268,12 @@ JobSetup inJob(GrindJob job, JobSetup setup) {
 
 }  // namespace
 
-std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
-  std::vector<std::string> fields;
-  if (keep != SetupFigure::kSwivel) fields.emplace_back("process.setup_swivel");
-  if (keep != SetupFigure::kHeight) fields.emplace_back("process.setup_height");
-  if (keep != SetupFigure::kDepth) fields.emplace_back("process.depth");
-  return fields;
-}
-
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep) {
   const GrindJob job = roundedOff(asked);
   try {
     auto found = isRelief(job.process.kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
-    if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup));
+    if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup), keep);
     return found;
   } catch (const InvalidJob& error) {
     return "the set-up does not suit the job: " + text(error.reasons());

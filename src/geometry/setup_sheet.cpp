@@ -31,11 +31,9 @@ std::string wheelText(const GrindProcess& p) {
 
 std::string overtravelText(const JobSetup& setup) {
   const auto& [end, shank] = setup.overtravel;
-  const auto& [end_before, shank_before] = setup.overtravel_before;
-  std::string text = format("%.2f mm beyond the small end, %.2f mm toward the shank; the job has %g and %g mm", mm(end),
-                            mm(shank), mm(end_before), mm(shank_before));
-  if (end > end_before || shank > shank_before) text += ": too little";
-  return text;
+  const GrindProcess& p = setup.job.process;
+  return format("%g mm beyond the small end, %g mm toward the shank; the flutes need %.2f and %.2f mm",
+                mm(p.overtravel_end), mm(p.overtravel_shank), mm(end), mm(shank));
 }
 
 std::string shiftText(const GrindProcess& p) {
@@ -129,6 +127,20 @@ double lowerFaceHeight(const GrindJob& job) {
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel) {
   return whatToSet(setup, swivel) + whatToTouch(setup.job, above_swivel) + whatComesOut(setup) + "limited by\n" +
          whatLimits(setup, swivel);
+}
+
+std::string changesText(const std::optional<GrindProcess>& before, const GrindJob& solved) {
+  GrindJob had = solved;
+  if (before) had.process = *before;
+  std::string text;
+  visitJobFields([&](const JobField& field, auto of) {
+    if (!isOfSetup(field) || !field.isOf(solved.process.kind)) return;
+    const double scale = shopScale(field.unit), was = of(had) / scale, is = of(solved) / scale;
+    text +=
+        format("  %-32s", field.file_key) + (before ? format("%.8g before, ", was) : "") + format("%.8g solved", is);
+    text += !before ? "\n" : is == was ? ": the same\n" : format(": %+.5f\n", is - was);
+  });
+  return text;
 }
 
 std::string planRefusal(const JobSetup& setup) {

@@ -28,7 +28,7 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
 }
 
 std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine) {
-  const std::string wheel = wheelFileOf(file, job.operation);
+  const std::string wheel = filesOf(file, job.operation).wheel;
   const std::optional<double> flange = wheel.empty() ? std::nullopt : readWheelFile(wheel).flange;
   if (!flange) return std::nullopt;
   GrindProcess upright = job.process;

@@ -44,7 +44,7 @@ constexpr const char* kContent = "cutter, process or operations, and interpolati
 constexpr const char* kProcess = "process.";
 constexpr const char* kOperations = "operations";
 constexpr const char* kOperation = "operation";
-constexpr const char* kDepth = "process.depth";
+constexpr const char* kSetupFile = "process.setup.file";
 
 bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
 
@@ -77,9 +77,10 @@ bool isOfWheelFile(const JobField& field) {
   return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
 
+/// The path of a file that a job file names.
 /// @param job the path of the job file.
-std::string wheelPath(const std::string& job, const std::string& wheel) {
-  return (std::filesystem::path(job).parent_path() / wheel).string();
+std::string besideJob(const std::string& job, const std::string& file) {
+  return (std::filesystem::path(job).parent_path() / file).string();
 }
 
 /// Refuses a text in place of the wheel's keys, which is most likely the path of a wheel file.
@@ -105,7 +106,7 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
   file.refuseBeside(key, keys("process.wheel."), keys("process.wheel.wear_per_pass_mm"));
   if (!named) return;
-  const std::string path = wheelPath(path_of_job, name);
+  const std::string path = besideJob(path_of_job, name);
   std::string text;
   try {
     text = readTextFile(path);
@@ -122,15 +123,22 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
 }
 
-/// Whether a file omits a number that is yet to be found.
-bool isToBeFound(const FlatFile& file, const std::string& key, const JobField& field,
-                 const std::vector<std::string>& unsolved) {
-  return !file.has(key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
+/// The figure of a set-up that an operation may ask for beside a set-up file; nothing for any other number.
+std::optional<SetupFigure> figureOf(const JobField& field, OperationKind kind) {
+  for (const SetupFigureRow& row : kSetupFigures) {
+    const bool is_allowed = !isRelief(kind) || row.value == SetupFigure::kSwivel;
+    if (is_allowed && std::string_view(row.path) == field.path) return row.value;
+  }
+  return std::nullopt;
 }
 
-/// How a missing number can be found; empty for most numbers.
-std::string remedy(std::string_view path) {
-  return path == kDepth || path.substr(0, path.find('_')) == "process.setup" ? "; 'grind setup --write' finds it" : "";
+/// The keys that figureOf() allows beside a set-up file.
+std::string figureKeys(OperationKind kind) {
+  std::string keys;
+  visitJobFields([&](const JobField& field, auto) {
+    if (figureOf(field, kind)) keys += (keys.empty() ? "" : ", ") + std::string(field.file_key);
+  });
+  return isRelief(kind) ? keys : "one of " + keys;
 }
 
 /// Whether a file omits a number that is optional. The elements of a pair are omitted together.
@@ -139,6 +147,14 @@ bool omits(const FlatFile& file, const std::string& key, const JobField& field) 
   return field.optional && !file.mentionsPart(key);
 }
 
+/// An operation of a job file beside its numbers.
+struct OperationSetup {
+  std::string file;                   ///< path of the set-up file; empty if the job file states the figures
+  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
+  int line = 1;                       ///< line of the set-up file's name
+  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
+};
+
 /// Reads one operation, and the rest of the file except the other operations.
 class OperationReader {
  public:
@@ -146,13 +162,14 @@ class OperationReader {
   OperationReader(FlatFile& file, ProcessKeys keys, const GrindProcess* before)
       : file_(file), keys_(std::move(keys)), before_(before) {}
 
-  GrindJob read(const std::string& name, const std::vector<std::string>& unsolved) {
+  GrindJob read(const std::string& name) {
     if (!keys_.single()) takeKind();
     takeSpirals(file_, job_);
+    takeSetupFile(name);
     const bool has_wheel_path = refuseWheelPath(file_, keys_);
     const bool has_wheel_file = has_wheel_path || file_.mentions(keys_("process.wheel.file"));
     visitJobFields([&](const JobField& field, auto of) {
-      if (!(has_wheel_file && isOfWheelFile(field))) takeNumber(field, of, unsolved);
+      if (!(has_wheel_file && isOfWheelFile(field))) takeNumber(field, of);
     });
     takeTeeth(file_, job_);
     if (has_wheel_file) {
@@ -165,7 +182,34 @@ class OperationReader {
     return std::move(job_);
   }
 
+  const OperationSetup& setup() const { return setup_; }
+
  private:
+  void takeSetupFile(const std::string& name) {
+    const std::string key = keys_(kSetupFile);
+    std::string file;
+    setup_.line = file_.line(key);
+    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file)) setup_.file = besideJob(name, file);
+  }
+
+  /// Takes a figure of the set-up beside a set-up file, in which the others stand.
+  /// @return whether it is there.
+  bool takeWanted(const JobField& field, const std::string& key) {
+    if (!file_.has(key)) {
+      file_.know(key);
+      return false;
+    }
+    const auto figure = figureOf(field, job_.process.kind);
+    if (!figure || setup_.wanted) {
+      file_.fail(file_.line(key), key + " stands beside " + keys_(kSetupFile) +
+                                      "; allowed beside it: " + keys_.in(figureKeys(job_.process.kind)));
+      file_.drop(key);
+      return false;
+    }
+    setup_.wanted = figure;
+    return true;
+  }
+
   void takeKind() {
     const std::string kind = keys_("process.kind"), relief = keys_("process.relief");
     std::string word;
@@ -185,7 +229,7 @@ class OperationReader {
   bool inherits(const char* key) const { return before_ != nullptr && !file_.has(keys_(key)); }
 
   template <typename Of>
-  void takeNumber(const JobField& field, const Of& of, const std::vector<std::string>& unsolved) {
+  void takeNumber(const JobField& field, const Of& of) {
     const std::string key = keys_(field.file_key);
     double value = 0;
     if (!field.isOf(job_.process.kind)) return;
@@ -193,13 +237,12 @@ class OperationReader {
       job_.process.clearance = before_->clearance;
       return file_.know(key);
     }
-    if (omits(file_, key, field)) return file_.know(key);
-    if (isToBeFound(file_, key, field, unsolved)) {
-      if (field.path == std::string_view(kDepth)) of(job_) = (job_.cutter.end_diameter - job_.cutter.core_diameter) / 2;
-      return file_.know(key);
-    }
+    const bool of_file = !setup_.file.empty() && isOfSetup(field);
+    if (of_file ? !takeWanted(field, key) : omits(file_, key, field)) return file_.know(key);
     std::string allowed = grinder::text(field.low(), field.high());
-    if (!file_.has(key)) allowed += remedy(field.path);
+    if (!file_.has(key) && isOfSetup(field)) {
+      allowed += "; or " + keys_(kSetupFile) + ", a file that 'grind setup --write' writes";
+    }
     file_.take(key, allowed, value);
     of(job_) = value * shopScale(field.unit);
   }
@@ -231,6 +274,7 @@ class OperationReader {
   ProcessKeys keys_;
   const GrindProcess* before_;
   GrindJob job_;
+  OperationSetup setup_;
 };
 
 std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
@@ -262,10 +306,42 @@ std::size_t operationNamed(const std::string& named, const std::vector<GrindOper
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
+bool isWanted(const JobField& field, const OperationSetup& setup) {
+  return setup.wanted && std::string_view(field.path) == rowOf(*setup.wanted).path;
+}
+
+/// The job with the set-up of clearSetup(), except the wanted figure.
+GrindJob withoutSetup(const GrindJob& job, const OperationSetup& setup) {
+  GrindJob cleared = job;
+  clearSetup(cleared);
+  visitJobFields([&](const JobField& field, auto of) {
+    if (isWanted(field, setup)) of(cleared) = of(job);
+  });
+  return cleared;
+}
+
+/// Takes the set-up of an operation from its set-up file, or says in `setup` why there is none that fits.
+void takeSolved(OperationSetup& setup, GrindJob& job) {
+  const GrindJob asked = withoutSetup(job, setup);
+  try {
+    takeSetup(readTextFile(setup.file), setup.file, job);
+    visitJobFields([&](const JobField& field, auto of) {
+      constexpr int digits = 9;
+      const std::string is = text({of(job), field.unit}, digits), wanted = text({of(asked), field.unit}, digits);
+      if (!isWanted(field, setup) || is == wanted) return;
+      throw JobFileError(setup.file + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
+                         wanted);
+    });
+  } catch (const JobFileError& error) {
+    job = asked;
+    setup.unsolved = error.what();
+  }
+}
+
 /// Reads one operation, and the rest of the file except the other operations.
 /// @param file file from which nothing was taken.
-GrindJob readOperation(FlatFile file, const std::string& name, const std::vector<std::string>& unsolved,
-                       const std::string& section, const GrindProcess* before) {
+GrindJob readOperation(FlatFile file, const std::string& name, const std::string& section, const GrindProcess* before,
+                       OperationSetup& setup) {
   const ProcessKeys keys(section);
   if (!keys.single()) {
     for (std::size_t i = 0; i < kMaxOperations; ++i) {
@@ -275,57 +351,103 @@ GrindJob readOperation(FlatFile file, const std::string& name, const std::vector
     if (file.has(kOperation)) file.dropSection(kProcess);
     file.drop(kOperation);
   }
-  GrindJob job = OperationReader(file, keys, before).read(name, unsolved);
+  OperationReader reader(file, keys, before);
+  GrindJob job = reader.read(name);
   file.refuseTheRest();
   file.throwErrors();
-  if (keys.single()) failInvalid(file, keys, job);
+  setup = reader.setup();
+  if (!setup.file.empty()) takeSolved(setup, job);
   return job;
+}
+
+/// A job file with all its operations.
+struct ParsedJob {
+  FlatFile file;
+  GrindJob job;                        ///< the first operation's, or the only one's
+  std::vector<OperationSetup> setups;  ///< of each operation
+
+  ProcessKeys keysOf(std::size_t operation) const {
+    return ProcessKeys(job.operations.empty() ? kProcess : sectionOf(operation));
+  }
+
+  /// @param named as operationNamed().
+  std::size_t indexOf(std::string named, const std::string& name) {
+    if (job.operations.empty()) {
+      if (named.empty() || named == "1" || named == toString(OperationKind::kFlute)) return 0;
+      throw JobFileError(name + ": operation = " + named + "; allowed: 1 or flute, its only one");
+    }
+    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
+    return operationNamed(named, job.operations, name);
+  }
+
+  /// @throw JobFileError unless the first operations are set up.
+  void requireSetups(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (setups[i].unsolved.empty()) continue;
+      const std::string which =
+          job.operations.empty() ? "" : std::string("--operation ") + toString(job.operations[i].process.kind) + " ";
+      file.fail(setups[i].line,
+                keysOf(i)(kSetupFile) + " = " + setups[i].unsolved + "; 'grind setup " + which + "--write' solves it");
+    }
+    file.throwErrors();
+  }
+};
+
+ParsedJob parseAll(const std::string& text, const std::string& name) {
+  ParsedJob parsed{FlatFile(text, name, kKind, kContent), {}, {}};
+  const std::size_t count = operationsIn(parsed.file);
+  parsed.setups.resize(std::max<std::size_t>(count, 1));
+  if (count == 0) {
+    parsed.job = readOperation(parsed.file, name, kProcess, nullptr, parsed.setups[0]);
+    failInvalid(parsed.file, parsed.keysOf(0), parsed.job);
+    return parsed;
+  }
+  std::vector<GrindOperation> all;
+  for (std::size_t i = 0; i < count; ++i) {
+    parsed.job =
+        readOperation(parsed.file, name, sectionOf(i), i == 0 ? nullptr : &all.back().process, parsed.setups[i]);
+    all.push_back({parsed.job.process, parsed.job.wheel_points});
+  }
+  parsed.job.operations = std::move(all);
+  for (std::size_t i = 0; i < count; ++i) {
+    failInvalid(parsed.file, parsed.keysOf(i), parsed.job.ofOperation(static_cast<int>(i)));
+  }
+  return parsed;
 }
 
 }  // namespace
 
-GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
-                  const std::string& operation) {
-  const FlatFile whole(text, name, kKind, kContent);
-  const std::size_t count = operationsIn(whole);
-  if (count == 0) {
-    if (!operation.empty() && operation != "1" && operation != toString(OperationKind::kFlute)) {
-      throw JobFileError(name + ": operation = " + operation + "; allowed: 1 or flute, its only one");
-    }
-    return readOperation(whole, name, unsolved, kProcess, nullptr);
-  }
-  GrindJob job;
-  std::vector<GrindOperation> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    job = readOperation(whole, name, unsolved, sectionOf(i), i == 0 ? nullptr : &all.back().process);
-    all.push_back({job.process, job.wheel_points});
-  }
-  job.operations = std::move(all);
-  FlatFile file = whole;
-  for (std::size_t i = 0; i < count; ++i) {
-    failInvalid(file, ProcessKeys(sectionOf(i)), job.ofOperation(static_cast<int>(i)));
-  }
-  std::string named = operation;
-  if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
-  const std::size_t index = operationNamed(named, job.operations, name);
-  // The operations before this one must be solved already.
-  for (std::size_t i = 0; i < index && !unsolved.empty(); ++i) {
-    readOperation(whole, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
-  }
-  return job.ofOperation(static_cast<int>(index));
+GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation) {
+  ParsedJob parsed = parseAll(text, name);
+  parsed.requireSetups(parsed.setups.size());
+  return parsed.job.ofOperation(static_cast<int>(parsed.indexOf(operation, name)));
 }
 
-GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved, const std::string& operation) {
-  return parseJob(readTextFile(path), path, unsolved, operation);
+GrindJob readJobFile(const std::string& path, const std::string& operation) {
+  return parseJob(readTextFile(path), path, operation);
 }
 
-std::string wheelFileOf(const std::string& path, int operation) {
+JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation) {
+  ParsedJob parsed = parseAll(readTextFile(path), path);
+  const std::size_t index = parsed.indexOf(operation, path);
+  parsed.requireSetups(index);
+  const OperationSetup& setup = parsed.setups[index];
+  JobToSetUp result{parsed.job.ofOperation(static_cast<int>(index)), {}, setup.file, setup.wanted};
+  if (setup.unsolved.empty()) result.before = result.job.process;
+  if (setup.file.empty()) return result;
+  result.job = withoutSetup(result.job, setup);
+  if (!result.job.operations.empty()) result.job.operations[index].process = result.job.process;
+  return result;
+}
+
+OperationFiles filesOf(const std::string& path, int operation) {
   FlatFile file(readTextFile(path), path, kKind, kContent);
   const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(static_cast<std::size_t>(operation)));
-  const std::string key = keys("process.wheel.file");
-  std::string name;
-  if (!file.has(key) || !file.take(key, "", name)) return "";
-  return wheelPath(path, name);
+  const auto named = [&](const char* key) {
+    std::string name;
+    return file.has(keys(key)) && file.take(keys(key), "", name) ? besideJob(path, name) : "";
+  };
+  return {named("process.wheel.file"), named(kSetupFile)};
 }
 
 }  // namespace grinder

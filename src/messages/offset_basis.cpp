@@ -40,13 +40,13 @@ To convertedBasis(const From& from) {
 }  // namespace
 
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation) {
-  return goalFromFile(path, readJobFile(path, {}, operation));
+  return goalFromFile(path, readJobFile(path, operation));
 }
 
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job) {
   flute_grinder::GrindGoal goal = goalFromJob(job);
   goal.job_name = nameOf(path);
-  const std::string wheel = wheelFileOf(path, job.operation);
+  const std::string wheel = filesOf(path, job.operation).wheel;
   if (wheel.empty()) return goal;
   goal.wheel_name = nameOf(wheel);
   goal.wheel_dressed = readWheelFile(wheel).dressed;

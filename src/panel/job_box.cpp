@@ -31,7 +31,7 @@ namespace grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
-constexpr const char* kFileChanged = "The job file or its wheel file has changed since it was planned. Plan it again.";
+constexpr const char* kFileChanged = "A file of the job has changed since it was planned. Plan it again.";
 constexpr const char* kZeroChanged = "A zero point or the wheel has changed since it was planned. Plan it again.";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
@@ -228,12 +228,12 @@ void JobBox::read() {
   const std::string file = file_.toStdString();
   try {
     // Works even for a file whose set-ups are still to be solved.
-    operation_->offer(readJobFile(file, unsolvedFields(std::nullopt), "1").operations);
+    operation_->offer(readJobToSetUp(file, "1").job.operations);
     if (operation_->isMissing()) {
       job_.reset();
       return discardPlan();
     }
-    job_ = std::make_shared<const GrindJob>(readJobFile(file, {}, operation_->chosen()));
+    job_ = std::make_shared<const GrindJob>(readJobFile(file, operation_->chosen()));
     goal_ = goalFromFile(file, *job_);
     watchFiles();
   } catch (const std::exception& error) {
@@ -247,10 +247,12 @@ void JobBox::read() {
 
 /// Watches the files. To be repeated after each reading, because a replaced file is no longer watched.
 void JobBox::watchFiles() {
-  const QString wheel = QString::fromStdString(wheelFileOf(file_.toStdString(), job_->operation));
+  const OperationFiles others = filesOf(file_.toStdString(), job_->operation);
   for (const QString& file : watch_.files()) watch_.removePath(file);
   watch_.addPath(file_);
-  if (!wheel.isEmpty()) watch_.addPath(wheel);
+  for (const std::string& file : {others.wheel, others.setup}) {
+    if (!file.empty()) watch_.addPath(QString::fromStdString(file));
+  }
 }
 
 void JobBox::discardPlan(const QString& why) {
@@ -504,7 +506,7 @@ void JobBox::findUnfinished() {
   for (const QString& folder : {QFileInfo(file_).path(), packageJobs()}) {
     const QString file = folder + "/" + QFileInfo(QString::fromStdString(progress_.job_name)).fileName();
     try {
-      const GrindJob job = readJobFile(file.toStdString(), {}, "1");
+      const GrindJob job = readJobFile(file.toStdString(), "1");
       const std::size_t several = job.operations.size() > 1 ? job.operations.size() : 0;
       for (std::size_t i = 0; i < std::max<std::size_t>(several, 1); ++i) {
         const GrindJob one = job.ofOperation(static_cast<int>(i));

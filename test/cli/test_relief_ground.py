@@ -142,7 +142,10 @@ class Tool:
         self.rows = []
         with tempfile.TemporaryDirectory() as folder:
             machine = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=rate)
+            with open(os.path.join(os.path.dirname(path), self.operations[0]['setup']['file']), encoding='utf-8') as file:
+                setups = yaml.safe_load(file)
             for number, process in enumerate(self.operations):
+                process['setup'] = setups[process.get('relief', 'flute')]
                 if 'file' in process['wheel']:
                     with open(os.path.join(os.path.dirname(path), process['wheel']['file']), encoding='utf-8') as file:
                         process['wheel'] = yaml.safe_load(file)
@@ -232,7 +235,7 @@ def job_of(cutter, teeth, flute_wheel, reliefs, **first_relief):
     @param cutter diameter, cone, spiral and length. @param reliefs clearance and wheel of each."""
     diameter, cone, spiral, length = cutter
     growth = 2 * length * math.tan(math.radians(cone))
-    passes = {'feed_mm_min': 3000, 'infeed_mm': 20, 'finish_infeed_mm': 0}
+    passes = {'feed_mm_min': 3000, 'infeed_mm': 20, 'finish_infeed_mm': 0, 'setup': {'file': 'tool.setup.yaml'}}
     keys = {
         'end_diameter_mm': diameter, 'cone_angle_deg': cone, 'spiral_angle_deg': spiral, 'flute_length_mm': length,
         'rake_angle_deg': 6, 'rake_tolerance_deg': 0.5, 'chordal_rake_tolerance_deg': 40, 'spiral_tolerance_deg': 0.2,
@@ -241,7 +244,7 @@ def job_of(cutter, teeth, flute_wheel, reliefs, **first_relief):
         'shank_diameter_mm': diameter, 'teeth': teeth}
     if len(reliefs) > 1:
         keys.update(land_mm=0.05 * diameter, second_clearance_deg=reliefs[1][0])
-    flute = dict(passes, kind='flute', spark_out=0, clearance_mm=3, overtravel_mm=[1, 1], order='tooth_major', direction='from_end',
+    flute = dict(passes, kind='flute', spark_out=0, clearance_mm=3, order='tooth_major', direction='from_end',
                  wheel=flute_wheel)
     operations = [flute] + [dict(passes, kind='relief', relief=kind, wheel=its) for kind, (_, its) in zip(KINDS[1:], reliefs)]
     operations[1].update(first_relief)

@@ -57,9 +57,9 @@ GrindJob cylinder(double swivel_deg) {
 
 TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    SCOPED_TRACE(entry.path());
-    const GrindJob job = readJobFile(entry.path(), {}, "flute");
+  for (const std::string& entry : test_support::shippedJobs()) {
+    SCOPED_TRACE(entry);
+    const GrindJob job = readJobFile(entry, "flute");
     const CutterCheck check = checked(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
@@ -110,8 +110,8 @@ double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, doub
 
 TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   constexpr double kLinear = 5e-6;  // between the sections that are known
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    GrindJob job = readJobFile(entry.path(), {}, "flute");
+  for (const std::string& entry : test_support::shippedJobs()) {
+    GrindJob job = readJobFile(entry, "flute");
     job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
     const GrindProgram program(ValidJob(job), roomyMachine(), roomyMachine().park);
     const CutterCheck check = checkGroundCutter(program.job());
@@ -123,7 +123,7 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
       const int number = static_cast<int>(tooth);
       const LogCurve& curve = program.helix(number).curve;
       for (int i = 0; i <= 21; ++i) {
-        SCOPED_TRACE(::testing::Message() << entry.path() << " tooth " << tooth << " place " << i);
+        SCOPED_TRACE(::testing::Message() << entry << " tooth " << tooth << " place " << i);
         const GroundEdge::Place at = edge.at(i / 21.0 * job.cutter.flute_length);
         EXPECT_NEAR(edge.formedAt(at.wheel_x).x, at.x, 1e-12);
         EXPECT_NEAR(depthInWheel(program, number, at.wheel_x, at.x, at.turn), 0, kLinear);

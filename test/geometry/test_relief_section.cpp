@@ -360,7 +360,7 @@ double crossingOf(const Stroke& first, const Stroke& second, double x, double ed
 TEST(ReliefSection, OfTwoReliefsIsWhatBothLeave) {
   for (const double second : {20.0, 5.0}) {
     SCOPED_TRACE(second);
-    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "secondary");
+    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "secondary");
     if (second < 10) {
       job.cutter.second_clearance = second * kDegree;
       job.process.setup_height = job.operations[2].process.setup_height = -4.30473 * kMillimetre;

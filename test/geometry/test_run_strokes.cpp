@@ -288,7 +288,7 @@ TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
 
 /// Both reliefs of the shipped reamer, with one tooth.
 ValidJob reliefOf(const char* operation) {
-  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation);
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", operation);
   job.tooth_angles = {0};
   return withLaws(ValidJob(job));
 }

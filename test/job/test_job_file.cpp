@@ -136,9 +136,8 @@ TEST(JobFile, TurnsEveryFigureIntoSi) {
   EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.0015);
 }
 
-GrindJob jobWith(const std::string& piece, const std::string& replacement,
-                 const std::vector<std::string>& unsolved = {}) {
-  return parseJob(with(piece, replacement), "job.yaml", unsolved);
+GrindJob jobWith(const std::string& piece, const std::string& replacement) {
+  return parseJob(with(piece, replacement), "job.yaml");
 }
 
 TEST(JobFile, ReadsWhatMayBeLeftOut) {
@@ -154,19 +153,6 @@ TEST(JobFile, ReadsWhatMayBeLeftOut) {
   const GrindProcess wearing = jobWith("wear_mm: 0.3\n", "wear_mm: 0.3\n    wear_per_pass_mm: 0.004\n").process;
   EXPECT_DOUBLE_EQ(wearing.wheel_wear_per_pass, 4e-6);
   EXPECT_DOUBLE_EQ(wearing.wheel_wear, 0.0003);
-}
-
-TEST(JobFile, LeavesOutWhatIsYetToBeFound) {
-  const std::vector<std::string> unsolved{"process.setup_swivel", "process.setup_height", "process.depth"};
-  GrindProcess found = jobWith("  setup: {swivel_deg: -46, height_mm: 1.25}\n", "", unsolved).process;
-  EXPECT_EQ(found.setup_swivel, 0);
-  EXPECT_EQ(found.setup_height, 0);
-  EXPECT_DOUBLE_EQ(found.depth, 0.0015);
-  found = jobWith(", height_mm: 1.25", "", unsolved).process;
-  EXPECT_DOUBLE_EQ(found.setup_swivel, -46 * kPi / 180);
-  EXPECT_THROW(jobWith(", height_mm: 1.25", "", {"process.setup_swivel"}), JobFileError);
-  EXPECT_DOUBLE_EQ(jobWith("  depth_mm: 1.5\n", "", unsolved).process.depth, 0.00125);
-  EXPECT_THROW(jobWith("  depth_mm: 1.5\n", ""), JobFileError);
 }
 
 TEST(JobFile, ReadsASpiralAnglePerTooth) {

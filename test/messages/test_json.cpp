@@ -6,6 +6,8 @@
 #include "flute_grinder/plan/job_digest.h"
 #include "motion/generators.h"
 
+#include "jobs.h"
+
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -36,12 +38,12 @@ GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 TEST(JobJson, OfEveryShippedJobIsTheSameJob) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    SCOPED_TRACE(entry.path());
-    expectSameBits(readJobFile(entry.path(), {}, "flute"));
-    const std::size_t operations = readJobFile(entry.path(), {}, "flute").operations.size();
+  for (const std::string& entry : test_support::shippedJobs()) {
+    SCOPED_TRACE(entry);
+    expectSameBits(readJobFile(entry, "flute"));
+    const std::size_t operations = readJobFile(entry, "flute").operations.size();
     for (std::size_t i = 1; i < operations; ++i) {
-      expectSameBits(readJobFile(entry.path(), {}, std::to_string(i + 1)));
+      expectSameBits(readJobFile(entry, std::to_string(i + 1)));
     }
     ++jobs;
   }

@@ -34,7 +34,8 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
 
 TEST(GoalFromFile, HasWhenTheWheelWasDressed) {
   const test_support::TempFolder folder;
-  for (const std::string& file : {kJob, std::string("wheels/straight_d100_w3.yaml")}) {
+  for (const std::string& file :
+       {kJob, std::string("jobs/unequal_d12_t4.setup.yaml"), std::string("wheels/straight_d100_w3.yaml")}) {
     std::filesystem::create_directory((folder.path() / file).parent_path());
     std::filesystem::copy_file(file, folder.path() / file);
   }
@@ -71,7 +72,7 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
 
 /// What the operator changes between flutes and reliefs, or after dressing, does not make another tool of it.
 TEST(OffsetBasis, TheToolIsKnownByWhatPlacesItsTeeth) {
-  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "flute");
+  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "flute");
   const std::string digest = toolDigest(job);
   for (const int operation : {1, 2}) EXPECT_EQ(toolDigest(job.ofOperation(operation)), digest) << operation;
   const auto changed = [&](auto change) {

@@ -111,7 +111,8 @@ def reamer_file(path):
     """Writes jobs/taper_reamer_d6_t6.yaml to `path`, with reliefs that are over soon: in one pass each, at ten times the feed."""
     text = pathlib.Path(package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
     for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.05', ' infeed_mm: 2'),
-                     ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels'))):
+                     ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels')),
+                     ('file: taper', 'file: ' + package_file('jobs/taper'))):
         assert old in text, old
         text = text.replace(old, new)
     pathlib.Path(path).write_text(text)
@@ -141,9 +142,15 @@ def job_from_file(path):
         measured = wheel.pop('measured', {})
         wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
         wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
+    setup = process.pop('setup')
+    if 'file' in setup:
+        with open(os.path.join(os.path.dirname(path), setup['file'])) as text:
+            setup = yaml.safe_load(text)['flute']
+        setup.pop('solved_for')
+        process.update((key, setup.pop(key)) for key in ('depth_mm', 'depth_end_mm', 'overtravel_mm'))
     teeth = cutter.pop('teeth', 0)
     cutter.setdefault('tooth_angles_deg', [i * 360.0 / teeth for i in range(teeth)])
-    for part, values in (('wheel_', wheel), ('setup_', process.pop('setup'))):
+    for part, values in (('wheel_', wheel), ('setup_', setup)):
         process.update((part + key, value) for key, value in values.items())
 
     goal = GrindGoal()

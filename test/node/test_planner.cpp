@@ -114,7 +114,7 @@ TEST(Planner, KeepsNoPlanOfAReliefThatIsNowTheLast) {
     EXPECT_TRUE(planner.submit(asked.request));
     return asked.wait();
   };
-  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "primary");
   const auto plan = planOf(job);
   ASSERT_TRUE(plan->good()) << text(plan->reasons);
   job.operations[2].process.feed *= 0.9;

@@ -7,7 +7,7 @@
 namespace grinder {
 
 std::string digestOf(const QString& job, const std::string& operation) {
-  return jobDigest(readJobFile(job.toStdString(), {}, operation));
+  return jobDigest(readJobFile(job.toStdString(), operation));
 }
 
 }  // namespace grinder

@@ -27,7 +27,7 @@ using units::kMillimetre;
 
 constexpr const char* kReamer = "jobs/taper_reamer_d6_t6.yaml";
 
-GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, {}, operation); }
+GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, operation); }
 
 CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(ValidJob(job))); }
 
@@ -53,8 +53,8 @@ TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
   const std::string allowed = "; allowed: 1 or flute, 2 or primary, 3 or secondary";
   EXPECT_EQ(refusalOf([] { reamer(""); }), std::string(kReamer) + ": operation is missing" + allowed);
   EXPECT_EQ(refusalOf([] { reamer("4"); }), std::string(kReamer) + ": operation = 4" + allowed);
-  EXPECT_EQ(readJobFile("test/jobs/paper.yaml", {}, "flute").operations.size(), 0u);
-  EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
+  EXPECT_EQ(readJobFile("test/jobs/paper.yaml", "flute").operations.size(), 0u);
+  EXPECT_THROW(readJobFile("test/jobs/paper.yaml", "primary"), JobFileError);
 }
 
 TEST(Operations, MayHaveAWheelOfPoints) {
@@ -63,22 +63,12 @@ TEST(Operations, MayHaveAWheelOfPoints) {
   ASSERT_NE(text.find(straight), std::string::npos);
   text.replace(text.find(straight), straight.size(),
                "      width_mm: 3\n      profile: points\n      points_mm: [[-1.5, 50], [1.5, 49]]\n");
-  const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), {}, "flute");
+  const std::string solved = "    setup: {file: end_mill_d10_t4.setup.yaml}\n";
+  text.replace(text.find(solved), solved.size(),
+               "    depth_mm: 1.6\n    overtravel_mm: [3.5, 1]\n    setup: {swivel_deg: 43.32, height_mm: -1.366}\n");
+  const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), "flute");
   ASSERT_EQ(job.wheel_points.size(), 2u);
   EXPECT_DOUBLE_EQ(job.wheel_points[1].radius, 49 * kMillimetre);
-}
-
-TEST(Operations, OnlyThoseAheadMustBeSolvedForOneToBe) {
-  std::string text = readTextFile(kReamer);
-  const std::string setup = "    setup: {swivel_deg: 13.104, height_mm: -3.864}\n";
-  ASSERT_NE(text.find(setup), std::string::npos);
-  text.erase(text.find(setup), setup.size());
-  const std::vector<std::string> fields{"process.setup_swivel", "process.setup_height"};
-  const std::string wheels = std::filesystem::absolute("jobs/reamer.yaml");
-  EXPECT_EQ(parseJob(text, wheels, fields, "flute").operation, 0);
-  EXPECT_EQ(parseJob(text, wheels, fields, "primary").operation, 1);
-  const std::string said = refusalOf([&] { parseJob(text, wheels, fields, "secondary"); });
-  EXPECT_NE(said.find("operations[1].setup.swivel_deg is missing"), std::string::npos) << said;
 }
 
 // What a relief leaves out and may take from the flutes, and what it may not.

@@ -358,7 +358,7 @@ TEST_F(JobRecordTest, HeadSaysWhichPartOfItsToolItIs) {
         std::make_shared<const GrindProgram>(ValidJob(job), config_.machine, RunStart(config_.machine.park, first));
     return JobRecord(plan_, {}, {}, false).record("/grinder", kMachine, kTolerances).head;
   };
-  const RecordHead alone = head(job_, {}), flute = head(readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1"), {1, 0});
+  const RecordHead alone = head(job_, {}), flute = head(readJobFile("jobs/end_mill_d10_t4.yaml", "1"), {1, 0});
   EXPECT_EQ(alone.operation, "");
   EXPECT_TRUE(alone.ends_tool);
   EXPECT_FALSE(alone.continues);

@@ -62,7 +62,7 @@ class ToolRecordsTest : public ::testing::Test {
     return files;
   }
 
-  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1");
+  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", "1");
   const test_support::TempFolder folder_;
   int count_ = 0;
 };

@@ -98,7 +98,7 @@ GrindJob fluteJob() {
 }
 
 Ground flutes() { return Ground(fluteJob()); }
-Ground reliefs(const char* operation) { return Ground(readJobFile("jobs/end_mill_d10_t4.yaml", {}, operation)); }
+Ground reliefs(const char* operation) { return Ground(readJobFile("jobs/end_mill_d10_t4.yaml", operation)); }
 
 Criterion criterion(const Ground& run, const std::string& name) {
   for (const Criterion& line : run.criteria()) {

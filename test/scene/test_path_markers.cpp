@@ -266,7 +266,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
 TEST(PathMarkers, OfAReliefAreOnTheEdgeAndMeasureNoErrorOfAPerfectDrive) {
   for (const char* operation : {"primary", "secondary"}) {
     SCOPED_TRACE(operation);
-    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation)));
+    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/taper_reamer_d6_t6.yaml", operation)));
     const Machine machine = test_support::roomyMachine();
     const GrindProgram of_job(job, machine, machine.park);
     const GroundCutter cutter = groundCutterOf(job);

@@ -18,7 +18,7 @@ using units::kDegree;
 using units::kMillimetre;
 
 Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   const auto& complete = setup.check.complete;
   const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
   Json json{{"swivel_deg", p.setup_swivel / kDegree},

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/wheel_file.h"
 
@@ -46,8 +47,6 @@ constexpr const char* kOperations = "operations";
 constexpr const char* kOperation = "operation";
 constexpr const char* kSetupFile = "process.setup.file";
 
-bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
 /// The keys of one process in a file: of the only operation, or of an element of the list.
 class ProcessKeys {
  public:
@@ -59,13 +58,6 @@ class ProcessKeys {
   std::string operator()(std::string_view key) const {
     return begins(key, kProcess) ? section_ + std::string(key.substr(std::string_view(kProcess).size()))
                                  : std::string(key);
-  }
-  /// A text in which the keys of a single operation are replaced by this operation's keys.
-  std::string in(std::string text) const {
-    for (std::size_t at = 0; (at = text.find(kProcess, at)) != std::string::npos; at += section_.size()) {
-      text.replace(at, std::string_view(kProcess).size(), section_);
-    }
-    return text;
   }
 
  private:
@@ -133,12 +125,12 @@ std::optional<SetupFigure> figureOf(const JobField& field, OperationKind kind) {
 }
 
 /// The keys that figureOf() allows beside a set-up file.
-std::string figureKeys(OperationKind kind) {
-  std::string keys;
+std::string figureKeys(OperationKind kind, const ProcessKeys& keys) {
+  std::string names;
   visitJobFields([&](const JobField& field, auto) {
-    if (figureOf(field, kind)) keys += (keys.empty() ? "" : ", ") + std::string(field.file_key);
+    if (figureOf(field, kind)) names += (names.empty() ? "" : ", ") + keys(field.file_key);
   });
-  return isRelief(kind) ? keys : "one of " + keys;
+  return isRelief(kind) ? names : "one of " + names;
 }
 
 /// Whether a file omits a number that is optional. The elements of a pair are omitted together.
@@ -199,10 +191,10 @@ class OperationReader {
       file_.know(key);
       return false;
     }
-    const auto figure = figureOf(field, job_.process.kind);
+    const auto figure = figureOf(field, job_.process().kind);
     if (!figure || setup_.wanted) {
       file_.fail(file_.line(key), key + " stands beside " + keys_(kSetupFile) +
-                                      "; allowed beside it: " + keys_.in(figureKeys(job_.process.kind)));
+                                      "; allowed beside it: " + figureKeys(job_.process().kind, keys_));
       file_.drop(key);
       return false;
     }
@@ -221,7 +213,7 @@ class OperationReader {
     if (!which || !isRelief(*which)) {
       return file_.fail(file_.line(relief), relief + " = " + word + "; allowed: primary, secondary");
     }
-    job_.process.kind = *which;
+    job_.process().kind = *which;
   }
 
   /// Whether a relief takes a key from the preceding operation.
@@ -232,9 +224,9 @@ class OperationReader {
   void takeNumber(const JobField& field, const Of& of) {
     const std::string key = keys_(field.file_key);
     double value = 0;
-    if (!field.isOf(job_.process.kind)) return;
+    if (!field.isOf(job_.process().kind)) return;
     if (std::string_view(field.path) == "process.clearance" && inherits(field.file_key)) {
-      job_.process.clearance = before_->clearance;
+      job_.process().clearance = before_->clearance;
       return file_.know(key);
     }
     const bool of_file = !setup_.file.empty() && isOfSetup(field);
@@ -248,7 +240,7 @@ class OperationReader {
   }
 
   void takeChoices() {
-    GrindProcess& p = job_.process;
+    GrindProcess& p = job_.process();
     file_.takeChoice("cutter.cut", job_.cutter.cut);
     file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
     const auto choice = [&](const std::string& key, auto& value) { file_.takeChoice(key, value); };
@@ -265,8 +257,8 @@ class OperationReader {
 
   template <typename Value, typename Take>
   void takeOrInherit(const char* key, Value GrindProcess::*value, const Take& take) {
-    if (!inherits(key)) return take(keys_(key), job_.process.*value);
-    job_.process.*value = before_->*value;
+    if (!inherits(key)) return take(keys_(key), job_.process().*value);
+    job_.process().*value = before_->*value;
     file_.know(keys_(key));
   }
 
@@ -277,29 +269,30 @@ class OperationReader {
   OperationSetup setup_;
 };
 
-std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
+std::string sectionOf(int operation) { return element(kOperations, static_cast<std::size_t>(operation)) + "."; }
 
 /// The number of operations that a file lists; 0 for a single process.
-std::size_t operationsIn(const FlatFile& file) {
-  std::size_t count = 0;
-  while (count < kMaxOperations && file.mentionsSection(element(kOperations, count))) ++count;
+int operationsIn(const FlatFile& file) {
+  int count = 0;
+  while (count < kMaxOperations && file.mentionsSection(element(kOperations, static_cast<std::size_t>(count)))) ++count;
   return count;
 }
 
 void failInvalid(FlatFile& file, const ProcessKeys& keys, const GrindJob& job) {
-  for (const Reason& reason : validate(job)) {
-    file.fail(file.line(keys(fieldName(reason.field))), keys.in(grinder::text(reason)));
+  for (Reason reason : validate(job)) {
+    reason.field = keys(fieldName(reason.field));
+    file.fail(file.line(reason.field), grinder::text(reason));
   }
   file.throwErrors();
 }
 
 /// The index of an operation.
 /// @param named its number, from 1, or its kind; may be empty for a single operation.
-std::size_t operationNamed(const std::string& named, const std::vector<GrindOperation>& operations,
+std::size_t operationNamed(const std::string& named, const std::vector<GrindProcess>& operations,
                            const std::string& name) {
   std::string all;
   for (std::size_t i = 0; i < operations.size(); ++i) {
-    const std::string kind = toString(operations[i].process.kind);
+    const std::string kind = toString(operations[i].kind);
     if (named == kind || named == std::to_string(i + 1) || (named.empty() && operations.size() == 1)) return i;
     all += (all.empty() ? "" : ", ") + std::to_string(i + 1) + " or " + kind;
   }
@@ -340,16 +333,13 @@ void takeSolved(OperationSetup& setup, GrindJob& job) {
 
 /// Reads one operation, and the rest of the file except the other operations.
 /// @param file file from which nothing was taken.
-GrindJob readOperation(FlatFile file, const std::string& name, const std::string& section, const GrindProcess* before,
+GrindJob readOperation(FlatFile file, const std::string& name, const ProcessKeys& keys, const GrindProcess* before,
                        OperationSetup& setup) {
-  const ProcessKeys keys(section);
   if (!keys.single()) {
-    for (std::size_t i = 0; i < kMaxOperations; ++i) {
-      if (sectionOf(i) != section) file.dropSection(sectionOf(i));
+    for (int i = 0; i < kMaxOperations; ++i) {
+      if (sectionOf(i) != keys(kProcess)) file.dropSection(sectionOf(i));
     }
-    // A record names its operation, and also repeats its values.
-    if (file.has(kOperation)) file.dropSection(kProcess);
-    file.drop(kOperation);
+    file.drop(kOperation);  // a record names its operation
   }
   OperationReader reader(file, keys, before);
   GrindJob job = reader.read(name);
@@ -363,54 +353,42 @@ GrindJob readOperation(FlatFile file, const std::string& name, const std::string
 /// A job file with all its operations.
 struct ParsedJob {
   FlatFile file;
-  GrindJob job;                        ///< the first operation's, or the only one's
-  std::vector<OperationSetup> setups;  ///< of each operation
-
-  ProcessKeys keysOf(std::size_t operation) const {
-    return ProcessKeys(job.operations.empty() ? kProcess : sectionOf(operation));
-  }
-
-  /// @param named as operationNamed().
-  std::size_t indexOf(std::string named, const std::string& name) {
-    if (job.operations.empty()) {
-      if (named.empty() || named == "1" || named == toString(OperationKind::kFlute)) return 0;
-      throw JobFileError(name + ": operation = " + named + "; allowed: 1 or flute, its only one");
-    }
-    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
-    return operationNamed(named, job.operations, name);
-  }
+  GrindJob job{};                        ///< the first operation's
+  std::vector<ProcessKeys> keys{};       ///< of each operation
+  std::vector<OperationSetup> setups{};  ///< of each operation
 
   /// @throw JobFileError unless the first operations are set up.
   void requireSetups(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (setups[i].unsolved.empty()) continue;
       const std::string which =
-          job.operations.empty() ? "" : std::string("--operation ") + toString(job.operations[i].process.kind) + " ";
+          keys[i].single() ? "" : std::string("--operation ") + toString(job.operations[i].kind) + " ";
       file.fail(setups[i].line,
-                keysOf(i)(kSetupFile) + " = " + setups[i].unsolved + "; 'grind setup " + which + "--write' solves it");
+                keys[i](kSetupFile) + " = " + setups[i].unsolved + "; 'grind setup " + which + "--write' solves it");
     }
     file.throwErrors();
+  }
+
+  /// @param named as in operationNamed().
+  std::size_t indexOf(std::string named, const std::string& name) {
+    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
+    return operationNamed(named, job.operations, name);
   }
 };
 
 ParsedJob parseAll(const std::string& text, const std::string& name) {
-  ParsedJob parsed{FlatFile(text, name, kKind, kContent), {}, {}};
-  const std::size_t count = operationsIn(parsed.file);
-  parsed.setups.resize(std::max<std::size_t>(count, 1));
-  if (count == 0) {
-    parsed.job = readOperation(parsed.file, name, kProcess, nullptr, parsed.setups[0]);
-    failInvalid(parsed.file, parsed.keysOf(0), parsed.job);
-    return parsed;
-  }
-  std::vector<GrindOperation> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    parsed.job =
-        readOperation(parsed.file, name, sectionOf(i), i == 0 ? nullptr : &all.back().process, parsed.setups[i]);
-    all.push_back({parsed.job.process, parsed.job.wheel_points});
+  ParsedJob parsed{FlatFile(text, name, kKind, kContent)};
+  for (int i = 0; i < operationsIn(parsed.file); ++i) parsed.keys.emplace_back(sectionOf(i));
+  if (parsed.keys.empty()) parsed.keys.emplace_back(kProcess);
+  std::vector<GrindProcess> all;
+  for (const ProcessKeys& keys : parsed.keys) {
+    OperationSetup& setup = parsed.setups.emplace_back();
+    parsed.job = readOperation(parsed.file, name, keys, all.empty() ? nullptr : &all.back(), setup);
+    all.push_back(parsed.job.process());
   }
   parsed.job.operations = std::move(all);
-  for (std::size_t i = 0; i < count; ++i) {
-    failInvalid(parsed.file, parsed.keysOf(i), parsed.job.ofOperation(static_cast<int>(i)));
+  for (const GrindJob& job : parsed.job.ofAllOperations()) {
+    failInvalid(parsed.file, parsed.keys[static_cast<std::size_t>(job.operation)], job);
   }
   return parsed;
 }
@@ -433,16 +411,15 @@ JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation)
   parsed.requireSetups(index);
   const OperationSetup& setup = parsed.setups[index];
   JobToSetUp result{parsed.job.ofOperation(static_cast<int>(index)), {}, setup.file, setup.wanted};
-  if (setup.unsolved.empty()) result.before = result.job.process;
+  if (setup.unsolved.empty()) result.before = result.job.process();
   if (setup.file.empty()) return result;
   result.job = withoutSetup(result.job, setup);
-  if (!result.job.operations.empty()) result.job.operations[index].process = result.job.process;
   return result;
 }
 
 OperationFiles filesOf(const std::string& path, int operation) {
   FlatFile file(readTextFile(path), path, kKind, kContent);
-  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(static_cast<std::size_t>(operation)));
+  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(operation));
   const auto named = [&](const char* key) {
     std::string name;
     return file.has(keys(key)) && file.take(keys(key), "", name) ? besideJob(path, name) : "";

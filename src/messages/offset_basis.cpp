@@ -2,11 +2,11 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/plan/job_digest.h"
 
 #include <filesystem>
 
@@ -58,15 +58,15 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   basis.method = method;
   basis.job_name = goal.job_name;
   const GrindJob job = jobFromGoal(goal);
-  basis.wheel_name = goal.wheel_name.empty() ? described(job.process) : goal.wheel_name;
+  basis.wheel_name = goal.wheel_name.empty() ? described(job.process()) : goal.wheel_name;
   basis.wheel_digest = wheelDigest(job);
   basis.tool_digest = toolDigest(job);
   basis.operation = job.operation;
   basis.end_diameter = goal.cutter.end_diameter;
-  basis.wheel_diameter = goal.process.wheel_diameter;
-  basis.wheel_width = goal.process.wheel_width;
-  basis.swivel = goal.process.setup_swivel;
-  basis.height = goal.process.setup_height;
+  basis.wheel_diameter = processOf(goal).wheel_diameter;
+  basis.wheel_width = processOf(goal).wheel_width;
+  basis.swivel = processOf(goal).setup_swivel;
+  basis.height = processOf(goal).setup_height;
   return basis;
 }
 

@@ -5,9 +5,9 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/geometry/write_setup.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -37,9 +37,7 @@ constexpr int kWriteLines = 10;
 std::vector<std::string> digestsOf(const std::string& file) {
   std::vector<std::string> digests;
   try {
-    const GrindJob job = readJobFile(file, "1");
-    const int count = std::max(static_cast<int>(job.operations.size()), 1);
-    for (int i = 0; i < count; ++i) digests.push_back(jobDigest(job.ofOperation(i)));
+    for (const GrindJob& job : readJobFile(file, "1").ofAllOperations()) digests.push_back(jobDigest(job));
   } catch (const JobFileError&) {
     // Such a file is no job's that was ever started.
   }

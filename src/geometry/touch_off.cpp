@@ -1,9 +1,7 @@
 #include "flute_grinder/geometry/touch_off.h"
 
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
-#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,13 +25,12 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
   return touch;
 }
 
-std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine) {
-  const std::string wheel = filesOf(file, job.operation).wheel;
-  const std::optional<double> flange = wheel.empty() ? std::nullopt : readWheelFile(wheel).flange;
-  if (!flange) return std::nullopt;
+std::optional<double> wheelAboveSwivel(const std::optional<WheelFile>& wheel, const GrindJob& job,
+                                       const MachineGeometry& machine) {
+  if (!wheel || !wheel->flange) return std::nullopt;
   GrindProcess upright = job.process();
   upright.setup_swivel = 0;
-  return (wheelCentre(machine, upright, *flange) - machine.swivel_centre).z();
+  return (wheelCentre(machine, upright, *wheel->flange) - machine.swivel_centre).z();
 }
 
 double touchY(const GrindJob& job, double diameter) {

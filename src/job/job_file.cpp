@@ -4,7 +4,6 @@
 #include "flute_grinder/job/flat_file.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
-#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -69,6 +68,16 @@ bool isOfWheelFile(const JobField& field) {
   return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
 
+/// An operation of a job file beside its numbers.
+struct OperationFiles {
+  std::string wheel_path;  ///< path of the wheel file; empty if the job file states the wheel itself
+  std::optional<WheelFile> wheel;
+  std::string setup_path;             ///< path of the set-up file; empty if the job file states the set-up itself
+  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
+  int line = 1;                       ///< line of the set-up file's name
+  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
+};
+
 /// The path of a file that a job file names.
 /// @param job the path of the job file.
 std::string besideJob(const std::string& job, const std::string& file) {
@@ -86,8 +95,10 @@ bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
   return true;
 }
 
+/// Mounts the wheel of a wheel file.
 /// @param path_of_job path of the job file in messages.
-void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, GrindJob& job) {
+void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, OperationFiles& files,
+                   GrindJob& job) {
   const std::string key = keys("process.wheel.file");
   const std::string allowed = "the path of a wheel file";
   std::string name;
@@ -98,10 +109,10 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
   file.refuseBeside(key, keys("process.wheel."), keys("process.wheel.wear_per_pass_mm"));
   if (!named) return;
-  const std::string path = besideJob(path_of_job, name);
+  files.wheel_path = besideJob(path_of_job, name);
   std::string text;
   try {
-    text = readTextFile(path);
+    text = readTextFile(files.wheel_path);
   } catch (const JobFileError& error) {
     const std::filesystem::path folder = std::filesystem::absolute(path_of_job).parent_path();
     return file.fail(file.line(key), key + " = " + name + ": " + error.what() +
@@ -109,7 +120,8 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
                                          folder.lexically_normal().string());
   }
   try {
-    mountWheel(parseWheel(text, path), job);
+    files.wheel = parseWheel(text, files.wheel_path);
+    mountWheel(*files.wheel, job);
   } catch (const JobFileError& error) {
     file.add(error.what());
   }
@@ -139,14 +151,6 @@ bool omits(const FlatFile& file, const std::string& key, const JobField& field) 
   return field.optional && !file.mentionsPart(key);
 }
 
-/// An operation of a job file beside its numbers.
-struct OperationSetup {
-  std::string file;                   ///< path of the set-up file; empty if the job file states the figures
-  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
-  int line = 1;                       ///< line of the set-up file's name
-  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
-};
-
 /// Reads one operation, and the rest of the file except the other operations.
 class OperationReader {
  public:
@@ -165,7 +169,7 @@ class OperationReader {
     });
     takeTeeth(file_, job_);
     if (has_wheel_file) {
-      if (!has_wheel_path) takeWheelFile(file_, keys_, name, job_);
+      if (!has_wheel_path) takeWheelFile(file_, keys_, name, files_, job_);
     } else {
       file_.know(keys_("process.wheel.file"));
       takeWheelShape(file_, keys_("process.wheel."), job_);
@@ -174,14 +178,15 @@ class OperationReader {
     return std::move(job_);
   }
 
-  const OperationSetup& setup() const { return setup_; }
+  const OperationFiles& files() const { return files_; }
 
  private:
   void takeSetupFile(const std::string& name) {
     const std::string key = keys_(kSetupFile);
     std::string file;
-    setup_.line = file_.line(key);
-    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file)) setup_.file = besideJob(name, file);
+    files_.line = file_.line(key);
+    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file))
+      files_.setup_path = besideJob(name, file);
   }
 
   /// Takes a figure of the set-up beside a set-up file, in which the others stand.
@@ -192,13 +197,13 @@ class OperationReader {
       return false;
     }
     const auto figure = figureOf(field, job_.process().kind);
-    if (!figure || setup_.wanted) {
+    if (!figure || files_.wanted) {
       file_.fail(file_.line(key), key + " stands beside " + keys_(kSetupFile) +
                                       "; allowed beside it: " + figureKeys(job_.process().kind, keys_));
       file_.drop(key);
       return false;
     }
-    setup_.wanted = figure;
+    files_.wanted = figure;
     return true;
   }
 
@@ -229,7 +234,7 @@ class OperationReader {
       job_.process().clearance = before_->clearance;
       return file_.know(key);
     }
-    const bool of_file = !setup_.file.empty() && isOfSetup(field);
+    const bool of_file = !files_.setup_path.empty() && isOfSetup(field);
     if (of_file ? !takeWanted(field, key) : omits(file_, key, field)) return file_.know(key);
     std::string allowed = grinder::text(field.low(), field.high());
     if (!file_.has(key) && isOfSetup(field)) {
@@ -266,7 +271,7 @@ class OperationReader {
   ProcessKeys keys_;
   const GrindProcess* before_;
   GrindJob job_;
-  OperationSetup setup_;
+  OperationFiles files_;
 };
 
 std::string sectionOf(int operation) { return element(kOperations, static_cast<std::size_t>(operation)) + "."; }
@@ -299,42 +304,42 @@ std::size_t operationNamed(const std::string& named, const std::vector<GrindProc
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
-bool isWanted(const JobField& field, const OperationSetup& setup) {
-  return setup.wanted && std::string_view(field.path) == rowOf(*setup.wanted).path;
+bool isWanted(const JobField& field, const OperationFiles& files) {
+  return files.wanted && std::string_view(field.path) == rowOf(*files.wanted).path;
 }
 
 /// The job with the set-up of clearSetup(), except the wanted figure.
-GrindJob withoutSetup(const GrindJob& job, const OperationSetup& setup) {
+GrindJob withoutSetup(const GrindJob& job, const OperationFiles& files) {
   GrindJob cleared = job;
   clearSetup(cleared);
   visitJobFields([&](const JobField& field, auto of) {
-    if (isWanted(field, setup)) of(cleared) = of(job);
+    if (isWanted(field, files)) of(cleared) = of(job);
   });
   return cleared;
 }
 
-/// Takes the set-up of an operation from its set-up file, or says in `setup` why there is none that fits.
-void takeSolved(OperationSetup& setup, GrindJob& job) {
-  const GrindJob asked = withoutSetup(job, setup);
+/// Takes the set-up of an operation from its set-up file, or says in `files` why there is none that fits.
+void takeSolved(OperationFiles& files, GrindJob& job) {
+  const GrindJob asked = withoutSetup(job, files);
   try {
-    takeSetup(readTextFile(setup.file), setup.file, job);
+    takeSetup(readTextFile(files.setup_path), files.setup_path, job);
     visitJobFields([&](const JobField& field, auto of) {
       constexpr int digits = 9;
       const std::string is = text({of(job), field.unit}, digits), wanted = text({of(asked), field.unit}, digits);
-      if (!isWanted(field, setup) || is == wanted) return;
-      throw JobFileError(setup.file + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
+      if (!isWanted(field, files) || is == wanted) return;
+      throw JobFileError(files.setup_path + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
                          wanted);
     });
   } catch (const JobFileError& error) {
     job = asked;
-    setup.unsolved = error.what();
+    files.unsolved = error.what();
   }
 }
 
 /// Reads one operation, and the rest of the file except the other operations.
 /// @param file file from which nothing was taken.
 GrindJob readOperation(FlatFile file, const std::string& name, const ProcessKeys& keys, const GrindProcess* before,
-                       OperationSetup& setup) {
+                       OperationFiles& files) {
   if (!keys.single()) {
     for (int i = 0; i < kMaxOperations; ++i) {
       if (sectionOf(i) != keys(kProcess)) file.dropSection(sectionOf(i));
@@ -345,26 +350,26 @@ GrindJob readOperation(FlatFile file, const std::string& name, const ProcessKeys
   GrindJob job = reader.read(name);
   file.refuseTheRest();
   file.throwErrors();
-  setup = reader.setup();
-  if (!setup.file.empty()) takeSolved(setup, job);
+  files = reader.files();
+  if (!files.setup_path.empty()) takeSolved(files, job);
   return job;
 }
 
 /// A job file with all its operations.
 struct ParsedJob {
   FlatFile file;
-  GrindJob job{};                        ///< the first operation's
-  std::vector<ProcessKeys> keys{};       ///< of each operation
-  std::vector<OperationSetup> setups{};  ///< of each operation
+  GrindJob job{};                       ///< the first operation's
+  std::vector<ProcessKeys> keys{};      ///< of each operation
+  std::vector<OperationFiles> files{};  ///< of each operation
 
   /// @throw JobFileError unless the first operations are set up.
   void requireSetups(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (setups[i].unsolved.empty()) continue;
+      if (files[i].unsolved.empty()) continue;
       const std::string which =
           keys[i].single() ? "" : std::string("--operation ") + toString(job.operations[i].kind) + " ";
-      file.fail(setups[i].line,
-                keys[i](kSetupFile) + " = " + setups[i].unsolved + "; 'grind setup " + which + "--write' solves it");
+      file.fail(files[i].line,
+                keys[i](kSetupFile) + " = " + files[i].unsolved + "; 'grind setup " + which + "--write' solves it");
     }
     file.throwErrors();
   }
@@ -382,8 +387,8 @@ ParsedJob parseAll(const std::string& text, const std::string& name) {
   if (parsed.keys.empty()) parsed.keys.emplace_back(kProcess);
   std::vector<GrindProcess> all;
   for (const ProcessKeys& keys : parsed.keys) {
-    OperationSetup& setup = parsed.setups.emplace_back();
-    parsed.job = readOperation(parsed.file, name, keys, all.empty() ? nullptr : &all.back(), setup);
+    OperationFiles& files = parsed.files.emplace_back();
+    parsed.job = readOperation(parsed.file, name, keys, all.empty() ? nullptr : &all.back(), files);
     all.push_back(parsed.job.process());
   }
   parsed.job.operations = std::move(all);
@@ -393,38 +398,38 @@ ParsedJob parseAll(const std::string& text, const std::string& name) {
   return parsed;
 }
 
+JobFile jobFileOf(const ParsedJob& parsed, std::size_t operation, const std::string& path) {
+  const OperationFiles& files = parsed.files[operation];
+  return {path, parsed.job.ofOperation(static_cast<int>(operation)), files.wheel_path, files.wheel, files.setup_path};
+}
+
+JobFile open(const std::string& text, const std::string& name, const std::string& operation) {
+  ParsedJob parsed = parseAll(text, name);
+  parsed.requireSetups(parsed.files.size());
+  return jobFileOf(parsed, parsed.indexOf(operation, name), name);
+}
+
 }  // namespace
 
 GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation) {
-  ParsedJob parsed = parseAll(text, name);
-  parsed.requireSetups(parsed.setups.size());
-  return parsed.job.ofOperation(static_cast<int>(parsed.indexOf(operation, name)));
+  return open(text, name, operation).job;
 }
 
-GrindJob readJobFile(const std::string& path, const std::string& operation) {
-  return parseJob(readTextFile(path), path, operation);
+JobFile openJobFile(const std::string& path, const std::string& operation) {
+  return open(readTextFile(path), path, operation);
 }
+
+GrindJob readJobFile(const std::string& path, const std::string& operation) { return openJobFile(path, operation).job; }
 
 JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation) {
   ParsedJob parsed = parseAll(readTextFile(path), path);
   const std::size_t index = parsed.indexOf(operation, path);
   parsed.requireSetups(index);
-  const OperationSetup& setup = parsed.setups[index];
-  JobToSetUp result{parsed.job.ofOperation(static_cast<int>(index)), {}, setup.file, setup.wanted};
-  if (setup.unsolved.empty()) result.before = result.job.process();
-  if (setup.file.empty()) return result;
-  result.job = withoutSetup(result.job, setup);
-  return result;
-}
-
-OperationFiles filesOf(const std::string& path, int operation) {
-  FlatFile file(readTextFile(path), path, kKind, kContent);
-  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(operation));
-  const auto named = [&](const char* key) {
-    std::string name;
-    return file.has(keys(key)) && file.take(keys(key), "", name) ? besideJob(path, name) : "";
-  };
-  return {named("process.wheel.file"), named(kSetupFile)};
+  const OperationFiles& files = parsed.files[index];
+  JobToSetUp asked{jobFileOf(parsed, index, path), {}, files.wanted};
+  if (files.unsolved.empty()) asked.before = asked.job.process();
+  if (!files.setup_path.empty()) asked.job = withoutSetup(asked.job, files);
+  return asked;
 }
 
 }  // namespace grinder

@@ -5,7 +5,6 @@
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
-#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <filesystem>
@@ -40,16 +39,15 @@ To convertedBasis(const From& from) {
 }  // namespace
 
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation) {
-  return goalFromFile(path, readJobFile(path, operation));
+  return goalFromFile(openJobFile(path, operation));
 }
 
-flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job) {
-  flute_grinder::GrindGoal goal = goalFromJob(job);
-  goal.job_name = nameOf(path);
-  const std::string wheel = filesOf(path, job.operation).wheel;
-  if (wheel.empty()) return goal;
-  goal.wheel_name = nameOf(wheel);
-  goal.wheel_dressed = readWheelFile(wheel).dressed;
+flute_grinder::GrindGoal goalFromFile(const JobFile& file) {
+  flute_grinder::GrindGoal goal = goalFromJob(file.job);
+  goal.job_name = nameOf(file.path);
+  if (!file.wheel) return goal;
+  goal.wheel_name = nameOf(file.wheel_path);
+  goal.wheel_dressed = file.wheel->dressed;
   return goal;
 }
 

@@ -233,9 +233,10 @@ void JobBox::read() {
       job_.reset();
       return discardPlan();
     }
-    job_ = std::make_shared<const GrindJob>(readJobFile(file, operation_->chosen()));
-    goal_ = goalFromFile(file, *job_);
-    watchFiles();
+    const JobFile opened = openJobFile(file, operation_->chosen());
+    job_ = std::make_shared<const GrindJob>(opened.job);
+    goal_ = goalFromFile(opened);
+    watchFiles(opened);
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -246,11 +247,9 @@ void JobBox::read() {
 }
 
 /// Watches the files. To be repeated after each reading, because a replaced file is no longer watched.
-void JobBox::watchFiles() {
-  const OperationFiles others = filesOf(file_.toStdString(), job_->operation);
+void JobBox::watchFiles(const JobFile& opened) {
   for (const QString& file : watch_.files()) watch_.removePath(file);
-  watch_.addPath(file_);
-  for (const std::string& file : {others.wheel, others.setup}) {
+  for (const std::string& file : {opened.path, opened.wheel_path, opened.setup_path}) {
     if (!file.empty()) watch_.addPath(QString::fromStdString(file));
   }
 }

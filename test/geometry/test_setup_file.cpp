@@ -112,7 +112,7 @@ class WrittenSetup : public ::testing::Test {
   }
 
   void write(const char* operation) const {
-    writeSetup(job_, readJobToSetUp(job_, operation), readJobFile("jobs/end_mill_d10_t4.yaml", operation));
+    writeSetup(readJobToSetUp(job_, operation), readJobFile("jobs/end_mill_d10_t4.yaml", operation));
   }
 
   const test_support::TempFolder temp_;
@@ -164,7 +164,7 @@ TEST_F(WrittenSetup, IsNotTakenFromAJobFileWithFigures) {
   ASSERT_TRUE(asked.before.has_value());
   EXPECT_EQ(asked.before->setup_swivel, asked.job.process().setup_swivel);
   try {
-    writeSetup(path, asked, asked.job);
+    writeSetup(asked, asked.job);
     ADD_FAILURE() << "written";
   } catch (const JobFileError& error) {
     EXPECT_NE(std::string(error.what()).find("put setup: {file: paper.setup.yaml} in place"), std::string::npos);

@@ -193,7 +193,7 @@ MachineGeometry machine() {
 TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
   GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
   const MachineGeometry m = machine();
-  const auto above = wheelAboveSwivel("jobs/unequal_d12_t4.yaml", job, m);
+  const auto above = wheelAboveSwivel(openJobFile("jobs/unequal_d12_t4.yaml").wheel, job, m);
   ASSERT_TRUE(above);
   EXPECT_NEAR(*above / kMillimetre, 23.5 - 2 - 1.5, 1e-9);
   for (const double swivel : {38.734, -55.0, 0.0}) {
@@ -209,7 +209,7 @@ TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
 }
 
 TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
-  EXPECT_FALSE(wheelAboveSwivel("test/jobs/paper.yaml", paper(), machine()));
+  EXPECT_FALSE(wheelAboveSwivel(std::nullopt, paper(), machine()));
 }
 
 }  // namespace test_touch_off

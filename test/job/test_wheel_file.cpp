@@ -179,8 +179,8 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
 
 TEST_F(WheelOfAJob, CanBeFound) {
   const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
-  EXPECT_EQ(filesOf(named).wheel, folder_ + "/jobs/../wheels/wheel.yaml");
-  EXPECT_EQ(filesOf(write("jobs/own.yaml", jobText("    diameter_mm: 100\n"))).wheel, "");
+  EXPECT_EQ(openJobFile(named).wheel_path, folder_ + "/jobs/../wheels/wheel.yaml");
+  EXPECT_EQ(openJobFile("test/jobs/paper.yaml").wheel_path, "");
 }
 
 TEST_F(WheelOfAJob, StandsAloneInTheJob) {

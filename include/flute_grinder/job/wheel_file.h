@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/yaml_text.h"
 
 #include <optional>
 #include <string>

@@ -179,6 +179,7 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
 
 TEST_F(WheelOfAJob, CanBeFound) {
   const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
+  write("wheels/wheel.yaml", kWheel);
   EXPECT_EQ(openJobFile(named).wheel_path, folder_ + "/jobs/../wheels/wheel.yaml");
   EXPECT_EQ(openJobFile("test/jobs/paper.yaml").wheel_path, "");
 }

@@ -150,7 +150,7 @@ void cycle(benchmark::State& state) {
   config.homing_timeout = 1;
   config.spindle_timeout = 1;
   const auto loop = std::make_unique<ControlLoop>(drive, config);
-  loop->postSwivel(paperJob(60).process.setup_swivel);
+  loop->postSwivel(paperJob(60).process().setup_swivel);
   const ros::Time time(1000);
   const ros::Duration period(config.machine.period);
   const GrindProgram program(ValidJob(paperJob(60)), config.machine, config.machine.park);

@@ -18,7 +18,7 @@ using units::kDegree;
 using units::kMillimetre;
 
 Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   const auto& complete = setup.check.complete;
   const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
   Json json{{"swivel_deg", p.setup_swivel / kDegree},
@@ -61,7 +61,7 @@ std::string otherRefusals(const GrindJob& job, const MachineFiles& files) {
 
 int runSetup(const SetupOptions& options) {
   const JobToSetUp asked = readJobToSetUp(options.job, options.operation);
-  if (options.write) requireSetupFile(options.job, asked);
+  if (options.write) requireSetupFile(asked);
   const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
   const LoopConfig& config = files.config.loop;
   const Range swivel = config.machine.swivel;
@@ -71,7 +71,7 @@ int runSetup(const SetupOptions& options) {
     return 1;
   }
   const auto& setup = std::get<JobSetup>(result);
-  const std::optional<double> above_swivel = wheelAboveSwivel(options.job, setup.job, config.geometry);
+  const std::optional<double> above_swivel = wheelAboveSwivel(asked.wheel, setup.job, config.geometry);
   if (options.json) {
     print(toJson(setup, above_swivel));
   } else {
@@ -80,10 +80,10 @@ int runSetup(const SetupOptions& options) {
   const std::string refusal = planRefusal(setup);
   std::fputs(refusal.c_str(), stderr);
   if (!refusal.empty()) {
-    if (options.write) std::fprintf(stderr, "%s: nothing was written\n", asked.setup_file.c_str());
+    if (options.write) std::fprintf(stderr, "%s: nothing was written\n", asked.setup_path.c_str());
     return 1;
   }
-  if (options.write) writeSetup(options.job, asked, setup.job);
+  if (options.write) writeSetup(asked, setup.job);
   std::fputs(otherRefusals(setup.job, files).c_str(), stderr);
   return 0;
 }

@@ -32,7 +32,7 @@ using units::kMillimetre;
 
 /// The range of X in which the wheel can have touched the cutter.
 Range reach(const GrindJob& job) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   double to = job.cutter.flute_length + p.overtravel_shank + p.wheel_diameter / 2;
   const double rise = std::tan(job.cutter.cone_angle);
   if (rise < 0) to = std::min(to, job.cutter.end_diameter / 2 / -rise);
@@ -58,7 +58,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 /// Writes the cutter as a solid, with the part of the shank into which the flutes run out and one diameter more.
 void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double length = job.cutter.flute_length;
   const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
   const SolidExtent extent{0, length, job.cutter.shank_diameter, length + run_out + job.cutter.shank_diameter};

@@ -65,7 +65,7 @@ Json toJson(const WheelFile& wheel) {
   const GrindProcess& p = wheel.process;
   const auto mm = [](double metres) { return parseNumber(millimetres(metres).c_str()); };
   Json points = Json::array();
-  for (const ProfilePoint& point : wheel.points) points.push_back({mm(point.w), mm(point.radius)});
+  for (const ProfilePoint& point : wheel.process.wheel_points) points.push_back({mm(point.w), mm(point.radius)});
   const bool tapered = isTapered(p.wheel_profile);
   return {{"profile", toString(p.wheel_profile)},
           {"diameter_mm", mm(wheel.diameter())},

@@ -70,7 +70,7 @@ std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
   };
   if (mend.wheel_diameter > 0) {
     return "\nIt would be set up with " +
-           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process.wheel_wear);
+           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process().wheel_wear);
   }
   if (mend.wheel_width > 0) return "\nIt would be set up with " + figure("process.wheel_width", mend.wheel_width);
   if (mend.core_diameter[0] > 0) {
@@ -109,7 +109,7 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
 }
 
 SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   SetupRequest r;
   r.cutter = job.cutter;
   r.cutter.spiral_angle = (askedSpiral(job).from + askedSpiral(job).to) / 2;
@@ -135,7 +135,7 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
 
 /// Lengthens the overtravel to the set-up's requirement, where it is shorter.
 void takeOvertravel(JobSetup& setup) {
-  GrindProcess& p = setup.job.process;
+  GrindProcess& p = setup.job.process();
   const auto lengthen = [](double& field, double needed) {
     if (field >= needed) return;
     const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
@@ -147,7 +147,7 @@ void takeOvertravel(JobSetup& setup) {
 
 /// Puts the solved figures into the job, as read back from a file. A fixed depth keeps its decimals.
 void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
-  GrindProcess& p = setup.job.process;
+  GrindProcess& p = setup.job.process();
   const auto millimetres = [](double value) { return rounded(value, units::kMillimetre, kLengthDecimals); };
   if (keep != SetupFigure::kDepth) p.depth = millimetres(solved.depth);
   if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(solved.setup.swivel, units::kDegree, kAngleDecimals);
@@ -182,7 +182,7 @@ void giveRoom(JobSetup& setup) {
 /// places of the stroke where the flute's ends are formed.
 /// @return whether it was too short. Near a cone's apex, where no overtravel is enough, it stays.
 bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   const double length = setup.job.cutter.flute_length;
   const auto& complete = setup.check.complete;
   if (!complete || solved.complete_from > 0 || solved.complete_to < length) return false;
@@ -192,18 +192,13 @@ bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   return complete->from > 0 || complete->to < length;
 }
 
-/// Copies the solved operation into the list of several operations.
-void intoList(GrindJob& job) {
-  if (!job.operations.empty()) job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
-}
-
 std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const Range& swivel,
                                                      std::optional<SetupFigure> keep) {
   if (keep && *keep != SetupFigure::kSwivel) {
     return std::string("the ") + toString(*keep) + " of a relief is not kept; allowed: swivel";
   }
   const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
-  const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
+  const auto asked = keep ? std::optional(job.process().setup_swivel) : std::nullopt;
   const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
@@ -211,10 +206,9 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   }
   JobSetup setup;
   setup.job = job;
-  GrindProcess& p = setup.job.process;
+  GrindProcess& p = setup.job.process();
   if (!keep) p.setup_swivel = rounded(found.swivel, units::kDegree, kAngleDecimals);
   p.setup_height = rounded(found.height, units::kMillimetre, kLengthDecimals);
-  intoList(setup.job);
   setup.relief = JobSetup::Relief{found.width, found.next_edge, found.land_end_clearance};
   setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
   return setup;
@@ -226,7 +220,6 @@ JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional
   setup.job = job;
   take(solved, keep, setup);
   for (int i = 0;; ++i) {
-    intoList(setup.job);
     const ValidJob valid(setup.job);
     if (i == 0 && !hasLaws(valid)) {
       giveRoom(setup);
@@ -261,7 +254,6 @@ JobSetup inJob(GrindJob job, JobSetup setup, std::optional<SetupFigure> keep) {
     const bool is_kept = keep && field.path == std::string_view(rowOf(*keep).path);
     if (isOfSetup(field) && !is_kept) of(job) = of(setup.job);
   });
-  intoList(job);
   setup.job = std::move(job);
   return setup;
 }
@@ -272,7 +264,8 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const R
                                                   std::optional<SetupFigure> keep) {
   const GrindJob job = roundedOff(asked);
   try {
-    auto found = isRelief(job.process.kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
+    auto found =
+        isRelief(job.process().kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
     if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup), keep);
     return found;
   } catch (const InvalidJob& error) {

@@ -7,20 +7,20 @@
 
 namespace grinder {
 
-void requireSetupFile(const std::string& path, const JobToSetUp& asked) {
-  if (!asked.setup_file.empty()) return;
-  const std::string stem = std::filesystem::path(path).stem();
+void requireSetupFile(const JobFile& asked) {
+  if (!asked.setup_path.empty()) return;
+  const std::string stem = std::filesystem::path(asked.path).stem();
   throw JobFileError(
-      path + ": the figures of the set-up are written by hand; to have them written, put setup: {file: " + stem +
+      asked.path + ": the figures of the set-up are written by hand; to have them written, put setup: {file: " + stem +
       ".setup.yaml} in place of setup, depth_mm, depth_end_mm and overtravel_mm");
 }
 
-void writeSetup(const std::string& path, const JobToSetUp& asked, const GrindJob& solved) {
-  requireSetupFile(path, asked);
-  const std::string& file = asked.setup_file;
+void writeSetup(const JobFile& asked, const GrindJob& solved) {
+  requireSetupFile(asked);
+  const std::string& file = asked.setup_path;
   try {
     const std::string before = std::filesystem::exists(file) ? readTextFile(file) : "";
-    replaceFile(file, withSetup(before, file, std::filesystem::path(path).filename(), solved));
+    replaceFile(file, withSetup(before, file, std::filesystem::path(asked.path).filename(), solved));
   } catch (const std::system_error& error) {
     throw JobFileError(file + ": cannot be written: " + error.code().message());
   }

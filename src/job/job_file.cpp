@@ -2,8 +2,8 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
-#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -46,8 +46,6 @@ constexpr const char* kOperations = "operations";
 constexpr const char* kOperation = "operation";
 constexpr const char* kSetupFile = "process.setup.file";
 
-bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
 /// The keys of one process in a file: of the only operation, or of an element of the list.
 class ProcessKeys {
  public:
@@ -60,13 +58,6 @@ class ProcessKeys {
     return begins(key, kProcess) ? section_ + std::string(key.substr(std::string_view(kProcess).size()))
                                  : std::string(key);
   }
-  /// A text in which the keys of a single operation are replaced by this operation's keys.
-  std::string in(std::string text) const {
-    for (std::size_t at = 0; (at = text.find(kProcess, at)) != std::string::npos; at += section_.size()) {
-      text.replace(at, std::string_view(kProcess).size(), section_);
-    }
-    return text;
-  }
 
  private:
   std::string section_;
@@ -76,6 +67,16 @@ class ProcessKeys {
 bool isOfWheelFile(const JobField& field) {
   return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
+
+/// An operation of a job file beside its numbers.
+struct OperationFiles {
+  std::string wheel_path;  ///< path of the wheel file; empty if the job file states the wheel itself
+  std::optional<WheelFile> wheel;
+  std::string setup_path;             ///< path of the set-up file; empty if the job file states the set-up itself
+  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
+  int line = 1;                       ///< line of the set-up file's name
+  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
+};
 
 /// The path of a file that a job file names.
 /// @param job the path of the job file.
@@ -94,8 +95,10 @@ bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
   return true;
 }
 
+/// Mounts the wheel of a wheel file.
 /// @param path_of_job path of the job file in messages.
-void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, GrindJob& job) {
+void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, OperationFiles& files,
+                   GrindJob& job) {
   const std::string key = keys("process.wheel.file");
   const std::string allowed = "the path of a wheel file";
   std::string name;
@@ -106,10 +109,10 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
   file.refuseBeside(key, keys("process.wheel."), keys("process.wheel.wear_per_pass_mm"));
   if (!named) return;
-  const std::string path = besideJob(path_of_job, name);
+  files.wheel_path = besideJob(path_of_job, name);
   std::string text;
   try {
-    text = readTextFile(path);
+    text = readTextFile(files.wheel_path);
   } catch (const JobFileError& error) {
     const std::filesystem::path folder = std::filesystem::absolute(path_of_job).parent_path();
     return file.fail(file.line(key), key + " = " + name + ": " + error.what() +
@@ -117,7 +120,8 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
                                          folder.lexically_normal().string());
   }
   try {
-    mountWheel(parseWheel(text, path), job);
+    files.wheel = parseWheel(text, files.wheel_path);
+    mountWheel(*files.wheel, job);
   } catch (const JobFileError& error) {
     file.add(error.what());
   }
@@ -133,12 +137,12 @@ std::optional<SetupFigure> figureOf(const JobField& field, OperationKind kind) {
 }
 
 /// The keys that figureOf() allows beside a set-up file.
-std::string figureKeys(OperationKind kind) {
-  std::string keys;
+std::string figureKeys(OperationKind kind, const ProcessKeys& keys) {
+  std::string names;
   visitJobFields([&](const JobField& field, auto) {
-    if (figureOf(field, kind)) keys += (keys.empty() ? "" : ", ") + std::string(field.file_key);
+    if (figureOf(field, kind)) names += (names.empty() ? "" : ", ") + keys(field.file_key);
   });
-  return isRelief(kind) ? keys : "one of " + keys;
+  return isRelief(kind) ? names : "one of " + names;
 }
 
 /// Whether a file omits a number that is optional. The elements of a pair are omitted together.
@@ -146,14 +150,6 @@ bool omits(const FlatFile& file, const std::string& key, const JobField& field) 
   if (key == "cutter.spiral_angle_deg" && file.mentions("cutter.spiral_angles_deg")) return !file.has(key);
   return field.optional && !file.mentionsPart(key);
 }
-
-/// An operation of a job file beside its numbers.
-struct OperationSetup {
-  std::string file;                   ///< path of the set-up file; empty if the job file states the figures
-  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
-  int line = 1;                       ///< line of the set-up file's name
-  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
-};
 
 /// Reads one operation, and the rest of the file except the other operations.
 class OperationReader {
@@ -173,7 +169,7 @@ class OperationReader {
     });
     takeTeeth(file_, job_);
     if (has_wheel_file) {
-      if (!has_wheel_path) takeWheelFile(file_, keys_, name, job_);
+      if (!has_wheel_path) takeWheelFile(file_, keys_, name, files_, job_);
     } else {
       file_.know(keys_("process.wheel.file"));
       takeWheelShape(file_, keys_("process.wheel."), job_);
@@ -182,14 +178,15 @@ class OperationReader {
     return std::move(job_);
   }
 
-  const OperationSetup& setup() const { return setup_; }
+  const OperationFiles& files() const { return files_; }
 
  private:
   void takeSetupFile(const std::string& name) {
     const std::string key = keys_(kSetupFile);
     std::string file;
-    setup_.line = file_.line(key);
-    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file)) setup_.file = besideJob(name, file);
+    files_.line = file_.line(key);
+    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file))
+      files_.setup_path = besideJob(name, file);
   }
 
   /// Takes a figure of the set-up beside a set-up file, in which the others stand.
@@ -199,14 +196,14 @@ class OperationReader {
       file_.know(key);
       return false;
     }
-    const auto figure = figureOf(field, job_.process.kind);
-    if (!figure || setup_.wanted) {
+    const auto figure = figureOf(field, job_.process().kind);
+    if (!figure || files_.wanted) {
       file_.fail(file_.line(key), key + " stands beside " + keys_(kSetupFile) +
-                                      "; allowed beside it: " + keys_.in(figureKeys(job_.process.kind)));
+                                      "; allowed beside it: " + figureKeys(job_.process().kind, keys_));
       file_.drop(key);
       return false;
     }
-    setup_.wanted = figure;
+    files_.wanted = figure;
     return true;
   }
 
@@ -221,7 +218,7 @@ class OperationReader {
     if (!which || !isRelief(*which)) {
       return file_.fail(file_.line(relief), relief + " = " + word + "; allowed: primary, secondary");
     }
-    job_.process.kind = *which;
+    job_.process().kind = *which;
   }
 
   /// Whether a relief takes a key from the preceding operation.
@@ -232,12 +229,12 @@ class OperationReader {
   void takeNumber(const JobField& field, const Of& of) {
     const std::string key = keys_(field.file_key);
     double value = 0;
-    if (!field.isOf(job_.process.kind)) return;
+    if (!field.isOf(job_.process().kind)) return;
     if (std::string_view(field.path) == "process.clearance" && inherits(field.file_key)) {
-      job_.process.clearance = before_->clearance;
+      job_.process().clearance = before_->clearance;
       return file_.know(key);
     }
-    const bool of_file = !setup_.file.empty() && isOfSetup(field);
+    const bool of_file = !files_.setup_path.empty() && isOfSetup(field);
     if (of_file ? !takeWanted(field, key) : omits(file_, key, field)) return file_.know(key);
     std::string allowed = grinder::text(field.low(), field.high());
     if (!file_.has(key) && isOfSetup(field)) {
@@ -248,7 +245,7 @@ class OperationReader {
   }
 
   void takeChoices() {
-    GrindProcess& p = job_.process;
+    GrindProcess& p = job_.process();
     file_.takeChoice("cutter.cut", job_.cutter.cut);
     file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
     const auto choice = [&](const std::string& key, auto& value) { file_.takeChoice(key, value); };
@@ -265,8 +262,8 @@ class OperationReader {
 
   template <typename Value, typename Take>
   void takeOrInherit(const char* key, Value GrindProcess::*value, const Take& take) {
-    if (!inherits(key)) return take(keys_(key), job_.process.*value);
-    job_.process.*value = before_->*value;
+    if (!inherits(key)) return take(keys_(key), job_.process().*value);
+    job_.process().*value = before_->*value;
     file_.know(keys_(key));
   }
 
@@ -274,180 +271,165 @@ class OperationReader {
   ProcessKeys keys_;
   const GrindProcess* before_;
   GrindJob job_;
-  OperationSetup setup_;
+  OperationFiles files_;
 };
 
-std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
+std::string sectionOf(int operation) { return element(kOperations, static_cast<std::size_t>(operation)) + "."; }
 
 /// The number of operations that a file lists; 0 for a single process.
-std::size_t operationsIn(const FlatFile& file) {
-  std::size_t count = 0;
-  while (count < kMaxOperations && file.mentionsSection(element(kOperations, count))) ++count;
+int operationsIn(const FlatFile& file) {
+  int count = 0;
+  while (count < kMaxOperations && file.mentionsSection(element(kOperations, static_cast<std::size_t>(count)))) ++count;
   return count;
 }
 
 void failInvalid(FlatFile& file, const ProcessKeys& keys, const GrindJob& job) {
-  for (const Reason& reason : validate(job)) {
-    file.fail(file.line(keys(fieldName(reason.field))), keys.in(grinder::text(reason)));
+  for (Reason reason : validate(job)) {
+    reason.field = keys(fieldName(reason.field));
+    file.fail(file.line(reason.field), grinder::text(reason));
   }
   file.throwErrors();
 }
 
 /// The index of an operation.
 /// @param named its number, from 1, or its kind; may be empty for a single operation.
-std::size_t operationNamed(const std::string& named, const std::vector<GrindOperation>& operations,
+std::size_t operationNamed(const std::string& named, const std::vector<GrindProcess>& operations,
                            const std::string& name) {
   std::string all;
   for (std::size_t i = 0; i < operations.size(); ++i) {
-    const std::string kind = toString(operations[i].process.kind);
+    const std::string kind = toString(operations[i].kind);
     if (named == kind || named == std::to_string(i + 1) || (named.empty() && operations.size() == 1)) return i;
     all += (all.empty() ? "" : ", ") + std::to_string(i + 1) + " or " + kind;
   }
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
-bool isWanted(const JobField& field, const OperationSetup& setup) {
-  return setup.wanted && std::string_view(field.path) == rowOf(*setup.wanted).path;
+bool isWanted(const JobField& field, const OperationFiles& files) {
+  return files.wanted && std::string_view(field.path) == rowOf(*files.wanted).path;
 }
 
 /// The job with the set-up of clearSetup(), except the wanted figure.
-GrindJob withoutSetup(const GrindJob& job, const OperationSetup& setup) {
+GrindJob withoutSetup(const GrindJob& job, const OperationFiles& files) {
   GrindJob cleared = job;
   clearSetup(cleared);
   visitJobFields([&](const JobField& field, auto of) {
-    if (isWanted(field, setup)) of(cleared) = of(job);
+    if (isWanted(field, files)) of(cleared) = of(job);
   });
   return cleared;
 }
 
-/// Takes the set-up of an operation from its set-up file, or says in `setup` why there is none that fits.
-void takeSolved(OperationSetup& setup, GrindJob& job) {
-  const GrindJob asked = withoutSetup(job, setup);
+/// Takes the set-up of an operation from its set-up file, or says in `files` why there is none that fits.
+void takeSolved(OperationFiles& files, GrindJob& job) {
+  const GrindJob asked = withoutSetup(job, files);
   try {
-    takeSetup(readTextFile(setup.file), setup.file, job);
+    takeSetup(readTextFile(files.setup_path), files.setup_path, job);
     visitJobFields([&](const JobField& field, auto of) {
       constexpr int digits = 9;
       const std::string is = text({of(job), field.unit}, digits), wanted = text({of(asked), field.unit}, digits);
-      if (!isWanted(field, setup) || is == wanted) return;
-      throw JobFileError(setup.file + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
+      if (!isWanted(field, files) || is == wanted) return;
+      throw JobFileError(files.setup_path + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
                          wanted);
     });
   } catch (const JobFileError& error) {
     job = asked;
-    setup.unsolved = error.what();
+    files.unsolved = error.what();
   }
 }
 
 /// Reads one operation, and the rest of the file except the other operations.
 /// @param file file from which nothing was taken.
-GrindJob readOperation(FlatFile file, const std::string& name, const std::string& section, const GrindProcess* before,
-                       OperationSetup& setup) {
-  const ProcessKeys keys(section);
+GrindJob readOperation(FlatFile file, const std::string& name, const ProcessKeys& keys, const GrindProcess* before,
+                       OperationFiles& files) {
   if (!keys.single()) {
-    for (std::size_t i = 0; i < kMaxOperations; ++i) {
-      if (sectionOf(i) != section) file.dropSection(sectionOf(i));
+    for (int i = 0; i < kMaxOperations; ++i) {
+      if (sectionOf(i) != keys(kProcess)) file.dropSection(sectionOf(i));
     }
-    // A record names its operation, and also repeats its values.
-    if (file.has(kOperation)) file.dropSection(kProcess);
-    file.drop(kOperation);
+    file.drop(kOperation);  // a record names its operation
   }
   OperationReader reader(file, keys, before);
   GrindJob job = reader.read(name);
   file.refuseTheRest();
   file.throwErrors();
-  setup = reader.setup();
-  if (!setup.file.empty()) takeSolved(setup, job);
+  files = reader.files();
+  if (!files.setup_path.empty()) takeSolved(files, job);
   return job;
 }
 
 /// A job file with all its operations.
 struct ParsedJob {
   FlatFile file;
-  GrindJob job;                        ///< the first operation's, or the only one's
-  std::vector<OperationSetup> setups;  ///< of each operation
-
-  ProcessKeys keysOf(std::size_t operation) const {
-    return ProcessKeys(job.operations.empty() ? kProcess : sectionOf(operation));
-  }
-
-  /// @param named as operationNamed().
-  std::size_t indexOf(std::string named, const std::string& name) {
-    if (job.operations.empty()) {
-      if (named.empty() || named == "1" || named == toString(OperationKind::kFlute)) return 0;
-      throw JobFileError(name + ": operation = " + named + "; allowed: 1 or flute, its only one");
-    }
-    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
-    return operationNamed(named, job.operations, name);
-  }
+  GrindJob job{};                       ///< the first operation's
+  std::vector<ProcessKeys> keys{};      ///< of each operation
+  std::vector<OperationFiles> files{};  ///< of each operation
 
   /// @throw JobFileError unless the first operations are set up.
   void requireSetups(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
-      if (setups[i].unsolved.empty()) continue;
+      if (files[i].unsolved.empty()) continue;
       const std::string which =
-          job.operations.empty() ? "" : std::string("--operation ") + toString(job.operations[i].process.kind) + " ";
-      file.fail(setups[i].line,
-                keysOf(i)(kSetupFile) + " = " + setups[i].unsolved + "; 'grind setup " + which + "--write' solves it");
+          keys[i].single() ? "" : std::string("--operation ") + toString(job.operations[i].kind) + " ";
+      file.fail(files[i].line,
+                keys[i](kSetupFile) + " = " + files[i].unsolved + "; 'grind setup " + which + "--write' solves it");
     }
     file.throwErrors();
+  }
+
+  /// @param named as in operationNamed().
+  std::size_t indexOf(std::string named, const std::string& name) {
+    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
+    return operationNamed(named, job.operations, name);
   }
 };
 
 ParsedJob parseAll(const std::string& text, const std::string& name) {
-  ParsedJob parsed{FlatFile(text, name, kKind, kContent), {}, {}};
-  const std::size_t count = operationsIn(parsed.file);
-  parsed.setups.resize(std::max<std::size_t>(count, 1));
-  if (count == 0) {
-    parsed.job = readOperation(parsed.file, name, kProcess, nullptr, parsed.setups[0]);
-    failInvalid(parsed.file, parsed.keysOf(0), parsed.job);
-    return parsed;
-  }
-  std::vector<GrindOperation> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    parsed.job =
-        readOperation(parsed.file, name, sectionOf(i), i == 0 ? nullptr : &all.back().process, parsed.setups[i]);
-    all.push_back({parsed.job.process, parsed.job.wheel_points});
+  ParsedJob parsed{FlatFile(text, name, kKind, kContent)};
+  for (int i = 0; i < operationsIn(parsed.file); ++i) parsed.keys.emplace_back(sectionOf(i));
+  if (parsed.keys.empty()) parsed.keys.emplace_back(kProcess);
+  std::vector<GrindProcess> all;
+  for (const ProcessKeys& keys : parsed.keys) {
+    OperationFiles& files = parsed.files.emplace_back();
+    parsed.job = readOperation(parsed.file, name, keys, all.empty() ? nullptr : &all.back(), files);
+    all.push_back(parsed.job.process());
   }
   parsed.job.operations = std::move(all);
-  for (std::size_t i = 0; i < count; ++i) {
-    failInvalid(parsed.file, parsed.keysOf(i), parsed.job.ofOperation(static_cast<int>(i)));
+  for (const GrindJob& job : parsed.job.ofAllOperations()) {
+    failInvalid(parsed.file, parsed.keys[static_cast<std::size_t>(job.operation)], job);
   }
   return parsed;
+}
+
+JobFile jobFileOf(const ParsedJob& parsed, std::size_t operation, const std::string& path) {
+  const OperationFiles& files = parsed.files[operation];
+  return {path, parsed.job.ofOperation(static_cast<int>(operation)), files.wheel_path, files.wheel, files.setup_path};
+}
+
+JobFile open(const std::string& text, const std::string& name, const std::string& operation) {
+  ParsedJob parsed = parseAll(text, name);
+  parsed.requireSetups(parsed.files.size());
+  return jobFileOf(parsed, parsed.indexOf(operation, name), name);
 }
 
 }  // namespace
 
 GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation) {
-  ParsedJob parsed = parseAll(text, name);
-  parsed.requireSetups(parsed.setups.size());
-  return parsed.job.ofOperation(static_cast<int>(parsed.indexOf(operation, name)));
+  return open(text, name, operation).job;
 }
 
-GrindJob readJobFile(const std::string& path, const std::string& operation) {
-  return parseJob(readTextFile(path), path, operation);
+JobFile openJobFile(const std::string& path, const std::string& operation) {
+  return open(readTextFile(path), path, operation);
 }
+
+GrindJob readJobFile(const std::string& path, const std::string& operation) { return openJobFile(path, operation).job; }
 
 JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation) {
   ParsedJob parsed = parseAll(readTextFile(path), path);
   const std::size_t index = parsed.indexOf(operation, path);
   parsed.requireSetups(index);
-  const OperationSetup& setup = parsed.setups[index];
-  JobToSetUp result{parsed.job.ofOperation(static_cast<int>(index)), {}, setup.file, setup.wanted};
-  if (setup.unsolved.empty()) result.before = result.job.process;
-  if (setup.file.empty()) return result;
-  result.job = withoutSetup(result.job, setup);
-  if (!result.job.operations.empty()) result.job.operations[index].process = result.job.process;
-  return result;
-}
-
-OperationFiles filesOf(const std::string& path, int operation) {
-  FlatFile file(readTextFile(path), path, kKind, kContent);
-  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(static_cast<std::size_t>(operation)));
-  const auto named = [&](const char* key) {
-    std::string name;
-    return file.has(keys(key)) && file.take(keys(key), "", name) ? besideJob(path, name) : "";
-  };
-  return {named("process.wheel.file"), named(kSetupFile)};
+  const OperationFiles& files = parsed.files[index];
+  JobToSetUp asked{jobFileOf(parsed, index, path), {}, files.wanted};
+  if (files.unsolved.empty()) asked.before = asked.job.process();
+  if (!files.setup_path.empty()) asked.job = withoutSetup(asked.job, files);
+  return asked;
 }
 
 }  // namespace grinder

@@ -15,8 +15,6 @@ constexpr const char* kJob = "job";
 constexpr const char* kSolvedFor = "solved_for";
 constexpr const char* kHead = "# Written by 'grind setup --write'. Change the job instead, and solve it again.\n";
 
-bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
-
 /// The key of a figure in a set-up file, e.g. "swivel_deg" or "overtravel_mm[0]".
 std::string keyOf(const JobField& field) {
   const std::string_view key = field.file_key;
@@ -56,17 +54,17 @@ std::vector<std::string> solvedFor(const GrindJob& job) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& key, const std::string& value) { lines.push_back(key + " = " + value); };
   visitJobFields([&](const JobField& field, auto of) {
-    if (isSolvedFor(field, job.process.kind)) add(field.file_key, asked(of(job), field.unit));
+    if (isSolvedFor(field, job.process().kind)) add(field.file_key, asked(of(job), field.unit));
   });
   if (!job.spiral_angles.empty()) add("cutter.spiral_angles_deg", asked(job.spiral_angles));
   add("cutter.cut", toString(job.cutter.cut));
-  add("process.wheel.profile", toString(job.process.wheel_profile));
-  add("process.wheel.side", toString(job.process.wheel_side));
-  for (std::size_t i = 0; i < job.wheel_points.size(); ++i) {
-    const auto& [w, radius] = job.wheel_points[i];
+  add("process.wheel.profile", toString(job.process().wheel_profile));
+  add("process.wheel.side", toString(job.process().wheel_side));
+  for (std::size_t i = 0; i < job.process().wheel_points.size(); ++i) {
+    const auto& [w, radius] = job.process().wheel_points[i];
     add(element("process.wheel.points_mm", i), asked(w, Unit::kMetre) + ", " + asked(radius, Unit::kMetre));
   }
-  if (!isRelief(job.process.kind)) add("process.z_law", toString(job.process.z_law));
+  if (!isRelief(job.process().kind)) add("process.z_law", toString(job.process().z_law));
   return lines;
 }
 
@@ -101,25 +99,25 @@ void clearSetup(GrindJob& job) {
   visitJobFields([&](const JobField& field, auto of) {
     if (isOfSetup(field)) of(job) = 0;
   });
-  if (isRelief(job.process.kind)) return;
-  job.process.depth = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
+  if (isRelief(job.process().kind)) return;
+  job.process().depth = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
 }
 
 void takeSetup(const std::string& content, const std::string& name, GrindJob& job) {
   FlatFile file(content, name, "set-up file", "the job's name and its operations");
-  const std::string section = std::string(toString(job.process.kind)) + ".";
-  if (!file.mentionsSection(section)) file.fail(1, "no set-up of the " + std::string(rowOf(job.process.kind).words));
+  const std::string section = std::string(toString(job.process().kind)) + ".";
+  if (!file.mentionsSection(section)) file.fail(1, "no set-up of the " + std::string(rowOf(job.process().kind).words));
   file.throwErrors();
   checkSolvedFor(file, section, job);
   file.throwErrors();
   visitJobFields([&](const JobField& field, auto of) {
-    if (!isOfSetup(field) || !field.isOf(job.process.kind)) return;
+    if (!isOfSetup(field) || !field.isOf(job.process().kind)) return;
     double value = 0;
     file.take(section + keyOf(field), text(field.low(), field.high()), value);
     of(job) = value * shopScale(field.unit);
   });
   for (const auto& row : kOperationKinds) {
-    if (row.value != job.process.kind) file.dropSection(std::string(row.name) + ".");
+    if (row.value != job.process().kind) file.dropSection(std::string(row.name) + ".");
   }
   file.drop(kJob);
   file.refuseTheRest();
@@ -137,7 +135,7 @@ std::string withSetup(const std::string& before, const std::string& name, const 
   }
   YAML::Node setup;
   visitJobFields([&](const JobField& field, auto value) {
-    if (!isOfSetup(field) || !field.isOf(job.process.kind)) return;
+    if (!isOfSetup(field) || !field.isOf(job.process().kind)) return;
     const std::string key = keyOf(field);
     const std::string text = number(value(job), field.unit);
     if (key.back() == ']') {
@@ -149,7 +147,7 @@ std::string withSetup(const std::string& before, const std::string& name, const 
     }
   });
   for (const std::string& line : solvedFor(job)) setup[kSolvedFor].push_back(line);
-  root[toString(job.process.kind)] = setup;
+  root[toString(job.process().kind)] = setup;
   return kHead + YAML::Dump(root) + "\n";
 }
 

@@ -46,7 +46,7 @@ void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
     std::vector<double> point;
     file.takeList(element(key, i), allowed, kMillimetre, point);
     if (point.size() != 2) return file.fail(file.line(key), element(key, i) + " is not a pair; allowed: " + allowed);
-    job.wheel_points.push_back({point[0], point[1]});
+    job.process().wheel_points.push_back({point[0], point[1]});
   }
 }
 
@@ -136,9 +136,9 @@ void check(FlatFile& file, const GrindJob& job, bool measured) {
 
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
   // An unknown profile may have a side.
-  if (!file.takeChoice(prefix + "profile", job.process.wheel_profile)) return file.drop(prefix + "side");
-  if (isTapered(job.process.wheel_profile)) file.takeChoice(prefix + "side", job.process.wheel_side);
-  if (job.process.wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);
+  if (!file.takeChoice(prefix + "profile", job.process().wheel_profile)) return file.drop(prefix + "side");
+  if (isTapered(job.process().wheel_profile)) file.takeChoice(prefix + "side", job.process().wheel_side);
+  if (job.process().wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);
 }
 
 WheelFile parseWheel(const std::string& text, const std::string& name) {
@@ -155,16 +155,15 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
   });
   takeWheelShape(file, "", job);
   takeFlange(file, wheel);
-  wheel.new_width = job.process.wheel_width;
+  wheel.new_width = job.process().wheel_width;
   GrindJob now = job;
-  takeMeasurement(file, wheel, now.process);
+  takeMeasurement(file, wheel, now.process());
   if (file.mayHave(kDressed)) takeDate(file, kDressed, wheel.dressed);
   file.refuseTheRest();
   file.throwErrors();
   check(file, job, false);
   check(file, now, true);
-  wheel.process = now.process;
-  wheel.points = std::move(now.wheel_points);
+  wheel.process = now.process();
   return wheel;
 }
 
@@ -172,14 +171,14 @@ WheelFile readWheelFile(const std::string& path) { return parseWheel(readTextFil
 
 void mountWheel(const WheelFile& wheel, GrindJob& job) {
   GrindJob from;
-  from.process = wheel.process;
+  from.process() = wheel.process;
   visitJobFields([&](const JobField& field, auto of) {
     if (!wheelKey(field).empty()) of(job) = of(from);
   });
-  job.process.wheel_wear = wheel.process.wheel_wear;
-  job.process.wheel_profile = wheel.process.wheel_profile;
-  job.process.wheel_side = wheel.process.wheel_side;
-  job.wheel_points = wheel.points;
+  job.process().wheel_wear = wheel.process.wheel_wear;
+  job.process().wheel_profile = wheel.process.wheel_profile;
+  job.process().wheel_side = wheel.process.wheel_side;
+  job.process().wheel_points = wheel.process.wheel_points;
 }
 
 }  // namespace grinder

@@ -5,9 +5,9 @@
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
 #include "flute_grinder/geometry/write_setup.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -37,9 +37,7 @@ constexpr int kWriteLines = 10;
 std::vector<std::string> digestsOf(const std::string& file) {
   std::vector<std::string> digests;
   try {
-    const GrindJob job = readJobFile(file, "1");
-    const int count = std::max(static_cast<int>(job.operations.size()), 1);
-    for (int i = 0; i < count; ++i) digests.push_back(jobDigest(job.ofOperation(i)));
+    for (const GrindJob& job : readJobFile(file, "1").ofAllOperations()) digests.push_back(jobDigest(job));
   } catch (const JobFileError&) {
     // Such a file is no job's that was ever started.
   }
@@ -113,7 +111,7 @@ void SetupDialog::refresh(const flute_grinder::JobProgress& last, bool runs) {
 }
 
 void SetupDialog::ask() {
-  QString text = "Write this set-up into " + QString::fromStdString(solved_.asked.setup_file) + "?\n" + solved_.changes;
+  QString text = "Write this set-up into " + QString::fromStdString(solved_.asked.setup_path) + "?\n" + solved_.changes;
   if (isOfLastJob() && !last_.finished) {
     text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
   }
@@ -152,11 +150,12 @@ SetupDialog::Done SetupDialog::solve() const {
     const auto& setup = std::get<JobSetup>(result);
     const std::string refusal = planRefusal(setup);
     const std::string changes = changesText(asked.before, setup.job);
-    const std::string sheet = "in the set-up\n" + changes + setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
+    const std::string sheet =
+        "in the set-up\n" + changes + setupSheet(setup, swivel, aboveSwivel(asked, setup.job)) + refusal;
     if (!refusal.empty()) return refused(sheet + "It is not written.");
     Done done{nullptr, false, QString::fromStdString(sheet), true, digestsOf(file_), QString::fromStdString(changes),
               asked};
-    if (asked.setup_file.empty()) {
+    if (asked.setup_path.empty()) {
       done.text += "The figures of the set-up are written by hand in the job file: no set-up file is written.\n";
     } else {
       done.solved = std::make_shared<const GrindJob>(setup.job);
@@ -167,19 +166,19 @@ SetupDialog::Done SetupDialog::solve() const {
   }
 }
 
-std::optional<double> SetupDialog::aboveSwivel(const GrindJob& job) const {
+std::optional<double> SetupDialog::aboveSwivel(const JobFile& asked, const GrindJob& job) const {
   auto flange = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {flange_}, stop_);
   const auto number = flange ? numberOf(*flange) : std::nullopt;
   if (!number) return std::nullopt;
   MachineGeometry machine;
   machine.flange = *number;
-  return wheelAboveSwivel(file_, job, machine);
+  return wheelAboveSwivel(asked.wheel, job, machine);
 }
 
 SetupDialog::Done SetupDialog::write(const JobToSetUp& asked, const GrindJob& solved) const {
   try {
-    writeSetup(file_, asked, solved);
-    return {nullptr, true, "Written into " + QString::fromStdString(asked.setup_file) + ".", true};
+    writeSetup(asked, solved);
+    return {nullptr, true, "Written into " + QString::fromStdString(asked.setup_path) + ".", true};
   } catch (const std::exception& error) {
     return {nullptr, false, error.what(), false};
   }

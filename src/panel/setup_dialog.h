@@ -59,7 +59,7 @@ class SetupDialog : public QDialog {
   void beginToWrite();
   bool isOfLastJob() const;
   Done solve() const;
-  std::optional<double> aboveSwivel(const GrindJob& job) const;
+  std::optional<double> aboveSwivel(const JobFile& asked, const GrindJob& job) const;
   Done write(const JobToSetUp& asked, const GrindJob& solved) const;
   void poll();
   void take(const Done& done);

@@ -258,7 +258,7 @@ class TestGoal(CommandLine):
         self.assertGreater(len(jobs), 5)
         for path in jobs:
             if 'operations:' in path.read_text():
-                kinds = [flute_grinder.job.goal(path, number).process.kind for number in (1, 2, 3)]
+                kinds = [gc.process_of(flute_grinder.job.goal(path, number)).kind for number in (1, 2, 3)]
                 self.assertEqual(kinds, [Process.FLUTE, Process.PRIMARY, Process.SECONDARY])
                 self.assertEqual(flute_grinder.job.goal(path, 'primary').operation, 1)
                 continue
@@ -267,7 +267,7 @@ class TestGoal(CommandLine):
             self.assertEqual((goal.dry_run, goal.discard, goal.ignore_offset_check, goal.first_tooth, goal.first_pass), (False,) * 3 + (0, 0))
             for field, value in gc.job_from_file(str(path)).items():
                 part, name = field.split('.')
-                self.assert_close(getattr(getattr(goal, part), name), value, '%s: %s' % (path, field))
+                self.assert_close(getattr(gc.part_of(goal, part), name), value, '%s: %s' % (path, field))
 
     def assert_close(self, value, expected, text):
         if isinstance(expected, (list, tuple)):

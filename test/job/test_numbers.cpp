@@ -30,7 +30,7 @@ TEST(Numbers, OfAJobFileAreReadAndWrittenInALocaleWithAComma) {
   ASSERT_TRUE(test_support::hasComma());
   const GrindJob again = readJobFile(path);
   EXPECT_EQ(again.cutter.end_diameter, job.cutter.end_diameter);
-  EXPECT_EQ(again.process.depth, job.process.depth);
+  EXPECT_EQ(again.process().depth, job.process().depth);
   EXPECT_EQ(withSetup("", "paper.setup.yaml", "paper.yaml", job), test_support::readFile("jobs/paper.setup.yaml"));
 }
 

@@ -1,8 +1,8 @@
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -60,13 +60,13 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
   });
   EXPECT_EQ(of_wheel, 4) << "diameter, angle, two corners";
   GrindJob other = job;
-  other.process.wheel_profile = WheelShape::kFullRadius;
+  other.process().wheel_profile = WheelShape::kFullRadius;
   EXPECT_NE(wheelDigest(other), digest);
   other = job;
-  other.process.wheel_side = WheelFace::kLower;
+  other.process().wheel_side = WheelFace::kLower;
   EXPECT_NE(wheelDigest(other), digest);
   other = job;
-  other.wheel_points.push_back({0, 0.05});
+  other.process().wheel_points.push_back({0, 0.05});
   EXPECT_NE(wheelDigest(other), digest);
 }
 
@@ -78,16 +78,16 @@ TEST(OffsetBasis, TheToolIsKnownByWhatPlacesItsTeeth) {
   const auto changed = [&](auto change) {
     GrindJob other = job;
     change(other);
-    other.operations[0].process = other.process;
+    other.operations[0] = other.process();
     return toolDigest(other) != digest;
   };
   EXPECT_TRUE(changed([](GrindJob& j) { j.tooth_angles[1] += 0.01; }));
   EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.end_diameter += 1e-4; }));
   EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.cut = CutDirection::kLeftHand; }));
-  EXPECT_TRUE(changed([](GrindJob& j) { j.process.setup_swivel += 1e-3; }));
-  EXPECT_TRUE(changed([](GrindJob& j) { j.process.depth += 1e-4; }));
-  EXPECT_FALSE(changed([](GrindJob& j) { j.process.feed *= 2; }));
-  EXPECT_FALSE(changed([](GrindJob& j) { j.process.wheel_wear += 1e-5; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process().setup_swivel += 1e-3; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process().depth += 1e-4; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process().feed *= 2; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process().wheel_wear += 1e-5; }));
   EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.clearance += 0.01; }));
   EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.rake_tolerance *= 2; }));
 }

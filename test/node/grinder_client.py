@@ -30,7 +30,7 @@ import rosunit.xmlrunner
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
-                               ProbeGoal, SetpointBatch, WrittenSetpoint)
+                               ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
 from flute_grinder.srv import ConfirmSwivel, InjectFault, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -78,8 +78,19 @@ def goal_of(job, **fields):
         setattr(goal, name, value)
     for path, value in () if isinstance(job, GrindGoal) else job.items():
         part, name = path.split('.')
-        setattr(getattr(goal, part), name, value)
+        setattr(part_of(goal, part), name, value)
     return goal
+
+
+def part_of(goal, part):
+    """Where a goal has the fields of a part of a job: 'cutter', 'process' or 'interpolation'."""
+    return process_of(goal) if part == 'process' else getattr(goal, part)
+
+
+def process_of(goal):
+    """The operation of a goal; of a new goal the only one, which is new, too."""
+    goal.operations = goal.operations or [Process()]
+    return goal.operations[goal.operation]
 
 
 @lru_cache(None)
@@ -154,7 +165,7 @@ def job_from_file(path):
         process.update((part + key, value) for key, value in values.items())
 
     goal = GrindGoal()
-    job = {part + '.' + name: getattr(getattr(goal, part), name) for part in file for name in getattr(goal, part).__slots__}
+    job = {part + '.' + name: getattr(part_of(goal, part), name) for part in file for name in part_of(goal, part).__slots__}
     for part, values in file.items():
         for key, value in values.items():
             name, unit = re.fullmatch('(.*?)(?:_(%s))?' % '|'.join(UNITS), key).groups()
@@ -295,7 +306,7 @@ class Run:
         self._grinder = grinder
         if confirm and not goal.dry_run:
             # Refused during another job or if the drive measures it: then the goal's answer says so.
-            grinder.confirm_swivel(goal.process.setup_swivel)
+            grinder.confirm_swivel(process_of(goal).setup_swivel)
         self.feedback = []
         self.sent = time.time()
         self._handle = grinder.client.send_goal(goal, self._on_transition, self._on_feedback)

@@ -121,7 +121,7 @@ TEST_F(SetupSheet, ShowsWhatTheFileHasAndIsWrittenOnlyIfTheOperatorSaysSoTwice) 
   panel->press("decline_write");
   QTest::keyClick(dialog(), Qt::Key_Return);
   WAIT_FOR(!dialog());
-  const auto swivel = [&] { return goalFromFile(file.toStdString()).process.setup_swivel / units::kDegree; };
+  const auto swivel = [&] { return processOf(goalFromFile(file.toStdString())).setup_swivel / units::kDegree; };
   EXPECT_DOUBLE_EQ(swivel(), 43.32) << "Enter closes it";
   ASSERT_NO_FATAL_FAILURE(openSheet());
   ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
@@ -163,7 +163,7 @@ TEST_F(SetupSheet, KeepsTheFigureThatTheJobAsksFor) {
        QString(kJob).replace("paper", "roughing_d10_t4"));
   EXPECT_EQ(figure("swivel"), 43);
   ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
-  EXPECT_DOUBLE_EQ(goalFromFile(file.toStdString()).process.setup_swivel, 43 * units::kDegree);
+  EXPECT_DOUBLE_EQ(processOf(goalFromFile(file.toStdString())).setup_swivel, 43 * units::kDegree);
   closeSheet();
 }
 

@@ -7,14 +7,12 @@
 namespace grinder {
 
 /// Refuses a job file that states the figures of its set-up itself.
-/// @param path the job file.
 /// @throw JobFileError that says how a job file names a set-up file.
-void requireSetupFile(const std::string& path, const JobToSetUp& asked);
+void requireSetupFile(const JobFile& asked);
 
 /// Writes a solved set-up into its set-up file, in one step.
-/// @param path the job file.
 /// @param solved job with its set-up.
 /// @throw JobFileError if the job file names no set-up file, or if the file cannot be written or is another job's.
-void writeSetup(const std::string& path, const JobToSetUp& asked, const GrindJob& solved);
+void writeSetup(const JobFile& asked, const GrindJob& solved);
 
 }  // namespace grinder

@@ -51,25 +51,25 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.clearance_tolerance", "cutter.clearance_tolerance_deg", deg, 0, 45, true}, [](auto& j) -> auto& { return j.cutter.clearance_tolerance; });
   visit(F{"cutter.land", "cutter.land_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.land; });
   visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, true}, [](auto& j) -> auto& { return j.cutter.second_clearance; });
-  visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return j.process.feed; });
-  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.depth; });
-  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.depth_end; });
-  visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50}, [](auto& j) -> auto& { return j.process.infeed; });
-  visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10}, [](auto& j) -> auto& { return j.process.finish_infeed; });
-  visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.process.clearance; });
-  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.overtravel_end; });
-  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.overtravel_shank; });
-  visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500}, [](auto& j) -> auto& { return j.process.wheel_diameter; });
-  visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.process.wheel_width; });
-  visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, true}, [](auto& j) -> auto& { return j.process.wheel_angle; });
-  visit(F{"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.wheel_corner_radius_lower; });
-  visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, true}, [](auto& j) -> auto& { return j.process.wheel_corner_radius_upper; });
-  visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100}, [](auto& j) -> auto& { return j.process.wheel_wear; });
-  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return j.process.wheel_wear_per_pass; });
-  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return j.process.setup_swivel; });
-  visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return j.process.setup_height; });
-  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return j.process.setup_x_shift; });
-  visit(F{"process.behind", "process.behind_mm", mm, 0, 50, true, F::Of::kRelief}, [](auto& j) -> auto& { return j.process.behind; });
+  visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return processOf(j).feed; });
+  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).depth; });
+  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).depth_end; });
+  visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50}, [](auto& j) -> auto& { return processOf(j).infeed; });
+  visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10}, [](auto& j) -> auto& { return processOf(j).finish_infeed; });
+  visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return processOf(j).clearance; });
+  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).overtravel_end; });
+  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).overtravel_shank; });
+  visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500}, [](auto& j) -> auto& { return processOf(j).wheel_diameter; });
+  visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return processOf(j).wheel_width; });
+  visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, true}, [](auto& j) -> auto& { return processOf(j).wheel_angle; });
+  visit(F{"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", mm, 0, 50, true}, [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_lower; });
+  visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, true}, [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_upper; });
+  visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100}, [](auto& j) -> auto& { return processOf(j).wheel_wear; });
+  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
+  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return processOf(j).setup_swivel; });
+  visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return processOf(j).setup_height; });
+  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).setup_x_shift; });
+  visit(F{"process.behind", "process.behind_mm", mm, 0, 50, true, F::Of::kRelief}, [](auto& j) -> auto& { return processOf(j).behind; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000}, [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000}, [](auto& j) -> auto& { return j.interpolation.rotary_scale; });
   // clang-format on
@@ -81,14 +81,14 @@ template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off
   visit("cutter.cut", countOf<CutDirection>() - 1, [](auto& j) -> auto& { return j.cutter.cut; });
-  visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return j.process.kind; });
-  visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return j.process.spark_out; });
-  visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return j.process.order; });
-  visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return j.process.direction; });
-  visit("process.z_law", countOf<ZLaw>() - 1, [](auto& j) -> auto& { return j.process.z_law; });
-  visit("process.incomplete_ok", 1, [](auto& j) -> auto& { return j.process.incomplete_ok; });
-  visit("process.wheel_profile", countOf<WheelShape>() - 1, [](auto& j) -> auto& { return j.process.wheel_profile; });
-  visit("process.wheel_side", countOf<WheelFace>() - 1, [](auto& j) -> auto& { return j.process.wheel_side; });
+  visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return processOf(j).kind; });
+  visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return processOf(j).spark_out; });
+  visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return processOf(j).order; });
+  visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return processOf(j).direction; });
+  visit("process.z_law", countOf<ZLaw>() - 1, [](auto& j) -> auto& { return processOf(j).z_law; });
+  visit("process.incomplete_ok", 1, [](auto& j) -> auto& { return processOf(j).incomplete_ok; });
+  visit("process.wheel_profile", countOf<WheelShape>() - 1, [](auto& j) -> auto& { return processOf(j).wheel_profile; });
+  visit("process.wheel_side", countOf<WheelFace>() - 1, [](auto& j) -> auto& { return processOf(j).wheel_side; });
   visit("interpolation.even_step", countOf<EvenStepRule>() - 1, [](auto& j) -> auto& { return j.interpolation.even_step; });
   // clang-format on
 }

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/setup_file.h"
+#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/job/yaml_text.h"
 
 #include <optional>
@@ -22,27 +23,28 @@ GrindJob readJobFile(const std::string& path, const std::string& operation = "")
 /// Reads and checks a job from text; `name` is the file in messages, and other files are relative to its folder.
 GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation = "");
 
-/// A job whose set-up is to be solved.
-struct JobToSetUp {
-  /// The job with the set-up that its file states, or else that of clearSetup() with the wanted figure.
+/// A job file, and the files that the job's operation names.
+struct JobFile {
+  std::string path;
   GrindJob job;
+  std::string wheel_path;          ///< path of the wheel file; empty if the job file states the wheel itself
+  std::optional<WheelFile> wheel;  ///< what the wheel file says
+  std::string setup_path;          ///< path of the set-up file; empty if the job file states the set-up itself
+};
+
+/// Reads a job as readJobFile(), once for everything that its files say.
+JobFile openJobFile(const std::string& path, const std::string& operation = "");
+
+/// A job whose set-up is to be solved: with the set-up that its file states, or else that of clearSetup() with the
+/// wanted figure.
+struct JobToSetUp : JobFile {
   std::optional<GrindProcess>
       before;                         ///< its operation with the set-up that it has; nothing if there is none that fits
-  std::string setup_file;             ///< path of the set-up file; empty if the job file states the figures itself
   std::optional<SetupFigure> wanted;  ///< the figure that the job file asks for beside the set-up file
 };
 
 /// Reads a job to solve the set-up of one of its operations, as readJobFile(), but the set-ups of this and of the later
 /// operations need not be there. The preceding operations must be set up.
 JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation = "");
-
-/// The files that an operation of a job file names; a path is empty if there is none.
-struct OperationFiles {
-  std::string wheel, setup;
-};
-
-/// @param operation index, from 0.
-/// @throw JobFileError if the job file cannot be read.
-OperationFiles filesOf(const std::string& path, int operation = 0);
 
 }  // namespace grinder

@@ -28,7 +28,10 @@ g++ -std=c++17 -I include -I /usr/include/eigen3 "$root/examples/4_stream_a_job.
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
 
 port=${ROS_MASTER_URI##*:}
-roslaunch -p "$port" flute_grinder grinder.launch journal:="$folder/journal" >"$folder/log" 2>&1 &
+# For a host that stalls, as test/patient.yaml.
+sed 's/^late_cycle: .*/late_cycle: {slow_down: 1.0e+6, fault: 1.0e+6}/' share/flute_grinder/config/grinder.yaml >"$folder/patient.yaml"
+grep -q 'fault: 1.0e+6' "$folder/patient.yaml"
+roslaunch -p "$port" flute_grinder grinder.launch journal:="$folder/journal" config:="$folder/patient.yaml" >"$folder/log" 2>&1 &
 launch=$!
 job=share/flute_grinder/jobs/paper.yaml
 rosrun flute_grinder grind plan "$job" | grep -q '^setpoints'

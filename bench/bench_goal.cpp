@@ -210,7 +210,7 @@ class Bench {
     while (!motion_.connected()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     call(node + "/enable", std_srvs::Trigger());
     flute_grinder::ConfirmSwivel swivel;
-    swivel.request.swivel = paperGoal().process.setup_swivel;  // that of all jobs here
+    swivel.request.swivel = processOf(paperGoal()).setup_swivel;  // that of all jobs here
     call(node + "/confirm_swivel", swivel);
   }
 
@@ -218,9 +218,9 @@ class Bench {
   void measure(const std::string& name, flute_grinder::GrindGoal goal) {
     out_["values"][name + "/goal_bytes"] = ros::serialization::serializationLength(goal);
     const flute_grinder::GrindGoal repeated = goal;
-    const double feed = goal.process.feed;
+    const double feed = processOf(goal).feed;
     repeat(name + "/new", [&](int i) {
-      goal.process.feed = feed * (1 - 1e-5 * (i + 1));
+      processOf(goal).feed = feed * (1 - 1e-5 * (i + 1));
       return goal;
     });
     repeat(name + "/repeated", [&](int) -> const flute_grinder::GrindGoal& {

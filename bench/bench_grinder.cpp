@@ -130,7 +130,7 @@ BENCHMARK(collision)->Unit(benchmark::kMillisecond);
 /// six teeth with both reliefs.
 void checkCutter(benchmark::State& state) {
   const GrindJob jobs[]{paperJob(600), readJobFile("jobs/unequal_d12_t4.yaml"),
-                        readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "secondary")};
+                        readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary")};
   const ValidJob job = withLaws(ValidJob(jobs[state.range(0)]));
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
@@ -150,7 +150,7 @@ void cycle(benchmark::State& state) {
   config.homing_timeout = 1;
   config.spindle_timeout = 1;
   const auto loop = std::make_unique<ControlLoop>(drive, config);
-  loop->postSwivel(paperJob(60).process.setup_swivel);
+  loop->postSwivel(paperJob(60).process().setup_swivel);
   const ros::Time time(1000);
   const ros::Duration period(config.machine.period);
   const GrindProgram program(ValidJob(paperJob(60)), config.machine, config.machine.park);

@@ -20,7 +20,7 @@ CORE = ('curve', 'job', 'motion', 'machine')
 LOCALE = re.compile(r'\b(?:ato[fl]|sto(?:f|d|ld)|strto(?:f|d|ld)|v?sn?printf|v?asprintf|vf?printf|fprintf|v?[fs]?scanf|setlocale|'
                     r'locale::global)\((?!stderr)')
 KNOWS = '#include "flute_grinder/job/c_locale.h"'
-LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h',
+LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h', 'OpenSSL': r'openssl/\w+\.h',
              'urdfdom': r'urdf_\w+/\w+\.h', 'tinyxml2': r'tinyxml2\.h'}
 
 

@@ -20,7 +20,7 @@ done
 
 # What plans and streams a job, without ROS.
 g++ -std=c++17 -I include -I /usr/include/eigen3 "$root/examples/4_stream_a_job.cpp" -o "$folder/stream" \
-  -L lib -lflute_grinder_motion -lflute_grinder_job -lflute_grinder_curve -lyaml-cpp
+  -L lib -lflute_grinder_motion -lflute_grinder_job -lflute_grinder_curve -lyaml-cpp -lcrypto
 (cd share/flute_grinder && "$folder/stream") | grep -q '^planned: 8587 setpoints$'
 
 # What a drive plugin includes, and not the drives' own headers.

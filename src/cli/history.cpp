@@ -8,9 +8,9 @@
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/regular_file.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/verdict.h"
 #include "flute_grinder/report/tool_records.h"
@@ -373,11 +373,11 @@ std::string lastRecord(const std::string& node, const std::string& folder) {
 std::string doneOperations(const std::string& node, const std::string& job) {
   GrindJob tool;
   try {
-    tool = readJobFile(job, {}, "1");
+    tool = readJobFile(job, "1");
   } catch (const JobFileError&) {
     return "";
   }
-  if (tool.operations.empty()) return "";
+  if (tool.operations.size() < 2) return "";
   std::vector<std::string> paths;
   try {
     paths = pathsIn(historyFolder(node));
@@ -394,11 +394,10 @@ std::string doneOperations(const std::string& node, const std::string& job) {
     }
   }
   std::string done;
-  for (int i = 0; i < static_cast<int>(tool.operations.size()); ++i) {
-    const GrindJob operation = tool.ofOperation(i);
+  for (const GrindJob& operation : tool.ofAllOperations()) {
     const auto found = ended.find(jobDigest(operation));
     if (found == ended.end()) continue;
-    done += (done.empty() ? "" : ", ") + std::string(toString(operation.process.kind)) + " (" +
+    done += (done.empty() ? "" : ", ") + std::string(toString(operation.process().kind)) + " (" +
             timeText(timeOf(found->second), false) + ")";
   }
   return "done by the records: " + (done.empty() ? "none" : done);

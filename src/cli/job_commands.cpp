@@ -60,8 +60,7 @@ void addSetup(Commands& commands) {
                    "jobs/paper.yaml --write", [options] { return runSetup(*options); });
   addJob(command, options->job);
   addOperation(command, options->operation);
-  addChoice(command, "--keep", options->keep, "leave this figure as it is in the job file");
-  command.add_flag("--write", options->write, "write the set-up into the job file; all else in it stays as it is");
+  command.add_flag("--write", options->write, "write the set-up file that the job file names");
   addMachine(command, options->parameters, options->urdf);
   addJson(command, options->json);
 }

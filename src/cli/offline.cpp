@@ -86,7 +86,7 @@ void printStatistics(const PathStatistics& s) {
 }  // namespace
 
 int runTable(const TableOptions& options) {
-  const GrindJob job = readJobFile(options.job, {}, toString(OperationKind::kFlute));
+  const GrindJob job = readJobFile(options.job, toString(OperationKind::kFlute));
   std::optional<TableCsv> csv;
   if (!options.csv.empty()) csv.emplace(options.csv);
   const EvenStepRule rule = options.even_step.value_or(job.interpolation.even_step);
@@ -126,7 +126,7 @@ void printPlan(const flute_grinder::PlanReport& plan) {
 }
 
 int runPlan(const PlanOptions& options) {
-  const ValidJob job(readJobFile(options.job, {}, options.operation));
+  const ValidJob job(readJobFile(options.job, options.operation));
   const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
   const Machine& machine = files.config.loop.machine;
   std::optional<SetpointCsv> csv;

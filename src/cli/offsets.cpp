@@ -259,7 +259,7 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   request.large_change_ok = static_cast<std::uint8_t>(options.yes);
   ros::NodeHandle nh(node);
   if (axis == kY) {
-    const GrindJob job = readJobFile(options.job, {}, options.operation);
+    const GrindJob job = readJobFile(options.job, options.operation);
     const StateWatch watch(nh);
     const OffsetWatch offsets(nh);
     if (const int status = awaitAgreement(nh, watch, offsets)) return status;

@@ -47,9 +47,10 @@ flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& 
   goal.set_offset = 1;
   goal.large_change_ok = static_cast<std::uint8_t>(options.yes);
   goal.set_by = userAtHost();
-  goal.job = goalFromFile(options.job, options.operation);
+  const JobFile job = openJobFile(options.job, options.operation);
+  goal.job = goalFromFile(job);
   if (row.always_for_job) {
-    goal.flange = flangeOf(options.job, goal.job.operation, options.flange_mm);
+    goal.flange = flangeOf(job, options.flange_mm);
   } else {
     goal.diameter = *options.at_mm * units::kMillimetre;
   }

@@ -2,11 +2,10 @@
 
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "cli/output_file.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
+#include "flute_grinder/geometry/write_setup.h"
 #include "flute_grinder/plan/planned_job.h"
 
 #include <cstdio>
@@ -19,7 +18,7 @@ using units::kDegree;
 using units::kMillimetre;
 
 Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   const auto& complete = setup.check.complete;
   const TouchReadings touch = touchReadings(setup.job, above_swivel.value_or(0));
   Json json{{"swivel_deg", p.setup_swivel / kDegree},
@@ -61,18 +60,18 @@ std::string otherRefusals(const GrindJob& job, const MachineFiles& files) {
 }  // namespace
 
 int runSetup(const SetupOptions& options) {
-  const GrindJob job = readJobFile(options.job, unsolvedFields(options.keep), options.operation);
+  const JobToSetUp asked = readJobToSetUp(options.job, options.operation);
+  if (options.write) requireSetupFile(asked);
   const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
   const LoopConfig& config = files.config.loop;
-  if (options.write) requireNotRead(options.job + ".before");
   const Range swivel = config.machine.swivel;
-  const auto result = solveJobSetup(job, swivel, options.keep);
+  const auto result = solveJobSetup(asked.job, swivel, asked.wanted);
   if (const auto* refusal = std::get_if<std::string>(&result)) {
     std::fprintf(stderr, "%s\n", refusal->c_str());
     return 1;
   }
   const auto& setup = std::get<JobSetup>(result);
-  const std::optional<double> above_swivel = wheelAboveSwivel(options.job, setup.job, config.geometry);
+  const std::optional<double> above_swivel = wheelAboveSwivel(asked.wheel, setup.job, config.geometry);
   if (options.json) {
     print(toJson(setup, above_swivel));
   } else {
@@ -81,10 +80,10 @@ int runSetup(const SetupOptions& options) {
   const std::string refusal = planRefusal(setup);
   std::fputs(refusal.c_str(), stderr);
   if (!refusal.empty()) {
-    if (options.write) std::fprintf(stderr, "%s: nothing was written\n", options.job.c_str());
+    if (options.write) std::fprintf(stderr, "%s: nothing was written\n", asked.setup_path.c_str());
     return 1;
   }
-  if (options.write) writeSetup(options.job, setup);
+  if (options.write) writeSetup(asked, setup.job);
   std::fputs(otherRefusals(setup.job, files).c_str(), stderr);
   return 0;
 }

@@ -1,8 +1,5 @@
 #pragma once
 
-#include "flute_grinder/geometry/setup_solver.h"
-
-#include <optional>
 #include <string>
 
 namespace grinder {
@@ -10,15 +7,14 @@ namespace grinder {
 /// Arguments of `grind setup`.
 struct SetupOptions {
   std::string job;
-  std::string operation;  ///< one of several operations; empty for the only one
-  std::optional<SetupFigure> keep;
-  bool write = false;      ///< writes the set-up into the job's file
+  std::string operation;   ///< one of several operations; empty for the only one
+  bool write = false;      ///< writes the set-up into its file
   std::string parameters;  ///< YAML of the machine
   std::string urdf;
   bool json = false;
 };
 
-/// Solves the set-up of a job, prints the sheet, and writes it into the job's file. @return the exit status.
+/// Solves the set-up of a job, prints the sheet, and writes the set-up file. @return the exit status.
 /// @throw FileError, JobFileError, ParameterError if a file cannot be read or written.
 int runSetup(const SetupOptions& options);
 

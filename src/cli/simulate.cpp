@@ -32,7 +32,7 @@ using units::kMillimetre;
 
 /// The range of X in which the wheel can have touched the cutter.
 Range reach(const GrindJob& job) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   double to = job.cutter.flute_length + p.overtravel_shank + p.wheel_diameter / 2;
   const double rise = std::tan(job.cutter.cone_angle);
   if (rise < 0) to = std::min(to, job.cutter.end_diameter / 2 / -rise);
@@ -58,7 +58,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 /// Writes the cutter as a solid, with the part of the shank into which the flutes run out and one diameter more.
 void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double length = job.cutter.flute_length;
   const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
   const SolidExtent extent{0, length, job.cutter.shank_diameter, length + run_out + job.cutter.shank_diameter};
@@ -86,7 +86,7 @@ Source sourceOfBag(const SimulateOptions& options, const std::string& name) {
     throw FileError(options.file + ": the bag does not have the goal of " + run.place() +
                     "; give its job file with --job");
   }
-  const ValidJob job = options.job.empty() ? *run.job() : ValidJob(readJobFile(options.job, {}, options.operation));
+  const ValidJob job = options.job.empty() ? *run.job() : ValidJob(readJobFile(options.job, options.operation));
   const std::string place = name + ", " + run.place() + recordedBeforeText(run);
   return {job, place, options.file, std::move(run), {}};
 }
@@ -96,7 +96,7 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
   const std::string file = options.last ? lastRecord(node, options.folder) : options.file;
   const std::string name = std::filesystem::path(file).filename();
   if (isBag(file)) return sourceOfBag(options, name);
-  if (!isRecord(file)) return {ValidJob(readJobFile(file, {}, options.operation)), name, file, {}, {}};
+  if (!isRecord(file)) return {ValidJob(readJobFile(file, options.operation)), name, file, {}, {}};
   ToolRecords records(file);
   const ValidJob job = *records.last().job;
   return {job, name, file, {}, std::move(records)};

@@ -6,7 +6,6 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/job/format.h"
-#include "flute_grinder/job/job_edit.h"
 #include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/network/user_at_host.h"
 
@@ -16,7 +15,6 @@
 #include <cstdio>
 #include <ctime>
 #include <system_error>
-#include <vector>
 
 namespace grinder {
 
@@ -67,7 +65,7 @@ Json toJson(const WheelFile& wheel) {
   const GrindProcess& p = wheel.process;
   const auto mm = [](double metres) { return parseNumber(millimetres(metres).c_str()); };
   Json points = Json::array();
-  for (const ProfilePoint& point : wheel.points) points.push_back({mm(point.w), mm(point.radius)});
+  for (const ProfilePoint& point : wheel.process.wheel_points) points.push_back({mm(point.w), mm(point.radius)});
   const bool tapered = isTapered(p.wheel_profile);
   return {{"profile", toString(p.wheel_profile)},
           {"diameter_mm", mm(wheel.diameter())},
@@ -94,17 +92,29 @@ bool isPlausible(const char* option, double measured, double before, bool force)
   return false;
 }
 
+/// A text of YAML with a key of its outermost map replaced, or added at the end.
+/// @param item key and value, in whole lines.
+std::string withItem(std::string text, const std::string& key, const std::string& item) {
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  const std::string begin = "\n" + key + ":";
+  const std::size_t found = ("\n" + text).find(begin);
+  if (found == std::string::npos) return text + item;
+  // The value's own lines are indented.
+  std::size_t end = text.find('\n', found) + 1;
+  while (text[end] == ' ') end = text.find('\n', end) + 1;
+  return text.replace(found, end - found, item);
+}
+
 /// Writes the new sizes of a wheel into its file, if they are allowed.
 /// @param old text of the file, from which `before` was read. @param dressed whether it was dressed, not only measured.
 int update(const std::string& path, const std::string& old, const WheelFile& before, double diameter, double width,
            bool dressed) {
   const std::string date = timeText(static_cast<double>(std::time(nullptr)), true);
-  std::vector<JobEdit> edits{{"measured.date", date}, {"measured.diameter_mm", millimetres(diameter)}};
   const bool same_width = std::abs(width - before.process.wheel_width) <= kRounding;
-  if (!same_width) edits.push_back({"measured.width_mm", millimetres(width)});
-  edits.push_back({"measured.by", whoami()});
-  if (dressed) edits.push_back({"dressed", date});
-  const std::string text = editJob(old, path, edits);
+  std::string measured = "measured:\n  date: " + date + "\n  diameter_mm: " + millimetres(diameter) + "\n";
+  if (width != before.new_width) measured += "  width_mm: " + millimetres(width) + "\n";
+  std::string text = withItem(old, "measured", measured + "  by: " + whoami() + "\n");
+  if (dressed) text = withItem(text, "dressed", "dressed: " + date + "\n");
   try {
     const WheelFile after = parseWheel(text, path);
     replaceFile(path, text);

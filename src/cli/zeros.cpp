@@ -7,8 +7,6 @@
 #include "cli/state_watch.h"
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/offset_basis.h"
 
 #include <cstdio>
@@ -22,8 +20,9 @@ using units::kMillimetre;
 
 /// The zero point [m]; nothing, with the reason on stderr, if the cutter does not stand out far enough.
 std::optional<Eigen::Vector3d> zeroOf(const ZerosOptions& options, const MachineGeometry& geometry) {
-  const GrindJob job = readJobFile(options.job, {}, options.operation);
-  const double flange = flangeOf(options.job, job.operation, options.flange_mm);
+  const JobFile file = openJobFile(options.job, options.operation);
+  const GrindJob& job = file.job;
+  const double flange = flangeOf(file, options.flange_mm);
   const double stickout = options.stickout_mm * kMillimetre;
   if (stickout >= job.cutter.flute_length) return workZero(geometry, job, {flange, stickout});
   std::fprintf(stderr, "--stickout = %.10g mm; allowed: the flutes' length or more, %.10g mm\n", options.stickout_mm,
@@ -42,13 +41,13 @@ void printZero(const Eigen::Vector3d& metres, bool json) {
 
 }  // namespace
 
-double flangeOf(const std::string& job, int operation, const std::optional<double>& flange_mm) {
+double flangeOf(const JobFile& job, const std::optional<double>& flange_mm) {
   if (flange_mm) return *flange_mm * kMillimetre;
-  const std::string wheel = wheelFileOf(job, operation);
-  if (wheel.empty()) throw std::invalid_argument("--flange is missing, and " + job + " names no wheel file");
-  const std::optional<double> flange = readWheelFile(wheel).flange;
-  if (!flange) throw std::invalid_argument("--flange is missing, and " + wheel + " has no flange_mm");
-  return *flange;
+  if (!job.wheel) throw std::invalid_argument("--flange is missing, and " + job.path + " names no wheel file");
+  if (!job.wheel->flange) {
+    throw std::invalid_argument("--flange is missing, and " + job.wheel_path + " has no flange_mm");
+  }
+  return *job.wheel->flange;
 }
 
 int printZeros(const ZerosOptions& options) {

@@ -41,7 +41,7 @@ bool isUp(MoveKind kind) { return kind == MoveKind::kLift || kind == MoveKind::k
 /// wheel, everything above its lower side is within the wheel, because no work is higher than its spindle.
 bool risesOut(const GrindProgram& program, const WheelProfile& wheel, const Axes& from) {
   const GrindJob& job = *program.job();
-  const double spindle = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + from[kY];
+  const double spindle = job.cutter.end_diameter / 2 + job.process().wheel_diameter / 2 + from[kY];
   return spindle >= workRadiusNear(job, wheel, from[kX]);
 }
 
@@ -59,7 +59,7 @@ std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& pat
 
 /// See CollisionJob::work_clearance.
 double workClearance(const GrindProgram& program) {
-  return std::min(program.machine().collision_clearance, kWorkPart * program.job()->process.clearance);
+  return std::min(program.machine().collision_clearance, kWorkPart * program.job()->process().clearance);
 }
 
 Reason reasonOf(const ClosestPlace& place, const GrindProgram& program) {
@@ -83,7 +83,7 @@ Reason reasonInWork(const ClosestPlace& place, const GrindProgram& program) {
   Reason reason = reasonOf(place, program);
   if (isUp(reason.move)) return reason;  // another clearance would not change where the move begins
   reason.field = "process.clearance";
-  reason.low = program.job()->process.clearance;
+  reason.low = program.job()->process().clearance;
   reason.limit = workClearance(program);
   return reason;
 }
@@ -113,8 +113,8 @@ ProgramPath pathOf(const GrindProgram& program) {
 CollisionJob collisionJobOf(const GrindProgram& program) {
   const GrindJob& job = *program.job();
   const bool has_neck = job.cutter.neck_length > 0;
-  return {wheelOf(job).worn(job.process.wheel_wear),
-          job.process.wheel_diameter / 2,
+  return {wheelOf(job).worn(job.process().wheel_wear),
+          job.process().wheel_diameter / 2,
           setupOf(program.job(), 0),
           job.cutter,
           job.cutter.shank_diameter,

@@ -103,7 +103,7 @@ struct Asked {
 std::vector<Gouge> gougesOf(const RunStrokes& strokes, double min) {
   const ValidJob& job = strokes.job();
   const GroundCutter asked = groundCutterOf(job);
-  const Range blank{0, job->cutter.flute_length + job->process.overtravel_shank};
+  const Range blank{0, job->cutter.flute_length + job->process().overtravel_shank};
   std::vector<Gouge> gouges;
   for (const RunStroke& stroke : strokes.strokes()) {
     const GroundTooth& tooth = asked.teeth()[static_cast<std::size_t>(stroke.place.tooth)];

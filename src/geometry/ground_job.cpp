@@ -97,7 +97,7 @@ class Checker {
   void checkRange(const std::optional<Range>& complete) {
     if (job_.relief(0) != nullptr) return;
     const double length = job_->cutter.flute_length;
-    if (job_->process.incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
+    if (job_->process().incomplete_ok || (complete && complete->from <= 0 && complete->to >= length)) return;
     const Range range = complete.value_or(Range{});
     add(ReasonKind::kIncomplete, 0, 0, Unit::kMetre, range.to, length, range.from);
   }
@@ -111,7 +111,7 @@ class Checker {
       for (const WheelSweep& sweep : flute) {
         const auto spoils = sectionSpoilsFrom(sweep, nearest, cutter.cutter().radius(nearest));
         if (!spoils) continue;
-        const double overtravel = opens ? job_->process.overtravel_end : job_->process.overtravel_shank;
+        const double overtravel = opens ? job_->process().overtravel_end : job_->process().overtravel_shank;
         const double limit = std::abs(*spoils - nearest);
         if (overtravel < limit) continue;
         return reasons_.push_back(
@@ -241,11 +241,12 @@ GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
 }  // namespace
 
 WheelProfile wheelOf(const GrindJob& job) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   switch (p.wheel_profile) {
     case WheelShape::kStraight: return WheelProfile::straight(p.wheel_diameter, p.wheel_width, cornerRadii(p));
     case WheelShape::kFullRadius: return WheelProfile::fullRadius(p.wheel_diameter, p.wheel_width);
-    case WheelShape::kPoints: return WheelProfile(job.wheel_points, cornerRadii(p)).withDiameter(p.wheel_diameter);
+    case WheelShape::kPoints:
+      return WheelProfile(job.process().wheel_points, cornerRadii(p)).withDiameter(p.wheel_diameter);
     case WheelShape::kAngled:
     case WheelShape::kCup: break;
   }
@@ -254,7 +255,7 @@ WheelProfile wheelOf(const GrindJob& job) {
 }
 
 WheelSetup setupOf(const ValidJob& job, int tooth) {
-  return {job->process.setup_swivel, job->process.setup_height, job.strokeLaw(tooth).x_shift};
+  return {job->process().setup_swivel, job->process().setup_height, job.strokeLaw(tooth).x_shift};
 }
 
 GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear) {
@@ -271,7 +272,7 @@ GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear) 
 }
 
 WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStroke& stroke) {
-  return {ConicalCutter(job.strokeLaw(tooth).cutter), wheelOf(*job).worn(wear), job->process.wheel_diameter / 2,
+  return {ConicalCutter(job.strokeLaw(tooth).cutter), wheelOf(*job).worn(wear), job->process().wheel_diameter / 2,
           setupOf(job, tooth), stroke};
 }
 

@@ -41,14 +41,6 @@ std::string textOf(double value, double scale, int decimals) {
   return number == "-0" ? "0" : number;
 }
 
-JobEdit editOf(const char* path, double value, int decimals) {
-  JobEdit edit{fieldName(path), ""};
-  visitJobFields([&](const JobField& field, auto) {
-    if (field.path == std::string_view(path)) edit.value = textOf(value, shopScale(field.unit), decimals);
-  });
-  return edit;
-}
-
 std::string asked(const char* path, double value, Unit unit) {
   return fieldName(path) + " = " + text(Quantity{value, unit}, 5);
 }
@@ -78,7 +70,7 @@ std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
   };
   if (mend.wheel_diameter > 0) {
     return "\nIt would be set up with " +
-           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process.wheel_wear);
+           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process().wheel_wear);
   }
   if (mend.wheel_width > 0) return "\nIt would be set up with " + figure("process.wheel_width", mend.wheel_width);
   if (mend.core_diameter[0] > 0) {
@@ -117,7 +109,7 @@ std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<Set
 }
 
 SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   SetupRequest r;
   r.cutter = job.cutter;
   r.cutter.spiral_angle = (askedSpiral(job).from + askedSpiral(job).to) / 2;
@@ -141,58 +133,29 @@ SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<S
   return r;
 }
 
-/// The key of a process in a job's file, which may have several processes.
-std::string keyIn(const GrindJob& job, const std::string& key) {
-  if (job.operations.empty()) return key;
-  return "operations[" + std::to_string(job.operation) + "]" + key.substr(key.find('.'));
-}
-
-/// Puts a figure into the job as read back from a file, and adds an edit that writes it there.
-void takeFigure(JobSetup& setup, const char* path, double& field, double value, double scale, int decimals) {
-  field = rounded(value, scale, decimals);
-  JobEdit edit = editOf(path, field, decimals);
-  edit.key = keyIn(setup.job, edit.key);
-  const auto same = [&](const JobEdit& other) { return other.key == edit.key; };
-  setup.edits.erase(std::remove_if(setup.edits.begin(), setup.edits.end(), same), setup.edits.end());
-  setup.edits.push_back(edit);
-}
-
 /// Lengthens the overtravel to the set-up's requirement, where it is shorter.
 void takeOvertravel(JobSetup& setup) {
-  GrindProcess& p = setup.job.process;
-  const auto lengthen = [&](const char* path, double& field, double needed) {
+  GrindProcess& p = setup.job.process();
+  const auto lengthen = [](double& field, double needed) {
     if (field >= needed) return;
     const double up = std::pow(10, -kOvertravelDecimals) / 2 * units::kMillimetre;
-    takeFigure(setup, path, field, needed + up, units::kMillimetre, kOvertravelDecimals);
+    field = rounded(needed + up, units::kMillimetre, kOvertravelDecimals);
   };
-  lengthen("process.overtravel_end", p.overtravel_end, setup.overtravel[0]);
-  lengthen("process.overtravel_shank", p.overtravel_shank, setup.overtravel[1]);
+  lengthen(p.overtravel_end, setup.overtravel[0]);
+  lengthen(p.overtravel_shank, setup.overtravel[1]);
 }
 
-/// Puts the solved figures into the job, as read back from a file.
+/// Puts the solved figures into the job, as read back from a file. A fixed depth keeps its decimals.
 void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
-  GrindProcess& p = setup.job.process;
-  const auto take = [&](const char* path, double& field, double value, double scale, int decimals) {
-    takeFigure(setup, path, field, value, scale, decimals);
-  };
-  // A fixed depth keeps the file's decimals.
-  if (keep != SetupFigure::kDepth || solved.depth != p.depth)
-    take("process.depth", p.depth, solved.depth, units::kMillimetre, kLengthDecimals);
-  if (keep != SetupFigure::kSwivel) {
-    take("process.setup_swivel", p.setup_swivel, solved.setup.swivel, units::kDegree, kAngleDecimals);
-  }
-  if (keep != SetupFigure::kHeight) {
-    take("process.setup_height", p.setup_height, solved.setup.height, units::kMillimetre, kLengthDecimals);
-  }
+  GrindProcess& p = setup.job.process();
+  const auto millimetres = [](double value) { return rounded(value, units::kMillimetre, kLengthDecimals); };
+  if (keep != SetupFigure::kDepth) p.depth = millimetres(solved.depth);
+  if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(solved.setup.swivel, units::kDegree, kAngleDecimals);
+  if (keep != SetupFigure::kHeight) p.setup_height = millimetres(solved.setup.height);
   // A flute of constant depth needs no depth at its end.
-  if (p.depth_end > 0 || solved.depth_end != solved.depth) {
-    take("process.depth_end", p.depth_end, solved.depth_end, units::kMillimetre, kLengthDecimals);
-  }
-  if (solved.setup.x_shift != p.setup_x_shift) {
-    take("process.setup_x_shift", p.setup_x_shift, solved.setup.x_shift, units::kMillimetre, kLengthDecimals);
-  }
+  if (p.depth_end > 0 || solved.depth_end != solved.depth) p.depth_end = millimetres(solved.depth_end);
+  p.setup_x_shift = millimetres(solved.setup.x_shift);
   setup.overtravel = solved.overtravel;
-  setup.overtravel_before = {p.overtravel_end, p.overtravel_shank};
   takeOvertravel(setup);
   setup.limit = solved.limit;
   setup.margin = solved.margin;
@@ -219,7 +182,7 @@ void giveRoom(JobSetup& setup) {
 /// places of the stroke where the flute's ends are formed.
 /// @return whether it was too short. Near a cone's apex, where no overtravel is enough, it stays.
 bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   const double length = setup.job.cutter.flute_length;
   const auto& complete = setup.check.complete;
   if (!complete || solved.complete_from > 0 || solved.complete_to < length) return false;
@@ -229,18 +192,13 @@ bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
   return complete->from > 0 || complete->to < length;
 }
 
-/// Copies the solved operation into the list of several operations.
-void intoList(GrindJob& job) {
-  if (!job.operations.empty()) job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
-}
-
 std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const Range& swivel,
                                                      std::optional<SetupFigure> keep) {
   if (keep && *keep != SetupFigure::kSwivel) {
-    return std::string("--keep ") + toString(*keep) + "; allowed for a relief: swivel";
+    return std::string("the ") + toString(*keep) + " of a relief is not kept; allowed: swivel";
   }
   const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
-  const auto asked = keep ? std::optional(job.process.setup_swivel) : std::nullopt;
+  const auto asked = keep ? std::optional(job.process().setup_swivel) : std::nullopt;
   const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
@@ -248,10 +206,9 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   }
   JobSetup setup;
   setup.job = job;
-  GrindProcess& p = setup.job.process;
-  if (!keep) takeFigure(setup, "process.setup_swivel", p.setup_swivel, found.swivel, units::kDegree, kAngleDecimals);
-  takeFigure(setup, "process.setup_height", p.setup_height, found.height, units::kMillimetre, kLengthDecimals);
-  intoList(setup.job);
+  GrindProcess& p = setup.job.process();
+  if (!keep) p.setup_swivel = rounded(found.swivel, units::kDegree, kAngleDecimals);
+  p.setup_height = rounded(found.height, units::kMillimetre, kLengthDecimals);
   setup.relief = JobSetup::Relief{found.width, found.next_edge, found.land_end_clearance};
   setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
   return setup;
@@ -263,7 +220,6 @@ JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional
   setup.job = job;
   take(solved, keep, setup);
   for (int i = 0;; ++i) {
-    intoList(setup.job);
     const ValidJob valid(setup.job);
     if (i == 0 && !hasLaws(valid)) {
       giveRoom(setup);
@@ -292,34 +248,25 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
   return setupWith(std::get<SolvedSetup>(result), job, keep);
 }
 
-/// Transfers the set-up found for a job with rounded numbers to the job itself, with the numbers written into its file.
-JobSetup inJob(GrindJob job, JobSetup setup) {
+/// Transfers the set-up found for a job with rounded numbers to the job itself.
+JobSetup inJob(GrindJob job, JobSetup setup, std::optional<SetupFigure> keep) {
   visitJobFields([&](const JobField& field, auto of) {
-    const std::string key = keyIn(job, fieldName(field.path));
-    const auto is_own = [&](const JobEdit& edit) { return edit.key == key; };
-    if (std::any_of(setup.edits.begin(), setup.edits.end(), is_own)) of(job) = of(setup.job);
+    const bool is_kept = keep && field.path == std::string_view(rowOf(*keep).path);
+    if (isOfSetup(field) && !is_kept) of(job) = of(setup.job);
   });
-  intoList(job);
   setup.job = std::move(job);
   return setup;
 }
 
 }  // namespace
 
-std::vector<std::string> unsolvedFields(std::optional<SetupFigure> keep) {
-  std::vector<std::string> fields;
-  if (keep != SetupFigure::kSwivel) fields.emplace_back("process.setup_swivel");
-  if (keep != SetupFigure::kHeight) fields.emplace_back("process.setup_height");
-  if (keep != SetupFigure::kDepth) fields.emplace_back("process.depth");
-  return fields;
-}
-
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep) {
   const GrindJob job = roundedOff(asked);
   try {
-    auto found = isRelief(job.process.kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
-    if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup));
+    auto found =
+        isRelief(job.process().kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
+    if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup), keep);
     return found;
   } catch (const InvalidJob& error) {
     return "the set-up does not suit the job: " + text(error.reasons());

@@ -229,7 +229,7 @@ class Trials {
   }
 
   ReliefWheel wheelAt(double swivel) const {
-    ReliefWheel wheel = reliefWheelOf(job_.process);
+    ReliefWheel wheel = reliefWheelOf(job_.process());
     wheel.swivel = swivel;
     return wheel;
   }
@@ -261,7 +261,7 @@ class Trials {
   /// the land's end.
   double leastMargin(double swivel, const Needs& needs, double whole) const {
     const double rounding = kLeastMargin * whole;
-    const double corner = std::max(job_.process.wheel_corner_radius_lower, job_.process.wheel_corner_radius_upper);
+    const double corner = std::max(job_.process().wheel_corner_radius_lower, job_.process().wheel_corner_radius_upper);
     if (land_ > 0 || corner == 0) return rounding;
     double low = -corner, high = rounding;
     if (!(at(swivel, needs, low, whole).next_edge_slack > 0)) return rounding;
@@ -327,9 +327,9 @@ class Trials {
 
   ValidJob jobWith(const ReliefSetup& setup) const {
     GrindJob job = job_;
-    job.process.setup_swivel = setup.swivel;
-    job.process.setup_height = setup.height;
-    job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
+    job.process().setup_swivel = setup.swivel;
+    job.process().setup_height = setup.height;
+    job.operations[static_cast<std::size_t>(job.operation)] = job.process();
     return ValidJob(std::move(job)).withEdges(flutes_, edges_);
   }
 
@@ -371,8 +371,8 @@ ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const R
     Tried other = trials.anywhere(*asked);
     return trials.isConfirmed(other) ? other.setup : tried.setup;
   }
-  const double near = std::clamp(flutes->process.setup_swivel, swivel.from, swivel.to);
-  std::vector<double> swivels{near, job.process.setup_swivel};
+  const double near = std::clamp(flutes->process().setup_swivel, swivel.from, swivel.to);
+  std::vector<double> swivels{near, job.process().setup_swivel};
   for (double aside = kSwivelStep; aside <= swivel.to - swivel.from; aside += kSwivelStep) {
     swivels.push_back(near + aside);
     swivels.push_back(near - aside);

@@ -30,7 +30,7 @@ bool holds(const Range& range, double x) {
 
 double maxRadius(const ValidJob& job) {
   const ConicalCutter cutter(job->cutter);
-  return std::max(cutter.radius(0), cutter.radius(job->cutter.flute_length + job->process.overtravel_shank));
+  return std::max(cutter.radius(0), cutter.radius(job->cutter.flute_length + job->process().overtravel_shank));
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ bool RunStrokes::covers(const RunStroke& stroke, const ToothPass& place, double 
   const PathDeviation own = deviationAt(stroke.deviations, stroke.range, x);
   // A wheel that is smaller by then is narrower above its lowest point, in proportion to the height.
   const double wear = wearOf(stroke.place);
-  const double smaller = std::max(0.0, wear - wearOf(place)) / (job_->process.wheel_diameter / 2 - wear);
+  const double smaller = std::max(0.0, wear - wearOf(place)) / (job_->process().wheel_diameter / 2 - wear);
   // Along the wheel's radius it only has to be as deep: the part above that the other wheel removes is removed, too.
   return off.y - own.y >= 2 * radius_ * smaller - kSame &&
          std::abs(off.z - own.z) + radius_ * std::abs(off.a - own.a) <= kSame;

@@ -31,11 +31,9 @@ std::string wheelText(const GrindProcess& p) {
 
 std::string overtravelText(const JobSetup& setup) {
   const auto& [end, shank] = setup.overtravel;
-  const auto& [end_before, shank_before] = setup.overtravel_before;
-  std::string text = format("%.2f mm beyond the small end, %.2f mm toward the shank; the job has %g and %g mm", mm(end),
-                            mm(shank), mm(end_before), mm(shank_before));
-  if (end > end_before || shank > shank_before) text += ": too little";
-  return text;
+  const GrindProcess& p = setup.job.process();
+  return format("%g mm beyond the small end, %g mm toward the shank; the flutes need %.2f and %.2f mm",
+                mm(p.overtravel_end), mm(p.overtravel_shank), mm(end), mm(shank));
 }
 
 std::string shiftText(const GrindProcess& p) {
@@ -45,14 +43,14 @@ std::string shiftText(const GrindProcess& p) {
 }
 
 std::string lawOfFlute(const JobSetup& setup) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   return line("shift in X", shiftText(p)) +
          line("depth", format("%.3f mm at X = 0, %.3f mm at the flute's end", mm(p.depth), mm(p.depthEnd()))) +
          line("overtravel", overtravelText(setup));
 }
 
 std::string whatToSet(const JobSetup& setup, const Range& swivel) {
-  const GrindProcess& p = setup.job.process;
+  const GrindProcess& p = setup.job.process();
   return "set\n" + line("wheel", wheelText(p)) +
          line("swivel", format("%.3f deg; the machine's range is %g to %g deg", deg(p.setup_swivel), deg(swivel.from),
                                deg(swivel.to))) +
@@ -66,7 +64,7 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
 std::string wheelsPlace(const GrindJob& job, const std::optional<double>& above_swivel) {
   if (above_swivel)
     return line("", format("with the wheel's middle %.3f mm above the swivel's centre", mm(*above_swivel)));
-  const double lowered = 1 - std::cos(job.process.setup_swivel);
+  const double lowered = 1 - std::cos(job.process().setup_swivel);
   return line(
       "", format("%.4f mm less per mm of the wheel's middle above the swivel's centre, along the spindle", lowered));
 }
@@ -99,7 +97,7 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
     const JobSetup::Relief& r = *setup.relief;
     return line("next tooth", format("the wheel stays %.3f deg or more from its edge", deg(r.next_edge))) +
            line("rim", format("%.3f of %.3f mm of its width are behind the relief's start", mm(r.rim),
-                              mm(setup.job.process.wheel_width))) +
+                              mm(setup.job.process().wheel_width))) +
            (r.land_end_clearance
                 ? line("land's end", format("clearance %.3f to %.3f deg there", deg(r.land_end_clearance->from),
                                             deg(r.land_end_clearance->to)))
@@ -119,11 +117,11 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
 }  // namespace
 
 double upperFaceHeight(const GrindJob& job) {
-  return job.process.setup_height + wheelOf(job).upperFace() / std::cos(job.process.setup_swivel);
+  return job.process().setup_height + wheelOf(job).upperFace() / std::cos(job.process().setup_swivel);
 }
 
 double lowerFaceHeight(const GrindJob& job) {
-  return job.process.setup_height + wheelOf(job).lowerFace() / std::cos(job.process.setup_swivel);
+  return job.process().setup_height + wheelOf(job).lowerFace() / std::cos(job.process().setup_swivel);
 }
 
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel) {
@@ -131,11 +129,25 @@ std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::op
          whatLimits(setup, swivel);
 }
 
+std::string changesText(const std::optional<GrindProcess>& before, const GrindJob& solved) {
+  GrindJob had = solved;
+  if (before) had.process() = *before;
+  std::string text;
+  visitJobFields([&](const JobField& field, auto of) {
+    if (!isOfSetup(field) || !field.isOf(solved.process().kind)) return;
+    const double scale = shopScale(field.unit), was = of(had) / scale, is = of(solved) / scale;
+    text +=
+        format("  %-32s", field.file_key) + (before ? format("%.8g before, ", was) : "") + format("%.8g solved", is);
+    text += !before ? "\n" : is == was ? ": the same\n" : format(": %+.5f\n", is - was);
+  });
+  return text;
+}
+
 std::string planRefusal(const JobSetup& setup) {
   std::string text;
   for (const Reason& reason : setup.check.reasons) {
     text += "a plan would refuse this tool: " + grinder::text(reason);
-    const bool is_uneven = reason.kind == ReasonKind::kRake && setup.job.process.z_law == ZLaw::kPublished;
+    const bool is_uneven = reason.kind == ReasonKind::kRake && setup.job.process().z_law == ZLaw::kPublished;
     text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
   }
   return text;

@@ -1,9 +1,7 @@
 #include "flute_grinder/geometry/touch_off.h"
 
 #include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
-#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +15,7 @@ constexpr double kTouchTolerance = 1e-6;  ///< tolerance of the touching place o
 }  // namespace
 
 TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const WheelProfile wheel = wheelOf(job);
   TouchReadings touch;
   touch.y = 0 - p.wheel_wear;
@@ -27,13 +25,12 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel) {
   return touch;
 }
 
-std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine) {
-  const std::string wheel = wheelFileOf(file, job.operation);
-  const std::optional<double> flange = wheel.empty() ? std::nullopt : readWheelFile(wheel).flange;
-  if (!flange) return std::nullopt;
-  GrindProcess upright = job.process;
+std::optional<double> wheelAboveSwivel(const std::optional<WheelFile>& wheel, const GrindJob& job,
+                                       const MachineGeometry& machine) {
+  if (!wheel || !wheel->flange) return std::nullopt;
+  GrindProcess upright = job.process();
   upright.setup_swivel = 0;
-  return (wheelCentre(machine, upright, *flange) - machine.swivel_centre).z();
+  return (wheelCentre(machine, upright, *wheel->flange) - machine.swivel_centre).z();
 }
 
 double touchY(const GrindJob& job, double diameter) {
@@ -42,8 +39,8 @@ double touchY(const GrindJob& job, double diameter) {
 
 std::string heightRefusal(const GrindJob& job, double z) {
   const WheelProfile wheel = wheelOf(job);
-  const double height = job.process.setup_height + z;
-  const double w = -height / std::cos(job.process.setup_swivel);
+  const double height = job.process().setup_height + z;
+  const double w = -height / std::cos(job.process().setup_swivel);
   const double on_wheel = std::clamp(w, wheel.lowerFace(), wheel.upperFace());
   const bool meets =
       std::abs(w - on_wheel) <= kTouchTolerance && wheel.radius(on_wheel) >= wheel.maxRadius() - kTouchTolerance;

@@ -36,7 +36,7 @@ double aheadOf(const ConicalCutter& cutter, const ValidJob& flutes, EdgeAngles e
 
 /// @param job job with the published law.
 ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch) {
-  const GrindProcess& p = job->process;
+  const GrindProcess& p = job->process();
   const double rake = job->cutter.rake_angle;
   const auto found =
       correctRake(ConicalCutter(job.cutterOf(tooth)), wheelOf(*job).worn(p.wheel_wear), p.wheel_diameter / 2,
@@ -86,7 +86,7 @@ ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
     const ValidJob flutes = withLaws(ValidJob(job->ofOperation(0)), watch);
     return job.withEdges(flutes, edgesOf(flutes));
   }
-  if (job->process.z_law == ZLaw::kPublished) return job;
+  if (job->process().z_law == ZLaw::kPublished) return job;
   const ValidJob published =
       ValidJob(roundedOff(*job)).withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
   std::map<double, ZCorrection> by_spiral;

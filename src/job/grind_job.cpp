@@ -81,8 +81,8 @@ void checkSpirals(Checker& checker, const GrindJob& job) {
 void checkWheelPoints(Checker& checker, const GrindJob& job) {
   constexpr double rounding = 1e-9;
   constexpr double min = 0.05e-3, max = 250e-3;
-  const GrindProcess& p = job.process;
-  const std::vector<ProfilePoint>& points = job.wheel_points;
+  const GrindProcess& p = job.process();
+  const std::vector<ProfilePoint>& points = job.process().wheel_points;
   const char* const path = "process.wheel_points";
   if (p.wheel_profile != WheelShape::kPoints) {
     if (!points.empty()) checker.whole(path, static_cast<int>(points.size()), 0);
@@ -145,21 +145,10 @@ void checkOperations(Checker& checker, const GrindJob& job) {
   const auto ask = [&](const char* path, double value, Unit unit, const char* what) {
     if (!(value > 0)) checker.refuse(ReasonKind::kNotAllowed, path, {value, unit}, what);
   };
-  checker.whole("operation", job.operation, std::max(0, count - 1));
-  checker.whole("operations", count, countOf<OperationKind>());
   for (int i = 0; i < count && checker.good(); ++i) {
-    checker.whole("process.kind", static_cast<int>(job.operations[static_cast<std::size_t>(i)].process.kind), i, i);
+    checker.whole("process.kind", static_cast<int>(job.operations[static_cast<std::size_t>(i)].kind), i, i);
   }
   if (!checker.good()) return;
-  if (count == 0) return checker.whole("process.kind", static_cast<int>(job.process.kind), 0);
-  const GrindJob own = job.ofOperation(job.operation);
-  visitJobFields([&](const JobField& field, auto of) {
-    if (of(job) == of(own)) return;
-    checker.refuse(ReasonKind::kNotAllowed, field.path, {of(job), field.unit}, "as in its operation,", of(own));
-  });
-  visitJobChoices([&](const char* path, int, auto of) {
-    checker.whole(path, static_cast<int>(of(job)), static_cast<int>(of(own)), static_cast<int>(of(own)));
-  });
   if (count < 2) return;
   ask("cutter.clearance", c.clearance, Unit::kRadian, "more than 0 with a relief");
   ask("cutter.clearance_tolerance", c.clearance_tolerance, Unit::kRadian, "more than 0 with a relief");
@@ -178,7 +167,7 @@ void checkReliefWheel(Checker& checker, const GrindProcess& p) {
 /// Checks numbers that are each within their range against each other.
 void checkTogether(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double growth = std::tan(c.cone_angle);
   const auto radius = [&](double x) { return c.end_diameter / 2 + x * growth; };
   const double apex = -c.end_diameter / 2 / growth;  // X at which the cone's radius is 0
@@ -242,8 +231,12 @@ Range askedSpiral(const GrindJob& job) {
 
 std::vector<Reason> validate(const GrindJob& job) {
   Checker checker;
+  const int count = static_cast<int>(job.operations.size());
+  checker.whole("operations", count, kMaxOperations, 1);
+  if (checker.good()) checker.whole("operation", job.operation, count - 1);
+  if (!checker.good()) return checker.take();
   visitJobFields([&](const JobField& field, auto of) {
-    if (field.isOf(job.process.kind)) return checker.range(field, of(job));
+    if (field.isOf(job.process().kind)) return checker.range(field, of(job));
     if (of(job) == 0) return;
     checker.refuse(ReasonKind::kNotAllowed, field.path, {of(job), field.unit}, "0 for this operation");
   });
@@ -258,12 +251,15 @@ std::vector<Reason> validate(const GrindJob& job) {
 
 GrindJob GrindJob::ofOperation(int index) const {
   GrindJob job = *this;
-  if (operations.empty()) return job;
-  const GrindOperation& other = operations.at(static_cast<std::size_t>(index));
-  job.process = other.process;
-  job.wheel_points = other.wheel_points;
   job.operation = index;
+  job.process();  // throws where there is none
   return job;
+}
+
+std::vector<GrindJob> GrindJob::ofAllOperations() const {
+  std::vector<GrindJob> jobs(operations.size(), *this);
+  for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].operation = static_cast<int>(i);
+  return jobs;
 }
 
 std::vector<Reason> validateWheel(const GrindJob& job) {
@@ -276,7 +272,7 @@ std::vector<Reason> validateWheel(const GrindJob& job) {
   visitJobChoices([&](const char* path, int max, auto of) {
     if (of_wheel(path)) checker.whole(path, static_cast<int>(of(job)), max);
   });
-  if (checker.good()) checkWheel(checker, job.process);
+  if (checker.good()) checkWheel(checker, job.process());
   return checker.take();
 }
 

@@ -2,8 +2,8 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/flat_file.h"
+#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
-#include "flute_grinder/job/wheel_file.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -43,9 +43,7 @@ constexpr const char* kContent = "cutter, process or operations, and interpolati
 constexpr const char* kProcess = "process.";
 constexpr const char* kOperations = "operations";
 constexpr const char* kOperation = "operation";
-constexpr const char* kDepth = "process.depth";
-
-bool begins(std::string_view text, std::string_view with) { return text.substr(0, with.size()) == with; }
+constexpr const char* kSetupFile = "process.setup.file";
 
 /// The keys of one process in a file: of the only operation, or of an element of the list.
 class ProcessKeys {
@@ -59,13 +57,6 @@ class ProcessKeys {
     return begins(key, kProcess) ? section_ + std::string(key.substr(std::string_view(kProcess).size()))
                                  : std::string(key);
   }
-  /// A text in which the keys of a single operation are replaced by this operation's keys.
-  std::string in(std::string text) const {
-    for (std::size_t at = 0; (at = text.find(kProcess, at)) != std::string::npos; at += section_.size()) {
-      text.replace(at, std::string_view(kProcess).size(), section_);
-    }
-    return text;
-  }
 
  private:
   std::string section_;
@@ -76,9 +67,20 @@ bool isOfWheelFile(const JobField& field) {
   return begins(field.file_key, "process.wheel.") && std::string_view(field.path) != "process.wheel_wear_per_pass";
 }
 
+/// An operation of a job file beside its numbers.
+struct OperationFiles {
+  std::string wheel_path;  ///< path of the wheel file; empty if the job file states the wheel itself
+  std::optional<WheelFile> wheel;
+  std::string setup_path;             ///< path of the set-up file; empty if the job file states the set-up itself
+  std::optional<SetupFigure> wanted;  ///< figure that the job file asks for beside the set-up file
+  int line = 1;                       ///< line of the set-up file's name
+  std::string unsolved;               ///< why the set-up file has no set-up for this operation; empty if it has
+};
+
+/// The path of a file that a job file names.
 /// @param job the path of the job file.
-std::string wheelPath(const std::string& job, const std::string& wheel) {
-  return (std::filesystem::path(job).parent_path() / wheel).string();
+std::string besideJob(const std::string& job, const std::string& file) {
+  return (std::filesystem::path(job).parent_path() / file).string();
 }
 
 /// Refuses a text in place of the wheel's keys, which is most likely the path of a wheel file.
@@ -92,8 +94,10 @@ bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
   return true;
 }
 
+/// Mounts the wheel of a wheel file.
 /// @param path_of_job path of the job file in messages.
-void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, GrindJob& job) {
+void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, OperationFiles& files,
+                   GrindJob& job) {
   const std::string key = keys("process.wheel.file");
   const std::string& allowed = otherJobKey("process.wheel_file").allowed;
   std::string name;
@@ -104,10 +108,10 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   }
   file.refuseBeside(key, keys("process.wheel."), keys("process.wheel.wear_per_pass_mm"));
   if (!named) return;
-  const std::string path = wheelPath(path_of_job, name);
+  files.wheel_path = besideJob(path_of_job, name);
   std::string text;
   try {
-    text = readTextFile(path);
+    text = readTextFile(files.wheel_path);
   } catch (const JobFileError& error) {
     const std::filesystem::path folder = std::filesystem::absolute(path_of_job).parent_path();
     return file.fail(file.line(key), key + " = " + name + ": " + error.what() +
@@ -115,21 +119,29 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
                                          folder.lexically_normal().string());
   }
   try {
-    mountWheel(parseWheel(text, path), job);
+    files.wheel = parseWheel(text, files.wheel_path);
+    mountWheel(*files.wheel, job);
   } catch (const JobFileError& error) {
     file.add(error.what());
   }
 }
 
-/// Whether a file omits a number that is yet to be found.
-bool isToBeFound(const FlatFile& file, const std::string& key, const JobField& field,
-                 const std::vector<std::string>& unsolved) {
-  return !file.has(key) && std::find(unsolved.begin(), unsolved.end(), field.path) != unsolved.end();
+/// The figure of a set-up that an operation may ask for beside a set-up file; nothing for any other number.
+std::optional<SetupFigure> figureOf(const JobField& field, OperationKind kind) {
+  for (const SetupFigureRow& row : kSetupFigures) {
+    const bool is_allowed = !isRelief(kind) || row.value == SetupFigure::kSwivel;
+    if (is_allowed && std::string_view(row.path) == field.path) return row.value;
+  }
+  return std::nullopt;
 }
 
-/// How a missing number can be found; empty for most numbers.
-std::string remedy(std::string_view path) {
-  return path == kDepth || path.substr(0, path.find('_')) == "process.setup" ? "; 'grind setup --write' finds it" : "";
+/// The keys that figureOf() allows beside a set-up file.
+std::string figureKeys(OperationKind kind, const ProcessKeys& keys) {
+  std::string names;
+  visitJobFields([&](const JobField& field, auto) {
+    if (figureOf(field, kind)) names += (names.empty() ? "" : ", ") + keys(field.file_key);
+  });
+  return isRelief(kind) ? names : "one of " + names;
 }
 
 /// Whether a file omits a number that is optional. The elements of a pair are omitted together.
@@ -145,17 +157,18 @@ class OperationReader {
   OperationReader(FlatFile& file, ProcessKeys keys, const GrindProcess* before)
       : file_(file), keys_(std::move(keys)), before_(before) {}
 
-  GrindJob read(const std::string& name, const std::vector<std::string>& unsolved) {
+  GrindJob read(const std::string& name) {
     if (!keys_.single()) takeKind();
     takeSpirals(file_, job_);
+    takeSetupFile(name);
     const bool has_wheel_path = refuseWheelPath(file_, keys_);
     const bool has_wheel_file = has_wheel_path || file_.mentions(keys_("process.wheel.file"));
     visitJobFields([&](const JobField& field, auto of) {
-      if (!(has_wheel_file && isOfWheelFile(field))) takeNumber(field, of, unsolved);
+      if (!(has_wheel_file && isOfWheelFile(field))) takeNumber(field, of);
     });
     takeTeeth(file_, job_);
     if (has_wheel_file) {
-      if (!has_wheel_path) takeWheelFile(file_, keys_, name, job_);
+      if (!has_wheel_path) takeWheelFile(file_, keys_, name, files_, job_);
     } else {
       file_.know(keys_("process.wheel.file"));
       takeWheelShape(file_, keys_("process.wheel."), job_);
@@ -164,7 +177,35 @@ class OperationReader {
     return std::move(job_);
   }
 
+  const OperationFiles& files() const { return files_; }
+
  private:
+  void takeSetupFile(const std::string& name) {
+    const std::string key = keys_(kSetupFile);
+    std::string file;
+    files_.line = file_.line(key);
+    if (file_.mayHave(key) && file_.take(key, otherJobKey("process.setup_file").allowed, file))
+      files_.setup_path = besideJob(name, file);
+  }
+
+  /// Takes a figure of the set-up beside a set-up file, in which the others stand.
+  /// @return whether it is there.
+  bool takeWanted(const JobField& field, const std::string& key) {
+    if (!file_.has(key)) {
+      file_.know(key);
+      return false;
+    }
+    const auto figure = figureOf(field, job_.process().kind);
+    if (!figure || files_.wanted) {
+      file_.fail(file_.line(key), key + " stands beside " + keys_(kSetupFile) +
+                                      "; allowed beside it: " + figureKeys(job_.process().kind, keys_));
+      file_.drop(key);
+      return false;
+    }
+    files_.wanted = figure;
+    return true;
+  }
+
   void takeKind() {
     const std::string kind = keys_("process.kind"), relief = keys_("process.relief");
     std::string word;
@@ -176,7 +217,7 @@ class OperationReader {
     if (!which || !isRelief(*which)) {
       return file_.fail(file_.line(relief), relief + " = " + word + "; allowed: primary, secondary");
     }
-    job_.process.kind = *which;
+    job_.process().kind = *which;
   }
 
   /// Whether a relief takes a key from the preceding operation.
@@ -184,27 +225,26 @@ class OperationReader {
   bool inherits(const char* key) const { return before_ != nullptr && !file_.has(keys_(key)); }
 
   template <typename Of>
-  void takeNumber(const JobField& field, const Of& of, const std::vector<std::string>& unsolved) {
+  void takeNumber(const JobField& field, const Of& of) {
     const std::string key = keys_(field.file_key);
     double value = 0;
-    if (!field.isOf(job_.process.kind)) return;
+    if (!field.isOf(job_.process().kind)) return;
     if (std::string_view(field.path) == "process.clearance" && inherits(field.file_key)) {
-      job_.process.clearance = before_->clearance;
+      job_.process().clearance = before_->clearance;
       return file_.know(key);
     }
-    if (omits(file_, key, field)) return file_.know(key);
-    if (isToBeFound(file_, key, field, unsolved)) {
-      if (field.path == std::string_view(kDepth)) of(job_) = (job_.cutter.end_diameter - job_.cutter.core_diameter) / 2;
-      return file_.know(key);
-    }
+    const bool of_file = !files_.setup_path.empty() && isOfSetup(field);
+    if (of_file ? !takeWanted(field, key) : omits(file_, key, field)) return file_.know(key);
     std::string allowed = grinder::text(field.low(), field.high());
-    if (!file_.has(key)) allowed += remedy(field.path);
+    if (!file_.has(key) && isOfSetup(field)) {
+      allowed += "; or " + keys_(kSetupFile) + ", a file that 'grind setup --write' writes";
+    }
     file_.take(key, allowed, value);
     of(job_) = value * shopScale(field.unit);
   }
 
   void takeChoices() {
-    GrindProcess& p = job_.process;
+    GrindProcess& p = job_.process();
     file_.takeChoice("cutter.cut", job_.cutter.cut);
     file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
     const auto choice = [&](const std::string& key, auto& value) { file_.takeChoice(key, value); };
@@ -216,13 +256,14 @@ class OperationReader {
     if (isRelief(p.kind)) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
     const std::string incomplete_ok = keys_("process.incomplete_ok");
-    if (file_.mayHave(incomplete_ok)) file_.take(incomplete_ok, otherJobKey("process.incomplete_ok").allowed, p.incomplete_ok);
+    if (file_.mayHave(incomplete_ok))
+      file_.take(incomplete_ok, otherJobKey("process.incomplete_ok").allowed, p.incomplete_ok);
   }
 
   template <typename Value, typename Take>
   void takeOrInherit(const char* key, Value GrindProcess::*value, const Take& take) {
-    if (!inherits(key)) return take(keys_(key), job_.process.*value);
-    job_.process.*value = before_->*value;
+    if (!inherits(key)) return take(keys_(key), job_.process().*value);
+    job_.process().*value = before_->*value;
     file_.know(keys_(key));
   }
 
@@ -230,101 +271,165 @@ class OperationReader {
   ProcessKeys keys_;
   const GrindProcess* before_;
   GrindJob job_;
+  OperationFiles files_;
 };
 
-std::string sectionOf(std::size_t operation) { return element(kOperations, operation) + "."; }
+std::string sectionOf(int operation) { return element(kOperations, static_cast<std::size_t>(operation)) + "."; }
 
 /// The number of operations that a file lists; 0 for a single process.
-std::size_t operationsIn(const FlatFile& file) {
-  std::size_t count = 0;
-  while (count < kMaxOperations && file.mentionsSection(element(kOperations, count))) ++count;
+int operationsIn(const FlatFile& file) {
+  int count = 0;
+  while (count < kMaxOperations && file.mentionsSection(element(kOperations, static_cast<std::size_t>(count)))) ++count;
   return count;
 }
 
 void failInvalid(FlatFile& file, const ProcessKeys& keys, const GrindJob& job) {
-  for (const Reason& reason : validate(job)) {
-    file.fail(file.line(keys(fieldName(reason.field))), keys.in(grinder::text(reason)));
+  for (Reason reason : validate(job)) {
+    reason.field = keys(fieldName(reason.field));
+    file.fail(file.line(reason.field), grinder::text(reason));
   }
   file.throwErrors();
 }
 
 /// The index of an operation.
 /// @param named its number, from 1, or its kind; may be empty for a single operation.
-std::size_t operationNamed(const std::string& named, const std::vector<GrindOperation>& operations,
+std::size_t operationNamed(const std::string& named, const std::vector<GrindProcess>& operations,
                            const std::string& name) {
   std::string all;
   for (std::size_t i = 0; i < operations.size(); ++i) {
-    const std::string kind = toString(operations[i].process.kind);
+    const std::string kind = toString(operations[i].kind);
     if (named == kind || named == std::to_string(i + 1) || (named.empty() && operations.size() == 1)) return i;
     all += (all.empty() ? "" : ", ") + std::to_string(i + 1) + " or " + kind;
   }
   throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
+bool isWanted(const JobField& field, const OperationFiles& files) {
+  return files.wanted && std::string_view(field.path) == rowOf(*files.wanted).path;
+}
+
+/// The job with the set-up of clearSetup(), except the wanted figure.
+GrindJob withoutSetup(const GrindJob& job, const OperationFiles& files) {
+  GrindJob cleared = job;
+  clearSetup(cleared);
+  visitJobFields([&](const JobField& field, auto of) {
+    if (isWanted(field, files)) of(cleared) = of(job);
+  });
+  return cleared;
+}
+
+/// Takes the set-up of an operation from its set-up file, or says in `files` why there is none that fits.
+void takeSolved(OperationFiles& files, GrindJob& job) {
+  const GrindJob asked = withoutSetup(job, files);
+  try {
+    takeSetup(readTextFile(files.setup_path), files.setup_path, job);
+    visitJobFields([&](const JobField& field, auto of) {
+      constexpr int digits = 9;
+      const std::string is = text({of(job), field.unit}, digits), wanted = text({of(asked), field.unit}, digits);
+      if (!isWanted(field, files) || is == wanted) return;
+      throw JobFileError(files.setup_path + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
+                         wanted);
+    });
+  } catch (const JobFileError& error) {
+    job = asked;
+    files.unsolved = error.what();
+  }
+}
+
 /// Reads one operation, and the rest of the file except the other operations.
 /// @param file file from which nothing was taken.
-GrindJob readOperation(FlatFile file, const std::string& name, const std::vector<std::string>& unsolved,
-                       const std::string& section, const GrindProcess* before) {
-  const ProcessKeys keys(section);
+GrindJob readOperation(FlatFile file, const std::string& name, const ProcessKeys& keys, const GrindProcess* before,
+                       OperationFiles& files) {
   if (!keys.single()) {
-    for (std::size_t i = 0; i < kMaxOperations; ++i) {
-      if (sectionOf(i) != section) file.dropSection(sectionOf(i));
+    for (int i = 0; i < kMaxOperations; ++i) {
+      if (sectionOf(i) != keys(kProcess)) file.dropSection(sectionOf(i));
     }
-    // A record names its operation, and also repeats its values.
-    if (file.has(kOperation)) file.dropSection(kProcess);
-    file.drop(kOperation);
+    file.drop(kOperation);  // a record names its operation
   }
-  GrindJob job = OperationReader(file, keys, before).read(name, unsolved);
+  OperationReader reader(file, keys, before);
+  GrindJob job = reader.read(name);
   file.refuseTheRest();
   file.throwErrors();
-  if (keys.single()) failInvalid(file, keys, job);
+  files = reader.files();
+  if (!files.setup_path.empty()) takeSolved(files, job);
   return job;
+}
+
+/// A job file with all its operations.
+struct ParsedJob {
+  FlatFile file;
+  GrindJob job{};                       ///< the first operation's
+  std::vector<ProcessKeys> keys{};      ///< of each operation
+  std::vector<OperationFiles> files{};  ///< of each operation
+
+  /// @throw JobFileError unless the first operations are set up.
+  void requireSetups(std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (files[i].unsolved.empty()) continue;
+      const std::string which =
+          keys[i].single() ? "" : std::string("--operation ") + toString(job.operations[i].kind) + " ";
+      file.fail(files[i].line,
+                keys[i](kSetupFile) + " = " + files[i].unsolved + "; 'grind setup " + which + "--write' solves it");
+    }
+    file.throwErrors();
+  }
+
+  /// @param named as in operationNamed().
+  std::size_t indexOf(std::string named, const std::string& name) {
+    if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
+    return operationNamed(named, job.operations, name);
+  }
+};
+
+ParsedJob parseAll(const std::string& text, const std::string& name) {
+  ParsedJob parsed{FlatFile(text, name, kKind, kContent)};
+  for (int i = 0; i < operationsIn(parsed.file); ++i) parsed.keys.emplace_back(sectionOf(i));
+  if (parsed.keys.empty()) parsed.keys.emplace_back(kProcess);
+  std::vector<GrindProcess> all;
+  for (const ProcessKeys& keys : parsed.keys) {
+    OperationFiles& files = parsed.files.emplace_back();
+    parsed.job = readOperation(parsed.file, name, keys, all.empty() ? nullptr : &all.back(), files);
+    all.push_back(parsed.job.process());
+  }
+  parsed.job.operations = std::move(all);
+  for (const GrindJob& job : parsed.job.ofAllOperations()) {
+    failInvalid(parsed.file, parsed.keys[static_cast<std::size_t>(job.operation)], job);
+  }
+  return parsed;
+}
+
+JobFile jobFileOf(const ParsedJob& parsed, std::size_t operation, const std::string& path) {
+  const OperationFiles& files = parsed.files[operation];
+  return {path, parsed.job.ofOperation(static_cast<int>(operation)), files.wheel_path, files.wheel, files.setup_path};
+}
+
+JobFile open(const std::string& text, const std::string& name, const std::string& operation) {
+  ParsedJob parsed = parseAll(text, name);
+  parsed.requireSetups(parsed.files.size());
+  return jobFileOf(parsed, parsed.indexOf(operation, name), name);
 }
 
 }  // namespace
 
-GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved,
-                  const std::string& operation) {
-  const FlatFile whole(text, name, kKind, kContent);
-  const std::size_t count = operationsIn(whole);
-  if (count == 0) {
-    if (!operation.empty() && operation != "1" && operation != toString(OperationKind::kFlute)) {
-      throw JobFileError(name + ": operation = " + operation + "; allowed: 1 or flute, its only one");
-    }
-    return readOperation(whole, name, unsolved, kProcess, nullptr);
-  }
-  GrindJob job;
-  std::vector<GrindOperation> all;
-  for (std::size_t i = 0; i < count; ++i) {
-    job = readOperation(whole, name, unsolved, sectionOf(i), i == 0 ? nullptr : &all.back().process);
-    all.push_back({job.process, job.wheel_points});
-  }
-  job.operations = std::move(all);
-  FlatFile file = whole;
-  for (std::size_t i = 0; i < count; ++i) {
-    failInvalid(file, ProcessKeys(sectionOf(i)), job.ofOperation(static_cast<int>(i)));
-  }
-  std::string named = operation;
-  if (named.empty() && file.has(kOperation)) file.take(kOperation, "a kind of operation", named);
-  const std::size_t index = operationNamed(named, job.operations, name);
-  // The operations before this one must be solved already.
-  for (std::size_t i = 0; i < index && !unsolved.empty(); ++i) {
-    readOperation(whole, name, {}, sectionOf(i), i == 0 ? nullptr : &job.operations[i - 1].process);
-  }
-  return job.ofOperation(static_cast<int>(index));
+GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation) {
+  return open(text, name, operation).job;
 }
 
-GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved, const std::string& operation) {
-  return parseJob(readTextFile(path), path, unsolved, operation);
+JobFile openJobFile(const std::string& path, const std::string& operation) {
+  return open(readTextFile(path), path, operation);
 }
 
-std::string wheelFileOf(const std::string& path, int operation) {
-  FlatFile file(readTextFile(path), path, kKind, kContent);
-  const ProcessKeys keys(operationsIn(file) == 0 ? kProcess : sectionOf(static_cast<std::size_t>(operation)));
-  const std::string key = keys("process.wheel.file");
-  std::string name;
-  if (!file.has(key) || !file.take(key, "", name)) return "";
-  return wheelPath(path, name);
+GrindJob readJobFile(const std::string& path, const std::string& operation) { return openJobFile(path, operation).job; }
+
+JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation) {
+  ParsedJob parsed = parseAll(readTextFile(path), path);
+  const std::size_t index = parsed.indexOf(operation, path);
+  parsed.requireSetups(index);
+  const OperationFiles& files = parsed.files[index];
+  JobToSetUp asked{jobFileOf(parsed, index, path), {}, files.wanted};
+  if (files.unsolved.empty()) asked.before = asked.job.process();
+  if (!files.setup_path.empty()) asked.job = withoutSetup(asked.job, files);
+  return asked;
 }
 
 }  // namespace grinder

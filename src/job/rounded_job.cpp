@@ -3,6 +3,8 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 
+#include <utility>
+
 namespace grinder {
 
 namespace {
@@ -21,23 +23,17 @@ void roundOff(std::vector<ProfilePoint>& points) {
   for (ProfilePoint& point : points) roundOff(point.w, Unit::kMetre), roundOff(point.radius, Unit::kMetre);
 }
 
-/// Rounds a job of one operation.
-void roundOffOne(GrindJob& job) {
-  visitJobFields([&](const JobField& field, auto of) { roundOff(of(job), field.unit); });
-  roundOff(job.wheel_points);
-}
-
 }  // namespace
 
 GrindJob roundedOff(GrindJob job) {
   roundOff(job.tooth_angles);
   roundOff(job.spiral_angles);
-  roundOffOne(job);
-  for (std::size_t i = 0; i < job.operations.size(); ++i) {
-    GrindJob one = job.ofOperation(static_cast<int>(i));
-    roundOffOne(one);
-    job.operations[i] = {one.process, one.wheel_points};
+  const int own = std::exchange(job.operation, 0);
+  for (; job.operation < static_cast<int>(job.operations.size()); ++job.operation) {
+    visitJobFields([&](const JobField& field, auto of) { roundOff(of(job), field.unit); });
+    roundOff(job.process().wheel_points);
   }
+  job.operation = own;
   return job;
 }
 

@@ -1,5 +1,6 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
@@ -15,13 +16,13 @@ constexpr double kRunIn = 1e-3;  ///< length at either end of a relief's stroke 
 std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& depths) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(depths.size());
-  const bool tooth_major = job.process.order == GrindOrder::kToothMajor;
+  const bool tooth_major = job.process().order == GrindOrder::kToothMajor;
   std::vector<JobPass> all;
   all.reserve(static_cast<std::size_t>(teeth) * depths.size());
   for (int i = 0; i < teeth * passes; ++i) {
     const ToothPass place = tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth};
     all.push_back({place, depths[static_cast<std::size_t>(place.pass)],
-                   job.process.wheel_wear + i * job.process.wheel_wear_per_pass});
+                   job.process().wheel_wear + i * job.process().wheel_wear_per_pass});
   }
   return all;
 }
@@ -38,7 +39,7 @@ std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterG
     std::vector<ReliefPath> paths;
     for (const CutterGeometry& geometry : cutters) {
       const ConicalCutter cutter(geometry);
-      paths.emplace_back(cutter, reliefStartOf(job, cutter), reliefWheelOf(job.process));
+      paths.emplace_back(cutter, reliefStartOf(job, cutter), reliefWheelOf(job.process()));
       const Range start = startOf(paths.back(), geometry.flute_length);
       if (cutter.radius(start.from) > 0 && cutter.radius(start.to) > 0) continue;
       throw std::invalid_argument("the stroke of the relief goes beyond where the cone closes");
@@ -53,7 +54,7 @@ std::vector<ReliefPath> reliefsOf(const GrindJob& job, const std::vector<CutterG
 /// @param edges edges of the teeth; empty for flutes.
 std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeometry>& cutters,
                               const std::vector<ReliefPath>& reliefs, const std::vector<EdgeHelix>& edges) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double length = job.cutter.flute_length;
   std::vector<StrokeLaw> laws;
   Range x{-p.overtravel_end, length + p.overtravel_shank};
@@ -82,11 +83,11 @@ ReliefWheel reliefWheelOf(const GrindProcess& p) {
 
 ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth) {
   const CutterGeometry& c = job.cutter;
-  if (job.process.kind == OperationKind::kPrimaryRelief) {
-    return {c.clearance, 1, job.process.behind / tooth.radius(0)};
+  if (job.process().kind == OperationKind::kPrimaryRelief) {
+    return {c.clearance, 1, job.process().behind / tooth.radius(0)};
   }
   const GrindJob primary = job.ofOperation(1);
-  const ReliefPath path(tooth, reliefStartOf(primary, tooth), reliefWheelOf(primary.process));
+  const ReliefPath path(tooth, reliefStartOf(primary, tooth), reliefWheelOf(primary.process()));
   const ReliefPath::Place end = path.surfaceAt(0, c.land);
   if (!(end.radius > 0)) {
     throw std::invalid_argument(fieldName("cutter.land") + " = " + text(Quantity{c.land, Unit::kMetre}) +
@@ -104,24 +105,25 @@ ValidJob::ValidJob(GrindJob job) {
   std::vector<Reason> reasons = validate(job);
   if (!reasons.empty()) throw InvalidJob(std::move(reasons));
   Content content;
+  content.digest = jobDigest(job);
   content.cutters.assign(job.tooth_angles.size(), job.cutter);
   for (std::size_t i = 0; i < job.spiral_angles.size(); ++i) content.cutters[i].spiral_angle = job.spiral_angles[i];
-  if (isRelief(job.process.kind)) {
+  if (isRelief(job.process().kind)) {
     content.job = std::move(job);
     takeReliefs(content, content.cutters);
   } else {
-    content.deepest = job.process.deepest();
-    content.depths = passDepths(job.process);
+    content.deepest = job.process().deepest();
+    content.depths = passDepths(job.process());
     content.passes = passesOf(job, content.depths);
     content.laws = lawsOf(job, content.cutters, {}, {});
     content.job = std::move(job);
   }
-  if (content.job.process.z_law == ZLaw::kPublished) content.z_corrections.resize(content.cutters.size());
+  if (content.job.process().z_law == ZLaw::kPublished) content.z_corrections.resize(content.cutters.size());
   content_ = std::make_shared<const Content>(std::move(content));
 }
 
 void ValidJob::takeReliefs(Content& content, const std::vector<CutterGeometry>& edges) {
-  const GrindProcess& p = content.job.process;
+  const GrindProcess& p = content.job.process();
   content.reliefs = reliefsOf(content.job, edges);
   content.deepest = 0;
   for (const ReliefPath& path : content.reliefs) content.deepest = std::max(content.deepest, path.depth());
@@ -142,7 +144,7 @@ const StrokeLaw& ValidJob::strokeLaw(int tooth) const {
 }
 
 DepthLaw ValidJob::depthLaw(int tooth, double depth, double wear) const noexcept {
-  const GrindProcess& p = content_->job.process;
+  const GrindProcess& p = content_->job.process();
   if (const ReliefPath* path = relief(tooth)) {
     return {-path->y() - (content_->deepest - depth) + (wear - p.wheel_wear) * path->yPerWear(), path->taper()};
   }
@@ -151,7 +153,7 @@ DepthLaw ValidJob::depthLaw(int tooth, double depth, double wear) const noexcept
 }
 
 double ValidJob::depthAtEnd(double depth) const noexcept {
-  return content_->reliefs.empty() ? depth * (content_->job.process.depth / content_->deepest) : depth;
+  return content_->reliefs.empty() ? depth * (content_->job.process().depth / content_->deepest) : depth;
 }
 
 const ReliefPath* ValidJob::relief(int tooth) const noexcept {

@@ -22,16 +22,18 @@ constexpr const char* kBy = "measured.by";
 constexpr const char* kDressed = "dressed";
 constexpr const char* kDates = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
 constexpr const char* kText = "a text";
-constexpr JobField kFlange{"flange", "flange_mm", Unit::kMetre, -100, 100,
-                           "from the face of the flange along the spindle down to the wheel's upper face, for `grind zeros`",
-                           "not known"};
+constexpr JobField kFlange{
+    "flange",     "flange_mm",
+    Unit::kMetre, -100,
+    100,          "from the face of the flange along the spindle down to the wheel's upper face, for `grind zeros`",
+    "not known"};
 
 /// The key in a wheel file of what a job says of its wheel; empty for all else, and for the wear, which is derived.
 template <typename Field>
 const char* wheelKey(const Field& field) {
   const std::string_view prefix = "process.wheel.", path = field.path;
-  const bool here = std::string_view(field.file_key).substr(0, prefix.size()) == prefix && path != "process.wheel_file" &&
-                    path.find("process.wheel_wear") != 0;
+  const bool here = std::string_view(field.file_key).substr(0, prefix.size()) == prefix &&
+                    path != "process.wheel_file" && path.find("process.wheel_wear") != 0;
   return here ? field.file_key + prefix.size() : "";
 }
 
@@ -59,7 +61,7 @@ void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
     std::vector<double> point;
     file.takeList(element(key, i), allowed, kMillimetre, point);
     if (point.size() != 2) return file.fail(file.line(key), element(key, i) + " is not a pair; allowed: " + allowed);
-    job.wheel_points.push_back({point[0], point[1]});
+    job.process().wheel_points.push_back({point[0], point[1]});
   }
 }
 
@@ -166,21 +168,22 @@ std::vector<OtherKey> otherWheelKeys() {
   const double farthest = 2 * fieldOf("process.wheel_wear").max;
   const std::string diameters = text(fieldOf("process.wheel_diameter").low()) + " to `diameter_mm`, and at most " +
                                 text(Quantity{farthest * kMillimetre, Unit::kMetre}) + " less than it";
-  keys.push_back({kDate, kDate, kDates,
-                  "when the wheel was measured or dressed, in UTC; the four keys of `measured` may be left out together"});
+  keys.push_back(
+      {kDate, kDate, kDates,
+       "when the wheel was measured or dressed, in UTC; the four keys of `measured` may be left out together"});
   keys.push_back({kDiameter, kDiameter, diameters,
                   "maximum diameter as measured; half of what it is below `diameter_mm` is the wear"});
   keys.push_back({kBy, kBy, kText, "who measured", "nothing"});
-  keys.push_back({kDressed, kDressed, kDates,
-                  "when the wheel was dressed last, in UTC; for the records of its jobs", "not known"});
+  keys.push_back({kDressed, kDressed, kDates, "when the wheel was dressed last, in UTC; for the records of its jobs",
+                  "not known"});
   return keys;
 }
 
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
   // An unknown profile may have a side.
-  if (!file.takeChoice(prefix + "profile", job.process.wheel_profile)) return file.drop(prefix + "side");
-  if (isTapered(job.process.wheel_profile)) file.takeChoice(prefix + "side", job.process.wheel_side);
-  if (job.process.wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);
+  if (!file.takeChoice(prefix + "profile", job.process().wheel_profile)) return file.drop(prefix + "side");
+  if (isTapered(job.process().wheel_profile)) file.takeChoice(prefix + "side", job.process().wheel_side);
+  if (job.process().wheel_profile == WheelShape::kPoints) takeWheelPoints(file, prefix + "points_mm", job);
 }
 
 WheelFile parseWheel(const std::string& text, const std::string& name) {
@@ -197,16 +200,15 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
   });
   takeWheelShape(file, "", job);
   takeFlange(file, wheel);
-  wheel.new_width = job.process.wheel_width;
+  wheel.new_width = job.process().wheel_width;
   GrindJob now = job;
-  takeMeasurement(file, wheel, now.process);
+  takeMeasurement(file, wheel, now.process());
   if (file.mayHave(kDressed)) takeDate(file, kDressed, wheel.dressed);
   file.refuseTheRest();
   file.throwErrors();
   check(file, job, false);
   check(file, now, true);
-  wheel.process = now.process;
-  wheel.points = std::move(now.wheel_points);
+  wheel.process = now.process();
   return wheel;
 }
 
@@ -214,14 +216,14 @@ WheelFile readWheelFile(const std::string& path) { return parseWheel(readTextFil
 
 void mountWheel(const WheelFile& wheel, GrindJob& job) {
   GrindJob from;
-  from.process = wheel.process;
+  from.process() = wheel.process;
   visitJobFields([&](const JobField& field, auto of) {
     if (*wheelKey(field) != '\0') of(job) = of(from);
   });
-  job.process.wheel_wear = wheel.process.wheel_wear;
-  job.process.wheel_profile = wheel.process.wheel_profile;
-  job.process.wheel_side = wheel.process.wheel_side;
-  job.wheel_points = wheel.points;
+  job.process().wheel_wear = wheel.process.wheel_wear;
+  job.process().wheel_profile = wheel.process.wheel_profile;
+  job.process().wheel_side = wheel.process.wheel_side;
+  job.process().wheel_points = wheel.process.wheel_points;
 }
 
 }  // namespace grinder

@@ -13,7 +13,7 @@ Eigen::Vector3d wheelCentre(const MachineGeometry& machine, const GrindProcess& 
 }
 
 Eigen::Vector3d workZero(const MachineGeometry& machine, const GrindJob& job, const Mounting& mounting) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const Eigen::Vector3d wanted(machine.collet_face - mounting.stickout,
                                machine.work_axis_y + job.cutter.end_diameter / 2 + p.wheel_diameter / 2,
                                machine.work_axis_z + p.setup_height);

@@ -1,7 +1,7 @@
 #include "flute_grinder/messages/continue_job.h"
 
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/plan/job_digest.h"
 
 namespace grinder {
 

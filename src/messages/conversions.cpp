@@ -21,12 +21,37 @@ Axes axesOf(const Array& array) {
   return Eigen::Map<const Axes>(array.data());
 }
 
-/// Copies the numbers and choices of a job or a goal; their members have the same names.
-template <typename From, typename To>
-void copyFields(const From& from, To& to) {
-  visitJobFields([&](const JobField&, auto of) { of(to) = of(from); });
-  visitJobChoices(
-      [&](const char*, int, auto of) { of(to) = static_cast<std::remove_reference_t<decltype(of(to))>>(of(from)); });
+void copyPoints(const std::vector<double>& points, std::vector<ProfilePoint>& profile) {
+  for (std::size_t i = 0; i < points.size(); i += 2) {
+    // A position without a radius becomes a point that validate() refuses.
+    profile.push_back({points[i], i + 1 < points.size() ? points[i + 1] : std::numeric_limits<double>::quiet_NaN()});
+  }
+}
+
+void copyPoints(const std::vector<ProfilePoint>& profile, std::vector<double>& points) {
+  for (const ProfilePoint& point : profile) points.insert(points.end(), {point.w, point.radius});
+}
+
+/// Converts between a job and a goal; their members have the same names.
+template <typename To, typename From>
+To converted(const From& asked) {
+  From from = asked;
+  To to;
+  // The fields are an operation's, so that there is one even of a job that validate() refuses.
+  const std::size_t count = asked.operations.size();
+  from.operations.resize(std::max<std::size_t>(count, 1));
+  to.operations.resize(from.operations.size());
+  for (std::size_t i = 0; i < from.operations.size(); ++i) {
+    from.operation = static_cast<decltype(from.operation)>(i);
+    to.operation = static_cast<decltype(to.operation)>(i);
+    visitJobFields([&](const JobField&, auto of) { of(to) = of(from); });
+    visitJobChoices(
+        [&](const char*, int, auto of) { of(to) = static_cast<std::remove_reference_t<decltype(of(to))>>(of(from)); });
+    copyPoints(from.operations[i].wheel_points, to.operations[i].wheel_points);
+  }
+  to.operations.resize(count);
+  to.operation = static_cast<decltype(to.operation)>(asked.operation);
+  return to;
 }
 
 /// Copies statistics between core and message; their members have the same names.
@@ -60,41 +85,16 @@ To convertedStatistics(const From& from) {
 }  // namespace
 
 GrindJob jobFromGoal(const flute_grinder::GrindGoal& goal) {
-  GrindJob job;
-  copyFields(goal, job);
+  GrindJob job = converted<GrindJob>(goal);
   job.tooth_angles = goal.cutter.tooth_angles;
   job.spiral_angles = goal.cutter.spiral_angles;
-  const std::vector<double>& points = goal.process.wheel_points;
-  for (std::size_t i = 0; i < points.size(); i += 2) {
-    // A position without a radius becomes a point that validate() refuses.
-    const double radius = i + 1 < points.size() ? points[i + 1] : std::numeric_limits<double>::quiet_NaN();
-    job.wheel_points.push_back({points[i], radius});
-  }
-  for (const flute_grinder::Process& process : goal.operations) {
-    flute_grinder::GrindGoal alone;
-    alone.process = process;
-    GrindJob one = jobFromGoal(alone);
-    job.operations.push_back({one.process, std::move(one.wheel_points)});
-  }
-  job.operation = goal.operation;
   return job;
 }
 
 flute_grinder::GrindGoal goalFromJob(const GrindJob& job) {
-  flute_grinder::GrindGoal goal;
-  copyFields(job, goal);
+  flute_grinder::GrindGoal goal = converted<flute_grinder::GrindGoal>(job);
   goal.cutter.tooth_angles = job.tooth_angles;
   goal.cutter.spiral_angles = job.spiral_angles;
-  for (const ProfilePoint& point : job.wheel_points) {
-    goal.process.wheel_points.insert(goal.process.wheel_points.end(), {point.w, point.radius});
-  }
-  for (const GrindOperation& operation : job.operations) {
-    GrindJob alone;
-    alone.process = operation.process;
-    alone.wheel_points = operation.wheel_points;
-    goal.operations.push_back(goalFromJob(alone).process);
-  }
-  goal.operation = static_cast<std::uint16_t>(job.operation);
   return goal;
 }
 

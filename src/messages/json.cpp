@@ -61,14 +61,14 @@ void addTeeth(Json& file, const GrindJob& job) {
 Json fieldsOf(const GrindJob& job) {
   Json file = Json::object();
   visitJobFields([&](const JobField& field, auto of) {
-    if (field.isOf(job.process.kind)) file[pointerTo(field.file_key)] = shopNumber(of(job), field.unit);
+    if (field.isOf(job.process().kind)) file[pointerTo(field.file_key)] = shopNumber(of(job), field.unit);
   });
   visitJobChoices(
       [&](const std::string& path, int, auto of) { file[pointerTo(fieldName(path))] = choiceJson(of(job)); });
   Json& process = file["process"];
   process.erase("kind");
-  if (!isTapered(job.process.wheel_profile)) process["wheel"].erase("side");
-  for (const ProfilePoint& point : job.wheel_points) {
+  if (!isTapered(job.process().wheel_profile)) process["wheel"].erase("side");
+  for (const ProfilePoint& point : job.process().wheel_points) {
     process["wheel"]["points_mm"].push_back(
         {shopNumber(point.w, Unit::kMetre), shopNumber(point.radius, Unit::kMetre)});
   }
@@ -78,9 +78,9 @@ Json fieldsOf(const GrindJob& job) {
 /// An operation as an element of a job file's list.
 Json operationOf(const GrindJob& job) {
   Json process = fieldsOf(job)["process"];
-  process["kind"] = isRelief(job.process.kind) ? "relief" : "flute";
-  if (!isRelief(job.process.kind)) return process;
-  process["relief"] = toString(job.process.kind);
+  process["kind"] = isRelief(job.process().kind) ? "relief" : "flute";
+  if (!isRelief(job.process().kind)) return process;
+  process["relief"] = toString(job.process().kind);
   for (const char* key : {"z_law", "incomplete_ok"}) process.erase(key);
   return process;
 }
@@ -106,13 +106,9 @@ Json toJson(const std::vector<FeedLimit>& limits) {
 Json toJson(const GrindJob& job) {
   Json file = fieldsOf(job);
   addTeeth(file, job);
-  if (job.operations.empty()) return file;
-  // For readers of a record: the operation that was ground.
-  file["process"] = operationOf(job);
-  file["operation"] = toString(job.process.kind);
-  for (int i = 0; i < static_cast<int>(job.operations.size()); ++i) {
-    file["operations"].push_back(operationOf(job.ofOperation(i)));
-  }
+  file.erase("process");
+  for (const GrindJob& one : job.ofAllOperations()) file["operations"].push_back(operationOf(one));
+  file["operation"] = toString(job.process().kind);
   return file;
 }
 

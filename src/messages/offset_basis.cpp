@@ -2,11 +2,10 @@
 
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
-#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/plan/job_digest.h"
 
 #include <filesystem>
 
@@ -40,16 +39,15 @@ To convertedBasis(const From& from) {
 }  // namespace
 
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation) {
-  return goalFromFile(path, readJobFile(path, {}, operation));
+  return goalFromFile(openJobFile(path, operation));
 }
 
-flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job) {
-  flute_grinder::GrindGoal goal = goalFromJob(job);
-  goal.job_name = nameOf(path);
-  const std::string wheel = wheelFileOf(path, job.operation);
-  if (wheel.empty()) return goal;
-  goal.wheel_name = nameOf(wheel);
-  goal.wheel_dressed = readWheelFile(wheel).dressed;
+flute_grinder::GrindGoal goalFromFile(const JobFile& file) {
+  flute_grinder::GrindGoal goal = goalFromJob(file.job);
+  goal.job_name = nameOf(file.path);
+  if (!file.wheel) return goal;
+  goal.wheel_name = nameOf(file.wheel_path);
+  goal.wheel_dressed = file.wheel->dressed;
   return goal;
 }
 
@@ -58,15 +56,15 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   basis.method = method;
   basis.job_name = goal.job_name;
   const GrindJob job = jobFromGoal(goal);
-  basis.wheel_name = goal.wheel_name.empty() ? described(job.process) : goal.wheel_name;
+  basis.wheel_name = goal.wheel_name.empty() ? described(job.process()) : goal.wheel_name;
   basis.wheel_digest = wheelDigest(job);
   basis.tool_digest = toolDigest(job);
   basis.operation = job.operation;
   basis.end_diameter = goal.cutter.end_diameter;
-  basis.wheel_diameter = goal.process.wheel_diameter;
-  basis.wheel_width = goal.process.wheel_width;
-  basis.swivel = goal.process.setup_swivel;
-  basis.height = goal.process.setup_height;
+  basis.wheel_diameter = processOf(goal).wheel_diameter;
+  basis.wheel_width = processOf(goal).wheel_width;
+  basis.swivel = processOf(goal).setup_swivel;
+  basis.height = processOf(goal).setup_height;
   return basis;
 }
 

@@ -18,7 +18,7 @@ FeedSchedule::Stroke strokeOf(const ValidJob& job) {
   FeedSchedule::Stroke stroke;
   stroke.from = job.strokeLaw(0).from;
   stroke.to = job.strokeLaw(0).to;
-  stroke.surface_feed = job->process.feed;
+  stroke.surface_feed = job->process().feed;
   // With the published rule, the even points of steep cutters drift by up to the same amount again.
   stroke.tolerance =
       job->interpolation.tolerance * (job->interpolation.even_step == EvenStepRule::kPublished ? 0.5 : 1);
@@ -60,7 +60,7 @@ void requireGrindableFeed(const FeedSchedule& schedule, const ConicalCutter& cut
 }
 
 void requireSwivel(const Machine& machine, const ValidJob& job) {
-  const double swivel = job->process.setup_swivel;
+  const double swivel = job->process().setup_swivel;
   if (swivel >= machine.swivel.from && swivel <= machine.swivel.to) return;
   throw ReasonError({ReasonKind::kOutOfRange, 0, "process.setup_swivel", "to which the machine swivels", Unit::kRadian,
                      swivel, machine.swivel.from, machine.swivel.to});
@@ -86,7 +86,7 @@ std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, c
     if (indexOf(helices, law.cutter.spiral_angle) < helices.size()) continue;
     const ConicalCutter cutter(law.cutter);
     stroke.x_shift = law.x_shift;
-    stroke.taper = job.depthLaw(tooth, job.deepest(), job->process.wheel_wear).taper;
+    stroke.taper = job.depthLaw(tooth, job.deepest(), job->process().wheel_wear).taper;
     stroke.z_correction = job.zCorrectionOf(tooth);
     helices.push_back({{cutter, stroke.x_shift},
                        LogCurve(cutter, stroke.x_shift),
@@ -124,7 +124,7 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       helices_(helicesOf(job, stroke_, machine)),
       helix_of_tooth_(job->tooth_angles.size()),
       terms_(termsOf(job, helices_, stroke_)),
-      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process.clearance) {
+      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process().clearance) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
     helix_of_tooth_[tooth] = indexOf(helices_, job.strokeLaw(static_cast<int>(tooth)).cutter.spiral_angle);
   }
@@ -156,7 +156,7 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
   append(MoveKind::kReturn, passes.back().place, park);
 }
 
-double GrindProgram::swivel() const noexcept { return job_->process.setup_swivel; }
+double GrindProgram::swivel() const noexcept { return job_->process().setup_swivel; }
 
 void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear, double taper) {
   moves_.push_back(
@@ -176,7 +176,7 @@ void GrindProgram::appendPass(const JobPass& pass, Axes& at) {
   at[kX] = stroke_.from;
   at[kZ] = helix.z(stroke_.from);
   go(MoveKind::kPosition);
-  at[kY] = cutter.y(stroke_.from) + job_->process.clearance;
+  at[kY] = cutter.y(stroke_.from) + job_->process().clearance;
   go(MoveKind::kApproach);
   at[kY] = y(stroke_.from);
   append(MoveKind::kInfeed, pass.place, at, pass.wear, law.taper);

@@ -36,11 +36,11 @@ double minDuration(const ValidJob& job, const ToothPass& first) {
   for (int i = 0; i < job.teeth(); ++i) {
     edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
   }
-  const double way = job->process.clearance + travel * edge;
+  const double way = job->process().clearance + travel * edge;
   const auto passes = static_cast<double>(job.depths().size());
-  const double before = job->process.order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
-                                                                      : first.pass * teeth + first.tooth;
-  return std::max(0.0, teeth * passes - before) * way / job->process.feed;
+  const double before = job->process().order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
+                                                                        : first.pass * teeth + first.tooth;
+  return std::max(0.0, teeth * passes - before) * way / job->process().feed;
 }
 
 /// Checks periodically whether the job is too long and whether the plan is still wanted.

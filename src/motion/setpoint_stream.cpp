@@ -257,7 +257,7 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   MotionLimits limits = limitsAlong(way_, program_->machine().limits);
   double speed = limits.velocity;
   if (isAtFeed(kind)) {
-    speed = std::min(speed, program_->job()->process.feed / linear_way_);
+    speed = std::min(speed, program_->job()->process().feed / linear_way_);
     limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
   }
   beginLaw(limits, 1, speed);

@@ -55,9 +55,9 @@ Frames::SetUp Frames::setUpFor(const Axes& offset) const {
   set_up.wheel_y = (first_view_.blank_diameter + first_view_.wheel_diameter) / 2;
   if (!program_) return set_up;
   const GrindJob& job = *program_->job();
-  set_up.wheel_y = job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2;
-  set_up.height = job.process.setup_height;
-  set_up.swivel = job.process.setup_swivel;
+  set_up.wheel_y = job.cutter.end_diameter / 2 + job.process().wheel_diameter / 2;
+  set_up.height = job.process().setup_height;
+  set_up.swivel = job.process().setup_swivel;
   return set_up;
 }
 

@@ -7,7 +7,6 @@
 #include "flute_grinder/messages/reasons.h"
 #include "flute_grinder/network/dropped_messages.h"
 #include "flute_grinder/network/peer_limits.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "node/plain_name.h"
 
 #include <utility>
@@ -140,18 +139,17 @@ void GoalServer::onGoal(GoalHandle handle) {
   }
   try {
     const ValidJob job(jobFromGoal(*goal));
-    const std::string digest = jobDigest(*job);
     if (!goal->dry_run) {
-      const std::string text = refusal(*goal, digest);
+      const std::string text = refusal(*goal, job.digest());
       if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
       // The loop checks the swivel once more when the job starts: it may be turned meanwhile.
       const Swivel swivel = loop_.status().swivel;
-      if (!swivel.isAt(job->process.setup_swivel)) {
+      if (!swivel.isAt(job->process().setup_swivel)) {
         return reject(handle,
-                      result(flute_grinder::GrindResult::NOT_READY, {reasonOf(swivel, job->process.setup_swivel)}));
+                      result(flute_grinder::GrindResult::NOT_READY, {reasonOf(swivel, job->process().setup_swivel)}));
       }
     }
-    startPlanning(handle, job, digest);
+    startPlanning(handle, job);
   } catch (const InvalidJob& invalid) {
     reject(handle, result(errorCode(PlanFault::kInvalidJob), invalid.reasons()));
   }
@@ -184,7 +182,7 @@ std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, cons
   return mismatch.empty() ? "" : mismatch + "; set them for this job, or start it with --ignore-offset-check";
 }
 
-void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest) {
+void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
@@ -196,7 +194,7 @@ void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job, co
   // From here to the end of the goal the offsets cannot change.
   Planner::Request request{job};
   const WorkOffsets offsets = offsets_.offsets();
-  const std::string refused = offsetRefusal(*handle.getGoal(), digest, offsets);
+  const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
   if (!refused.empty()) {
     gate_.close();
     return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);
@@ -249,7 +247,8 @@ void GoalServer::startJob() {
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->plan;
   goal_->stream = std::make_unique<SetpointStream>(plan.program);
-  tracker_.begin(*plan.program, plan.digest, basisOf(asked, OffsetMethod::kUnknown), goal_->number, goal_->offsets);
+  tracker_.begin(*plan.program, plan.program->job().digest(), basisOf(asked, OffsetMethod::kUnknown), goal_->number,
+                 goal_->offsets);
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, asked.job_name, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,

@@ -61,7 +61,7 @@ class GoalServer {
   std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
   std::string offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
                             const WorkOffsets& offsets) const;
-  void startPlanning(const GoalHandle& handle, const ValidJob& job, const std::string& digest);
+  void startPlanning(const GoalHandle& handle, const ValidJob& job);
   void onPlanned(std::shared_ptr<const PlannedJob> planned);
   void poll();
   void publishFeedback();

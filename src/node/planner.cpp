@@ -1,7 +1,5 @@
 #include "node/planner.h"
 
-#include "flute_grinder/plan/job_digest.h"
-
 #include <utility>
 
 namespace grinder {
@@ -56,7 +54,8 @@ std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
 }
 
 bool Planner::isKept(const Request& request) const {
-  if (!kept_ || kept_->digest != jobDigest(*request.job) || !(kept_->program->run() == request.run)) return false;
+  if (!kept_ || kept_->program->job().digest() != request.job.digest() || !(kept_->program->run() == request.run))
+    return false;
   // The digest does not contain the operations that follow, but the last relief is judged differently from the others.
   return kept_->program->job()->operations.size() == request.job->operations.size();
 }

@@ -102,7 +102,7 @@ double tooth(const Cycle& cycle) {
   const Prober::Touch touch = cycle.prober.touch(kA, toward * cycle.goal.within);
   cycle.add("tooth 1", touch.axes[kA], touch.spread, true);
   Eigen::Vector3d ball = cycle.ballFromAxis(touch);
-  ball.x() -= cycle.offsets.axes[kX].value + wheelCentre(cycle.geometry, job->process, cycle.goal.flange).x();
+  ball.x() -= cycle.offsets.axes[kX].value + wheelCentre(cycle.geometry, job->process(), cycle.goal.flange).x();
   return touch.axes[kA] - rakeTouchAngle(job, ball, cycle.geometry.probe->diameter);
 }
 

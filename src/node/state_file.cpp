@@ -2,7 +2,7 @@
 
 #include "flute_grinder/geometry/replace_file.h"
 #include "flute_grinder/job/format.h"
-#include "flute_grinder/plan/sha256.h"
+#include "flute_grinder/job/sha256.h"
 
 #include <fcntl.h>
 #include <sys/file.h>

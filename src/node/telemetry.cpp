@@ -155,11 +155,11 @@ void Telemetry::clearScene() {
 /// @param ground whether the plan's job begins; if not, it is only planned.
 void Telemetry::showJob(const PlannedJob& plan, const std::string& name, bool ground) {
   const GrindJob& job = *plan.program->job();
-  const char* operation = job.operations.size() > 1 ? rowOf(job.process.kind).words : "";
+  const std::string operation = job.operationText();
   last_change_ = ros::SteadyTime::now();
   shown_with_.reset();
   frames_.show(plan.program, plan.edges);
-  scene_.show(plan.program, plan.edges, plan.digest, plan.program->run().first,
+  scene_.show(plan.program, plan.edges, plan.program->job().digest(), plan.program->run().first,
               (ground ? "Ground: " : "Planned: ") + jobText(name, operation, job.cutter, job.tooth_angles.size()));
 }
 

@@ -36,7 +36,7 @@ QStringList faults(const CutterSection& section) {
   const std::vector<ToothSection>& teeth = section.ground.teeth;
   const auto none = [&](const auto& has) { return std::none_of(teeth.begin(), teeth.end(), has); };
   QStringList said;
-  if (isRelief(section.job->process.kind)) {
+  if (isRelief(section.job->process().kind)) {
     if (none([](const auto& t) { return t.relief && t.relief->clearance; })) said << "No relief is ground here";
     return said;
   }
@@ -73,7 +73,7 @@ CutterSection cutterSection(const ValidJob& job, double x) {
 }
 
 QString figuresText(const CutterSection& section) {
-  const bool of_relief = isRelief(section.job->process.kind);
+  const bool of_relief = isRelief(section.job->process().kind);
   QStringList lines;
   for (const QString& fault : faults(section)) lines << line(fault, false);
   for (const GroundFigure& figure : figuresOf(section.job, {section.ground})) {

@@ -614,7 +614,7 @@ void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
 }
 
 double GrindPanel::touchedY(double diameter) const {
-  const GrindJob job = readJobFile(job_->file().toStdString(), {}, job_->operation());
+  const GrindJob job = readJobFile(job_->file().toStdString(), job_->operation());
   const auto state = link_->view().state;
   if (!state) throw std::invalid_argument("no position comes from the grinder");
   const std::string refused = heightRefusal(job, state->work_position[kZ]);

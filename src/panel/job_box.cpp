@@ -2,13 +2,13 @@
 
 #include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "panel/beside.h"
 #include "panel/panel_button.h"
 #include "panel/plain_words.h"
@@ -31,7 +31,7 @@ namespace grinder {
 namespace {
 
 constexpr const char* kContinue = "Continue where it was left";
-constexpr const char* kFileChanged = "The job file or its wheel file has changed since it was planned. Plan it again.";
+constexpr const char* kFileChanged = "A file of the job has changed since it was planned. Plan it again.";
 constexpr const char* kZeroChanged = "A zero point or the wheel has changed since it was planned. Plan it again.";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
@@ -55,7 +55,7 @@ bool discardsUnfinished(const flute_grinder::GrindGoal& goal, const flute_grinde
 /// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: at
 /// another angle the grinder refuses the goal.
 bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swivel) {
-  return !swivel.measured && !swivel.isAt(goal.process.setup_swivel);
+  return !swivel.measured && !swivel.isAt(processOf(goal).setup_swivel);
 }
 
 /// A comparison of the values that a job asks for and the present ones.
@@ -160,7 +160,7 @@ void JobBox::makeQuestions() {
                               });
   swivel_question_->addAnswer("confirm_swivel", "Confirm and start", "The swivel is set and clamped: start the job", 0,
                               1, [this] {
-                                if (planned_) Q_EMIT swivelConfirmed(planned_->process.setup_swivel);
+                                if (planned_) Q_EMIT swivelConfirmed(processOf(*planned_).setup_swivel);
                               });
   for (Question* question : {discard_question_, wheel_question_, offset_question_, swivel_question_}) {
     pages_->addWidget(question);
@@ -228,14 +228,15 @@ void JobBox::read() {
   const std::string file = file_.toStdString();
   try {
     // Works even for a file whose set-ups are still to be solved.
-    operation_->offer(readJobFile(file, unsolvedFields(std::nullopt), "1").operations);
+    operation_->offer(readJobToSetUp(file, "1").job.operations);
     if (operation_->isMissing()) {
       job_.reset();
       return discardPlan();
     }
-    job_ = std::make_shared<const GrindJob>(readJobFile(file, {}, operation_->chosen()));
-    goal_ = goalFromFile(file, *job_);
-    watchFiles();
+    const JobFile opened = openJobFile(file, operation_->chosen());
+    job_ = std::make_shared<const GrindJob>(opened.job);
+    goal_ = goalFromFile(opened);
+    watchFiles(opened);
   } catch (const std::exception& error) {
     job_.reset();
     planned_.reset();
@@ -246,11 +247,11 @@ void JobBox::read() {
 }
 
 /// Watches the files. To be repeated after each reading, because a replaced file is no longer watched.
-void JobBox::watchFiles() {
-  const QString wheel = QString::fromStdString(wheelFileOf(file_.toStdString(), job_->operation));
+void JobBox::watchFiles(const JobFile& opened) {
   for (const QString& file : watch_.files()) watch_.removePath(file);
-  watch_.addPath(file_);
-  if (!wheel.isEmpty()) watch_.addPath(wheel);
+  for (const std::string& file : {opened.path, opened.wheel_path, opened.setup_path}) {
+    if (!file.empty()) watch_.addPath(QString::fromStdString(file));
+  }
 }
 
 void JobBox::discardPlan(const QString& why) {
@@ -369,7 +370,7 @@ std::vector<OffsetMismatch> JobBox::toAskFor(bool wheel) const {
 
 void JobBox::askForSwivel() {
   if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
-  const double asked = planned_->process.setup_swivel;
+  const double asked = processOf(*planned_).setup_swivel;
   const bool known = std::isfinite(swivel_.angle);
   const auto shown = [](double angle) {
     return QString::fromStdString(text(Quantity{angle, Unit::kRadian}, kAngleDigits));
@@ -504,14 +505,11 @@ void JobBox::findUnfinished() {
   for (const QString& folder : {QFileInfo(file_).path(), packageJobs()}) {
     const QString file = folder + "/" + QFileInfo(QString::fromStdString(progress_.job_name)).fileName();
     try {
-      const GrindJob job = readJobFile(file.toStdString(), {}, "1");
-      const std::size_t several = job.operations.size() > 1 ? job.operations.size() : 0;
-      for (std::size_t i = 0; i < std::max<std::size_t>(several, 1); ++i) {
-        const GrindJob one = job.ofOperation(static_cast<int>(i));
+      for (const GrindJob& one : readJobFile(file.toStdString(), "1").ofAllOperations()) {
         if (jobDigest(one) != progress_.job_digest) continue;
         unfinished_file_ = file;
         unfinished_operation_.reset();
-        if (several > 0) unfinished_operation_ = one.process.kind;
+        if (one.operations.size() > 1) unfinished_operation_ = one.process().kind;
         return;
       }
     } catch (const std::exception&) {

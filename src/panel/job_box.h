@@ -27,6 +27,7 @@
 namespace grinder {
 
 struct GrindJob;
+struct JobFile;
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
 /// without violations. It asks before it discards an unfinished job, if wheel or zero points do not fit, and for the
@@ -95,7 +96,7 @@ class JobBox : public QWidget {
   void showFile();
   void read();
   void readAnew();
-  void watchFiles();
+  void watchFiles(const JobFile& opened);
   bool hasOtherZero(const flute_grinder::WorkOffsets& now) const;
   std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();

@@ -18,7 +18,7 @@ OperationChoice::OperationChoice(QWidget* parent) : QWidget(parent), box_(new QC
   connect(box_, QOverload<int>::of(&QComboBox::activated), this, &OperationChoice::changed);
 }
 
-void OperationChoice::offer(const std::vector<GrindOperation>& operations) {
+void OperationChoice::offer(const std::vector<GrindProcess>& operations) {
   const bool several = operations.size() > 1;
   const int items = several ? static_cast<int>(operations.size()) + 1 : 0;
   // The order of operations is fixed, so an equal number means the same operations.
@@ -26,7 +26,7 @@ void OperationChoice::offer(const std::vector<GrindOperation>& operations) {
   box_->clear();
   if (several) box_->addItem("choose");
   for (int i = 0; i + 1 < items; ++i) {
-    const OperationKind kind = operations[static_cast<std::size_t>(i)].process.kind;
+    const OperationKind kind = operations[static_cast<std::size_t>(i)].kind;
     box_->addItem(QString::fromStdString(operationEntry(kind)), toString(kind));
   }
   setVisible(several);

@@ -19,7 +19,7 @@ class OperationChoice : public QWidget {
   explicit OperationChoice(QWidget* parent = nullptr);
 
   /// Offers the operations of a file. The choice stays if they are the same as before.
-  void offer(const std::vector<GrindOperation>& operations);
+  void offer(const std::vector<GrindProcess>& operations);
   /// @param operation one of the operations offered.
   void choose(OperationKind operation) { box_->setCurrentIndex(box_->findData(toString(operation))); }
 

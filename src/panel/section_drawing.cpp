@@ -36,7 +36,7 @@ class Painting {
       : painter_(painter), section_(section), sheet_(sheet), centre_(sheet.center()) {
     const QFontMetricsF metrics(painter.font());
     label_ = {metrics.horizontalAdvance("asked 00.00"),
-              (kLines + (isRelief(section.job->process.kind) ? 1 : 0)) * metrics.lineSpacing()};
+              (kLines + (isRelief(section.job->process().kind) ? 1 : 0)) * metrics.lineSpacing()};
     // The corners are for the labels.
     const double w = sheet.width() / 2, h = sheet.height() / 2;
     const double corner = std::hypot(std::max(0.0, w - label_.width()), std::max(0.0, h - label_.height()));
@@ -52,7 +52,7 @@ class Painting {
     circles();
     const ToothSection& first = section_.ground.teeth.front();
     if (first.rake) rake(first);
-    if (isRelief(section_.job->process.kind)) {
+    if (isRelief(section_.job->process().kind)) {
       if (first.relief && first.relief->clearance) relief(*first.relief);
     } else if (first.land) {
       land(*first.land);

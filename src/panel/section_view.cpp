@@ -2,8 +2,8 @@
 
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_state.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "panel/plain_words.h"
 
 #include <QHBoxLayout>

@@ -2,13 +2,12 @@
 
 #include "flute_grinder/drive/parameters.h"
 #include "flute_grinder/geometry/job_setup.h"
-#include "flute_grinder/geometry/setup_file.h"
 #include "flute_grinder/geometry/setup_sheet.h"
 #include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/geometry/write_setup.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -34,12 +33,14 @@ constexpr int kSheetLines = 32, kSheetColumns = 105;  ///< size of the sheet wit
 constexpr int kFewestLines = 12;                      ///< least lines of the sheet with the question
 constexpr int kWriteLines = 10;
 
-/// The digests of all operations of a job file.
+/// The digests of all operations of a job file; none if they are not all set up.
 std::vector<std::string> digestsOf(const std::string& file) {
-  const GrindJob job = readJobFile(file, unsolvedFields(std::nullopt), "1");
-  if (job.operations.size() < 2) return {jobDigest(job)};
   std::vector<std::string> digests;
-  for (int i = 0; i < static_cast<int>(job.operations.size()); ++i) digests.push_back(jobDigest(job.ofOperation(i)));
+  try {
+    for (const GrindJob& job : readJobFile(file, "1").ofAllOperations()) digests.push_back(jobDigest(job));
+  } catch (const JobFileError&) {
+    // Such a file is no job's that was ever started.
+  }
   return digests;
 }
 
@@ -53,20 +54,15 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
       description_(ros::names::append(ros::names::parentNamespace(grinder), "robot_description")),
       flange_(ros::names::append(grinder, "geometry/flange")),
       sheet_(textView("setup_sheet", kFewestLines)),
-      keep_(new QComboBox),
-      write_(new PanelButton("write_setup", "Write into the file",
-                             "Write the set-up into the job file; all else in it stays as it is")),
+      write_(new PanelButton("write_setup", "Write the set-up file", "Write the set-up file that the job file names")),
       why_not_(new QLabel),
       question_(new Question("write", kWriteLines)),
       buttons_(makeButtons()) {
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
-  keep_->setObjectName("keep_figure");
-  keep_->setToolTip("Leave this figure as it is in the job file");
-  keep_->addItem("nothing");
-  for (const auto& figure : kSetupFigures) keep_->addItem(figure.name);
-  question_->addDanger("write_over", "Write it", "The old file is kept beside it", 0, 0, [this] { beginToWrite(); });
+  question_->addDanger("write_over", "Write it", "Replace the set-up of this operation", 0, 0,
+                       [this] { beginToWrite(); });
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
   layout->addWidget(buttons_);
@@ -75,7 +71,6 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   showQuestion(false);
   resize(kSheetColumns * sheet_->fontMetrics().horizontalAdvance('0'),
          kSheetLines * sheet_->fontMetrics().lineSpacing());
-  connect(keep_, QOverload<int>::of(&QComboBox::activated), this, &SetupDialog::beginToSolve);
   connect(write_, &QPushButton::clicked, this, &SetupDialog::ask);
   connect(question_, &Question::answered, this, [this] { showQuestion(false); });
   connect(&poll_timer_, &QTimer::timeout, this, &SetupDialog::poll);
@@ -95,8 +90,6 @@ QWidget* SetupDialog::makeButtons() {
   auto* buttons = new QWidget;
   auto* layout = new QHBoxLayout(buttons);
   layout->setContentsMargins(0, 0, 0, 0);
-  layout->addWidget(new QLabel("Keep"));
-  layout->addWidget(keep_);
   layout->addWidget(why_not_, 1);
   layout->addWidget(write_);
   layout->addWidget(close);
@@ -112,15 +105,13 @@ void SetupDialog::refresh(const flute_grinder::JobProgress& last, bool runs) {
   last_ = last;
   runs_ = runs;
   const bool in_use = runs && isOfLastJob();
-  why_not_->setText(in_use ? "This job runs: its file is not written." : "");
-  write_->setEnabled(solved_.setup && !working_.valid() && !in_use);
+  why_not_->setText(in_use ? "This job runs: its set-up file is not written." : "");
+  write_->setEnabled(solved_.solved && !working_.valid() && !in_use);
   if (in_use) showQuestion(false);
 }
 
 void SetupDialog::ask() {
-  const QString file = QString::fromStdString(file_);
-  QString text =
-      "Write this set-up into " + file + "? The old file is kept as " + file + ".before.\n" + solved_.changes;
+  QString text = "Write this set-up into " + QString::fromStdString(solved_.asked.setup_path) + "?\n" + solved_.changes;
   if (isOfLastJob() && !last_.finished) {
     text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
   }
@@ -134,59 +125,60 @@ void SetupDialog::showQuestion(bool asks) {
 }
 
 void SetupDialog::beginToWrite() {
-  keep_->setEnabled(false);
   write_->setEnabled(false);
-  working_ = std::async(std::launch::async, [this, setup = solved_.setup] { return write(*setup); });
+  working_ = std::async(std::launch::async,
+                        [this, asked = solved_.asked, solved = solved_.solved] { return write(asked, *solved); });
 }
 
 void SetupDialog::beginToSolve() {
-  keep_->setEnabled(false);
   write_->setEnabled(false);
   showText(*sheet_, "Solving ...", true);
-  std::optional<SetupFigure> keep;
-  const auto chosen = static_cast<std::size_t>(keep_->currentIndex());
-  if (chosen > 0) keep = kSetupFigures[chosen - 1].value;
-  working_ = std::async(std::launch::async, [this, keep] { return solve(keep); });
+  working_ = std::async(std::launch::async, [this] { return solve(); });
 }
 
-SetupDialog::Done SetupDialog::solve(std::optional<SetupFigure> keep) const {
+SetupDialog::Done SetupDialog::solve() const {
   const auto refused = [](const std::string& why) { return Done{nullptr, false, QString::fromStdString(why), false}; };
   try {
-    const GrindJob job = readJobFile(file_, unsolvedFields(keep), operation_);
+    const JobToSetUp asked = readJobToSetUp(file_, operation_);
     auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
     if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
       return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");
     }
     const Range swivel = MachineModel(static_cast<std::string>(*description)).swivel();
-    const auto result = solveJobSetup(job, swivel, keep);
+    const auto result = solveJobSetup(asked.job, swivel, asked.wanted);
     if (const auto* refusal = std::get_if<std::string>(&result)) return refused(*refusal);
     const auto& setup = std::get<JobSetup>(result);
     const std::string refusal = planRefusal(setup);
-    const QString changes = QString::fromStdString(changesText(file_, setup));
-    const std::string text =
-        "in the job file\n" + changes.toStdString() + setupSheet(setup, swivel, aboveSwivel(setup.job)) + refusal;
-    if (!refusal.empty()) return refused(text + "It is not written.");
-    return {
-        std::make_shared<const JobSetup>(setup), false, QString::fromStdString(text), true, digestsOf(file_), changes};
+    const std::string changes = changesText(asked.before, setup.job);
+    const std::string sheet =
+        "in the set-up\n" + changes + setupSheet(setup, swivel, aboveSwivel(asked, setup.job)) + refusal;
+    if (!refusal.empty()) return refused(sheet + "It is not written.");
+    Done done{nullptr, false, QString::fromStdString(sheet), true, digestsOf(file_), QString::fromStdString(changes),
+              asked};
+    if (asked.setup_path.empty()) {
+      done.text += "The figures of the set-up are written by hand in the job file: no set-up file is written.\n";
+    } else {
+      done.solved = std::make_shared<const GrindJob>(setup.job);
+    }
+    return done;
   } catch (const std::exception& error) {
     return refused(error.what());
   }
 }
 
-std::optional<double> SetupDialog::aboveSwivel(const GrindJob& job) const {
+std::optional<double> SetupDialog::aboveSwivel(const JobFile& asked, const GrindJob& job) const {
   auto flange = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {flange_}, stop_);
   const auto number = flange ? numberOf(*flange) : std::nullopt;
   if (!number) return std::nullopt;
   MachineGeometry machine;
   machine.flange = *number;
-  return wheelAboveSwivel(file_, job, machine);
+  return wheelAboveSwivel(asked.wheel, job, machine);
 }
 
-SetupDialog::Done SetupDialog::write(const JobSetup& setup) const {
+SetupDialog::Done SetupDialog::write(const JobToSetUp& asked, const GrindJob& solved) const {
   try {
-    writeSetup(file_, setup);
-    const QString file = QString::fromStdString(file_);
-    return {nullptr, true, "Written into " + file + "; the old file is " + file + ".before.", true};
+    writeSetup(asked, solved);
+    return {nullptr, true, "Written into " + QString::fromStdString(asked.setup_path) + ".", true};
   } catch (const std::exception& error) {
     return {nullptr, false, error.what(), false};
   }
@@ -202,7 +194,6 @@ void SetupDialog::poll() {
 
 void SetupDialog::take(const Done& done) {
   solved_ = done;
-  keep_->setEnabled(true);
   refresh(last_, runs_);
   if (done.written) {
     sheet_->appendPlainText(done.text);

@@ -1,10 +1,9 @@
 #pragma once
 
 #include "flute_grinder/JobProgress.h"
-#include "flute_grinder/geometry/setup_solver.h"
+#include "flute_grinder/job/job_file.h"
 #include "panel/question.h"
 
-#include <QComboBox>
 #include <QDialog>
 #include <QLabel>
 #include <QPlainTextEdit>
@@ -20,18 +19,15 @@
 
 namespace grinder {
 
-struct GrindJob;
-struct JobSetup;
-
-/// Solves and shows the set-up sheet of a job file beside the file's figures, with one figure kept if asked. Writes the
-/// set-up into the file if the operator confirms it twice, but never into the file of the running job. Solving and
-/// writing have a thread of their own, which waits for a hanging master for a second at most.
+/// Solves and shows the set-up sheet of a job file beside the set-up that the job has. Writes the set-up file if the
+/// operator confirms it twice, but never that of the running job. Solving and writing have a thread of their own, which
+/// waits for a hanging master for a second at most.
 class SetupDialog : public QDialog {
   Q_OBJECT
 
  public:
   /// Begins to solve.
-  /// @param operation operation of the file, for readJobFile(). @param title title of the sheet.
+  /// @param operation operation of the file, for readJobToSetUp(). @param title title of the sheet.
   /// @param grinder resolved name of the node; the swivel's range comes from the robot description in its namespace.
   SetupDialog(const QString& file, const std::string& operation, const QString& title, const std::string& grinder,
               QWidget* parent);
@@ -41,18 +37,19 @@ class SetupDialog : public QDialog {
   void refresh(const flute_grinder::JobProgress& last, bool runs);
 
  Q_SIGNALS:
-  /// The set-up has been written into the file.
+  /// The set-up file has been written.
   void written();
 
  private:
   /// The result of the thread.
   struct Done {
-    std::shared_ptr<const JobSetup> setup;  ///< solved set-up that can be written
+    std::shared_ptr<const GrindJob> solved;  ///< job with a set-up that can be written
     bool written = false;
     QString text;
     bool good = false;
     std::vector<std::string> digests{};  ///< digests of the operations in the file
-    QString changes{};                   ///< changes to the file
+    QString changes{};                   ///< changes of the set-up
+    JobToSetUp asked{};                  ///< job as asked
   };
 
   QWidget* makeButtons();
@@ -61,9 +58,9 @@ class SetupDialog : public QDialog {
   void showQuestion(bool asks);
   void beginToWrite();
   bool isOfLastJob() const;
-  Done solve(std::optional<SetupFigure> keep) const;
-  std::optional<double> aboveSwivel(const GrindJob& job) const;
-  Done write(const JobSetup& setup) const;
+  Done solve() const;
+  std::optional<double> aboveSwivel(const JobFile& asked, const GrindJob& job) const;
+  Done write(const JobToSetUp& asked, const GrindJob& solved) const;
   void poll();
   void take(const Done& done);
 
@@ -72,7 +69,6 @@ class SetupDialog : public QDialog {
   flute_grinder::JobProgress last_;
   bool runs_ = false;
   QPlainTextEdit* sheet_;
-  QComboBox* keep_;
   QPushButton* write_;
   QLabel* why_not_;  ///< why the file is not written now
   Question* question_;

@@ -1,7 +1,6 @@
 #include "flute_grinder/plan/planned_job.h"
 
 #include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/plan/job_digest.h"
 
 #include <stdexcept>
 #include <vector>
@@ -40,7 +39,7 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) 
 
 PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const MachineShapes& shapes, const RunStart& run,
                         const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), jobDigest(*job), {}, {}, {}, {}};
+  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
   CutterCheck cutter = checkGroundCutter(planned.program->job());
   planned.complete = cutter.complete;

@@ -33,7 +33,7 @@ Json plannedJson(const PathStatistics& planned) {
 JobRecord::JobRecord(const PlannedJob& plan, JobNames names, const WorkOffsets& offsets, bool said_right)
     : program_(plan.program),
       planned_(plan.statistics),
-      digest_(plan.digest),
+      digest_(plan.program->job().digest()),
       names_(std::move(names)),
       offsets_(offsets),
       offsets_said_right_(said_right),
@@ -103,10 +103,10 @@ RecordHead JobRecord::head() const {
   head.operation = job.operationText();
   head.tool = toolText(job.cutter, job.tooth_angles.size());
   head.continues = program_->run().first != ToothPass{};
-  head.ends_tool = job.operations.empty() || job.operation + 1 == static_cast<int>(job.operations.size());
+  head.ends_tool = job.operation + 1 == static_cast<int>(job.operations.size());
   head.wheel = names_.wheel;
   head.dressed = names_.wheel_dressed;
-  head.wear = job.process.wheel_wear / kMillimetre;
+  head.wear = job.process().wheel_wear / kMillimetre;
   head.outcome = conclusion_.outcome;
   head.reason = conclusion_.reason;
   head.strokes = count(strokes_.strokes(), is_complete);

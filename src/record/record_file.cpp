@@ -4,7 +4,7 @@
 #include "flute_grinder/job/file_error.h"
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/regular_file.h"
-#include "flute_grinder/plan/sha256.h"
+#include "flute_grinder/job/sha256.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -91,13 +91,13 @@ Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tole
 }
 
 bool isJudged(const ToolFigureRow& row, const FigurePlace& p) {
-  if (row.of_relief && p.job->process.kind == OperationKind::kFlute) return false;
+  if (row.of_relief && p.job->process().kind == OperationKind::kFlute) return false;
   return row.value == ToolFigure::kLand || asked(row.value, p).has_value();
 }
 
 /// Whether a figure must exist at a place: an allowed incomplete flute has no rake face at its end.
 bool counts(const ToolFigureRow& row, const FigurePlace& p) {
-  return !row.of_complete || p.tooth().complete || !p.job->process.incomplete_ok;
+  return !row.of_complete || p.tooth().complete || !p.job->process().incomplete_ok;
 }
 
 /// Adds the value with the largest excess of all teeth in all sections.
@@ -171,7 +171,7 @@ const FeedLimit* slowedWithin(double flute_length, const std::vector<FeedLimit>&
 }
 
 Criterion feedOf(const RunFacts& run) {
-  const double asked = run.job->process.feed / kMillimetrePerMinute;
+  const double asked = run.job->process().feed / kMillimetrePerMinute;
   Criterion feed{kFeed, "mm/min", false, 1, asked, 0, {}, false, "", ""};
   if (const FeedLimit* slowed = slowedWithin(run.job->cutter.flute_length, run.feed_limits)) {
     feed.remark = "the plan slows down: " + slowed->cause +

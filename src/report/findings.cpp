@@ -189,7 +189,7 @@ Json documentOf(const ToolRecords::Operation& operation) {
     missing.push_back({{"tooth", place.tooth + 1}, {"pass", place.pass + 1}});
   }
   return {{"operation", operation.name()},
-          {"process", toJson(operation.asked)["process"]},
+          {"process", toJson(operation.asked)["operations"][static_cast<std::size_t>(operation.asked.operation)]},
           {"files", operation.files},
           {"runs", runs},
           {"missing", missing}};

@@ -1,8 +1,8 @@
 #include "flute_grinder/report/tool_records.h"
 
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/ground_strokes.h"
 
 #include <algorithm>
@@ -66,9 +66,9 @@ RunStrokes groundStrokes(const ValidJob& job, const std::vector<Record>& records
 ToolRecords::ToolRecords(const std::string& path) {
   const GrindJob job = parseJob(readRecord(path).body.at("job_file").dump(), path);
   std::map<std::string, int> by_digest;
-  for (int i = 0; i < std::max(1, static_cast<int>(job.operations.size())); ++i) {
-    operations_.push_back({job.ofOperation(i), {}, {}, {}});
-    by_digest[jobDigest(operations_.back().asked)] = i;
+  for (const GrindJob& operation : job.ofAllOperations()) {
+    operations_.push_back({operation, {}, {}, {}});
+    by_digest[jobDigest(operation)] = operation.operation;
   }
   std::vector<Run> runs = runsIn(folderOf(path), by_digest);
   const auto has_path = [&](const Run& run) {

@@ -32,7 +32,7 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Re
   std::vector<double> deepest(job->tooth_angles.size(), 0);
   std::vector<std::vector<GrindStroke>> strokes(job->tooth_angles.size());
   const auto at = [&](std::size_t tooth, double depth) {
-    return strokeOf(job, static_cast<int>(tooth), depth, job->process.wheel_wear);
+    return strokeOf(job, static_cast<int>(tooth), depth, job->process().wheel_wear);
   };
   for (const JobPass& pass : job.passes()) {
     const auto tooth = static_cast<std::size_t>(pass.place.tooth);
@@ -50,7 +50,7 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Re
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     if (deepest[i] > 0) strokes[i].push_back(at(i, deepest[i]));
     // A stroke in the air removes nothing.
-    if (strokes[i].empty()) strokes[i].push_back(at(i, -job->process.clearance));
+    if (strokes[i].empty()) strokes[i].push_back(at(i, -job->process().clearance));
   }
   return strokes;
 }
@@ -68,7 +68,7 @@ std::optional<double> shankOf(const CutterGeometry& cutter) {
 
 /// The part of the cutter that the wheel may touch. The rest is round.
 SolidExtent extentOf(const ValidJob& job) {
-  const auto& p = job->process;
+  const auto& p = job->process();
   const double stroke_end = job->cutter.flute_length + p.overtravel_shank;
   const auto shank = shankOf(job->cutter);
   const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job->cutter)));
@@ -109,7 +109,7 @@ class LastPasses {
  public:
   /// @param reached nothing for a finished job.
   LastPasses(const ValidJob& job, const std::optional<Reached>& reached)
-      : from_end_(job->process.direction == StrokeDirection::kFromEnd) {
+      : from_end_(job->process().direction == StrokeDirection::kFromEnd) {
     const int last = static_cast<int>(job.depths().size()) - 1;
     teeth_.resize(job->tooth_angles.size());
     for (const auto& [pass, depth, wear] : job.passes()) {
@@ -142,7 +142,7 @@ class Deviations {
  public:
   /// @param reached nothing for a finished job.
   Deviations(const GroundCutter& cutter, const ValidJob& job, const std::optional<Reached>& reached)
-      : length_(job->cutter.flute_length), kind_(job->process.kind), last_(job, reached) {
+      : length_(job->cutter.flute_length), kind_(job->process().kind), last_(job, reached) {
     const CutterGeometry& asked = job->cutter;
     for (std::size_t i = 0; i < kPlaces; ++i) {
       std::vector<Parts>& of_teeth = parts_.emplace_back();
@@ -262,7 +262,7 @@ GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
     if (same < i) continue;
     std::vector<WheelSweep> swept;
     for (const GrindStroke& stroke : strokes[i]) {
-      swept.push_back(sweepOf(job, static_cast<int>(i), job->process.wheel_wear, stroke));
+      swept.push_back(sweepOf(job, static_cast<int>(i), job->process().wheel_wear, stroke));
     }
     flutes.push_back(before ? before->flutes()[before->teeth()[i].flute] : swept);
     if (!before) continue;
@@ -276,7 +276,7 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
                           const std::optional<Reached>& reached) {
   MarkerArray array = clearedArray();
   try {
-    const bool of_flutes = job->process.kind == OperationKind::kFlute;
+    const bool of_flutes = job->process().kind == OperationKind::kFlute;
     if (of_flutes && reached && reached->pass == job.passes().front().place && reached->phase == PassPhase::kBefore) {
       appendBlank(array, job, ns);
       return array;

@@ -33,7 +33,7 @@ PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& 
 
 MarkerArray sceneMarkers(const GrindJob& job, const std::string& shown) {
   MarkerArray array = clearedArray();
-  appendWheel(array, wheelOf(job).worn(job.process.wheel_wear));
+  appendWheel(array, wheelOf(job).worn(job.process().wheel_wear));
   Marker& label = append(array, "shown", Marker::TEXT_VIEW_FACING, "work");
   const double height = kTitleHeight * job.cutter.flute_length;
   label.pose.position = point(job.cutter.flute_length, 0, -2 * job.cutter.end_diameter - 4 * height);
@@ -113,7 +113,7 @@ void Scene::trackGround(const Setpoint& setpoint, const Axes& actual) {
   }
   if (reached.phase != phase) reached = {pass, phase, setpoint.position[kX]};
   // The ground part stays ground when the wheel goes back along the stroke; a faulty drive may report NaN.
-  const bool from_end = shown_->job->process.direction == StrokeDirection::kFromEnd;
+  const bool from_end = shown_->job->process().direction == StrokeDirection::kFromEnd;
   if (from_end ? actual[kX] > reached.x : actual[kX] < reached.x) reached.x = actual[kX];
 }
 

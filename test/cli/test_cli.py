@@ -246,15 +246,19 @@ class TestPlan(CommandLine):
                          '%s:%d: a second document begins here; allowed: one\n' % (machine, text.count('\n') + 1))
 
 
+def shipped_jobs():
+    return sorted(path for path in pathlib.Path(gc.package_file('jobs')).glob('*.yaml') if '.setup.' not in path.name)
+
+
 class TestGoal(CommandLine):
     """`grind goal`, and the module for clients in Python that runs it."""
 
     def test_goals_of_the_shipped_jobs(self):
-        jobs = sorted(pathlib.Path(gc.package_file('jobs')).glob('*.yaml'))
+        jobs = shipped_jobs()
         self.assertGreater(len(jobs), 5)
         for path in jobs:
             if 'operations:' in path.read_text():
-                kinds = [flute_grinder.job.goal(path, number).process.kind for number in (1, 2, 3)]
+                kinds = [gc.process_of(flute_grinder.job.goal(path, number)).kind for number in (1, 2, 3)]
                 self.assertEqual(kinds, [Process.FLUTE, Process.PRIMARY, Process.SECONDARY])
                 self.assertEqual(flute_grinder.job.goal(path, 'primary').operation, 1)
                 continue
@@ -263,7 +267,7 @@ class TestGoal(CommandLine):
             self.assertEqual((goal.dry_run, goal.discard, goal.ignore_offset_check, goal.first_tooth, goal.first_pass), (False,) * 3 + (0, 0))
             for field, value in gc.job_from_file(str(path)).items():
                 part, name = field.split('.')
-                self.assert_close(getattr(getattr(goal, part), name), value, '%s: %s' % (path, field))
+                self.assert_close(getattr(gc.part_of(goal, part), name), value, '%s: %s' % (path, field))
 
     def assert_close(self, value, expected, text):
         if isinstance(expected, (list, tuple)):
@@ -274,7 +278,7 @@ class TestGoal(CommandLine):
             self.assertTrue(math.isclose(value, expected, rel_tol=1e-12), '%s = %r, not %r' % (text, value, expected))
 
     def test_the_folder_has_a_job_for_everything_that_a_job_can_ask_for(self):
-        jobs = [yaml.safe_load(path.read_text()) for path in pathlib.Path(gc.package_file('jobs')).glob('*.yaml')]
+        jobs = [yaml.safe_load(path.read_text()) for path in shipped_jobs()]
         jobs = [job for job in jobs if 'operations' not in job]
         self.assertEqual({'file' in job['process']['wheel'] for job in jobs}, {True, False})
         self.assertEqual({job['process']['order'] for job in jobs}, {'tooth_major', 'pass_major'})
@@ -317,15 +321,13 @@ class TestOutput(CommandLine):
         wheel, linked, machine = self.path('wheel.yaml'), self.path('linked'), self.path('machine.yaml')
         os.link(job, linked)
         shutil.copy(gc.package_file('config/grinder.yaml'), machine)
-        os.symlink('wheel.yaml', self.path('job.yaml.before'))
         before = self.contents()
         for output, *arguments in ((job, 'plan', job, '--csv', job), (linked, 'plan', job, '--csv', linked),
                                    (wheel, 'plan', job, '--csv', wheel),
                                    (machine, 'plan', job, '--machine', machine, '--csv', machine),
                                    (job, 'table', job, '--step-length', '0.2', '--csv', job),
                                    (job, 'simulate', job, '--stl', job), (wheel, 'simulate', job, '--svg', wheel),
-                                   (table, 'report', table, '-o', table), (table, 'report', table, '--pdf', table),
-                                   (job + '.before', 'setup', job, '--write')):
+                                   (table, 'report', table, '-o', table), (table, 'report', table, '--pdf', table)):
             self.assertEqual(self.grind(2, *arguments).stderr,
                              output + ': cannot be written: the command reads it; allowed: a file that it does not read\n')
         both = self.path('both')

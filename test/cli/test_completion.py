@@ -102,7 +102,6 @@ class TestCompletion(unittest.TestCase):
         self.assertEqual(self.offered(*table, '--even-step', '=', 'th'), {'third_order'})
         self.assertEqual(self.offered(*table, '--even-step', '='), {'published', 'third_order', 'exact'})
         self.assertEqual(self.offered(*table, '--step-length', ''), set())
-        self.assertEqual(self.offered('grind', 'setup', 'a.yaml', '--keep', ''), {'swivel', 'height', 'depth'})
         self.assertEqual(self.offered('grind', 'override', ''), set())
         self.assertEqual(self.offered('grind', 'confirm-swivel', ''), set())
         self.assertEqual(self.offered('grind', 'hold', ''), set())

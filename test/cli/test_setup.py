@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Shows that `grind setup` writes the set-up for the tool that a job asks for into the job file, which `grind plan` accepts, what its
-sheet says, and that a refusal leaves the file as it was."""
+"""Shows that `grind setup` writes the set-up for the tool that a job asks for into its set-up file, which `grind plan` accepts, what
+its sheet says, and that a refusal leaves the file as it was."""
 
 import math
 import os
@@ -26,9 +26,8 @@ URDF = gc.package_file('urdf/grinder.urdf')
 
 class TestSetup(CommandLine):
     def job(self, name, source=PAPER_JOB, **changes):
-        """Writes a shipped job with other values as text, `None` to leave a key out; the keys are unique in it."""
-        with open(source) as file:
-            text = file.read().replace('../wheels', gc.package_file('wheels'))
+        """Writes a shipped job, to be solved, with other values as text, `None` to leave a key out; the keys are unique in it."""
+        text = self.text(source).replace('../wheels', gc.package_file('wheels')).replace('paper.setup', 'job.setup')
         for key, value in changes.items():
             pattern = r'(?m)^( *)%s: *(\{.*?\}|\[.*?\]|[^ #\n]+)(.*)\n' % key
             self.assertEqual(len(re.findall(pattern, text)), 1, key)
@@ -45,11 +44,19 @@ class TestSetup(CommandLine):
 
 class TestFigures(TestSetup):
     def test_the_papers_cutter_without_a_setup(self):
-        job = self.job('job.yaml', setup=None)
-        self.assertIn("'grind setup --write' finds it", self.grind(2, 'plan', job).stderr)
+        job = self.job('job.yaml')
+        self.assertRegex(self.grind(2, 'plan', job).stderr, "job.setup.yaml: cannot be read: .*; 'grind setup --write' solves it")
         found = self.setup(job, '--write')
         self.grind(0, 'plan', job)
         self.assertEqual(self.setup(job), found)
+        again = self.job('job.yaml', rake_angle_deg=9)
+        self.assertIn('solved for cutter.rake_angle_deg = 8; the job now has cutter.rake_angle_deg = 9',
+                      self.grind(2, 'plan', again).stderr)
+
+    def test_what_the_job_asks_for_is_kept(self):
+        job = self.job('job.yaml', setup='{file: job.setup.yaml, swivel_deg: 32.5}', rake_tolerance_deg=2, core_tolerance_mm=0.2)
+        self.assertEqual(self.setup(job, '--write')['swivel_deg'], 32.5)
+        self.grind(0, 'plan', job)
 
     def test_sheet(self):
         sheet, found = self.grind(0, 'setup', PAPER_JOB).stdout, self.setup(PAPER_JOB)
@@ -69,13 +76,14 @@ class TestFigures(TestSetup):
 
 
 class TestRefusals(TestSetup):
-    def test_what_is_kept_must_be_there(self):
-        for keep, key in (('swivel', 'process.setup.swivel_deg'), ('height', 'process.setup.height_mm')):
-            said = self.grind(2, 'setup', self.job('job.yaml', setup=None), '--keep', keep).stderr
-            self.assertRegex(said, r'job\.yaml:1: %s is missing' % re.escape(key))
-        said = self.grind(2, 'setup', self.job('job.yaml', depth_mm=None), '--keep', 'depth').stderr
-        self.assertRegex(said, 'depth_mm is missing')
-        self.assertRegex(self.grind(2, 'setup', PAPER_JOB, '--keep', 'rake').stderr, 'rake')
+    def test_figures_by_hand_are_not_written_over(self):
+        job = gc.job_file(self.path('hand.yaml'))
+        before = self.text(job)
+        self.assertEqual(self.grind(2, 'setup', job, '--write').stderr,
+                         job + ': the figures of the set-up are written by hand; to have them written, put setup: {file: '
+                         'hand.setup.yaml} in place of setup, depth_mm, depth_end_mm and overtravel_mm\n')
+        self.assertEqual(self.text(job), before)
+        self.grind(0, 'setup', job)
 
     def test_urdf_without_a_swivel(self):
         urdf = self.write('none.urdf', self.text(URDF).replace('"wheel_swivel"', '"other"'))
@@ -85,13 +93,12 @@ class TestRefusals(TestSetup):
     def test_what_a_plan_refuses_is_not_written(self):
         # Each tooth has a helix of its own, and the set-up is for the middle.
         job = self.job('job.yaml', teeth=2, spiral_angle_deg=None, cut='right_hand\n  spiral_angles_deg: [27, 33]')
-        before = self.text(job)
         said = self.grind(1, 'setup', job, '--write').stderr
         self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth \d is ground with .*, or set '
-                               r'process\.z_law: constant_rake\n(a plan would refuse this tool: .*\n)*.*job\.yaml: nothing was written\n$')
-        self.assertEqual(self.text(job), before)
+                               r'process\.z_law: constant_rake\n(a plan would refuse this tool: .*\n)*.*job\.setup\.yaml: nothing was written\n$')
+        self.assertEqual(os.listdir(self.folder), ['job.yaml'])
         self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)
-        job = self.job('job.yaml', rake_tolerance_deg='0.01', depth_mm='2.6575\n  z_law: constant_rake')
+        job = self.job('job.yaml', rake_tolerance_deg='0.01', clearance_mm='5\n  z_law: constant_rake')
         self.setup(job, '--write')
         self.grind(0, 'plan', job)
 
@@ -119,7 +126,8 @@ class TestTouchOff(TestSetup):
 class TestFile(TestSetup):
     def test_full_disk_leaves_the_old_file(self):
         job = self.job('job.yaml')
-        before = self.text(job)
+        self.grind(0, 'setup', job, '--write')
+        before = self.text(self.path('job.setup.yaml'))
 
         def full_disk():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -128,9 +136,9 @@ class TestFile(TestSetup):
         done = subprocess.run([gc.program('grind'), 'setup', job, '--write'], stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=full_disk)
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, 'job.yaml: cannot be written: File too large; nothing was written')
-        self.assertEqual(self.text(job), before)
-        self.assertEqual(os.listdir(self.folder), ['job.yaml'])
+        self.assertRegex(done.stderr, 'job.setup.yaml: cannot be written: File too large\n$')
+        self.assertEqual(self.text(self.path('job.setup.yaml')), before)
+        self.assertEqual(set(os.listdir(self.folder)), {'job.yaml', 'job.setup.yaml'})
 
 
 if __name__ == '__main__':

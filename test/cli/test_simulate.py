@@ -158,7 +158,8 @@ class TestRecord(TestSimulate):
         """A job of three teeth, in one pass, one to finish and one to spark out."""
         with open(gc.package_file('jobs/left_hand_d8_t3.yaml')) as file:
             job = yaml.safe_load(file)
-        job['process'].update(infeed_mm=2, feed_mm_min=1000)
+        setup = {'file': gc.package_file('jobs/left_hand_d8_t3.setup.yaml')}
+        job['process'].update(infeed_mm=2, feed_mm_min=1000, setup=setup)
         return self.write('left_hand.yaml', yaml.safe_dump(job))
 
     def record(self, rows, job=PAPER_JOB):

@@ -30,7 +30,7 @@ class TestToolOfBag(unittest.TestCase):
         cls.folder = folder.name
         cls.job = os.path.join(cls.folder, 'reamer.yaml')
         with open(gc.package_file('jobs/taper_reamer_d6_t6.yaml'), encoding='utf-8') as file:
-            text = file.read().replace('../wheels', gc.package_file('wheels'))
+            text = file.read().replace('../wheels', gc.package_file('wheels')).replace('file: taper', 'file: ' + gc.package_file('jobs/taper'))
         # In two passes, and fast.
         for slow, fast in (('feed_mm_min: 700', 'feed_mm_min: 2000'), ('feed_mm_min: 300', 'feed_mm_min: 1000'),
                            (' infeed_mm: 0.05', ' infeed_mm: 2'), (' infeed_mm: 0.4', ' infeed_mm: 2')):

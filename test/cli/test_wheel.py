@@ -86,10 +86,9 @@ class TestMeasure(WheelTest):
         self.grind(0, 'wheel', 'measure', path, '--diameter', '124.7')
         new = text_of(path).split('\n')
         old = text_of(WORN).split('\n')
-        self.assertEqual(len(new), len(old))
-        differing = [(a, b) for a, b in zip(old, new) if a != b]
-        self.assertEqual([a.split(':')[0].strip() for a, _ in differing], ['date', 'diameter_mm', 'by'])
-        self.assertEqual(differing[1][1], '  diameter_mm: 124.7           # half of what is lost is the wear')
+        measured = old.index('measured:')
+        self.assertEqual(new[:measured + 1], old[:measured + 1])
+        self.assertEqual(len(self.wheel(path)), len(self.wheel(WORN)))
 
     def test_larger_wheel_is_refused_unless_forced(self):
         path = self.copy(WORN)
@@ -165,7 +164,7 @@ class TestZeros(WheelTest):
         self.assertEqual(said, "--stickout = 29 mm; allowed: the flutes' length or more, 30 mm\n")
         wheel = self.write('wheel.yaml', re.sub('flange_mm.*', '', text_of(NEW)))
         job = self.write('job.yaml', text_of(gc.package_file('jobs/unequal_d12_t4.yaml')).replace(
-            '../wheels/straight_d100_w3.yaml', 'wheel.yaml'))
+            '../wheels/straight_d100_w3.yaml', 'wheel.yaml').replace('file: unequal', 'file: ' + gc.package_file('jobs/unequal')))
         self.assertEqual(self.grind(2, 'zeros', job, '--stickout', '62').stderr,
                          '--flange is missing, and %s has no flange_mm\n' % wheel)
 

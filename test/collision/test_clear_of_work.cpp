@@ -39,13 +39,13 @@ GrindJob thickShankJob(StrokeDirection direction) {
   job.cutter.flute_length = 0.022;
   job.cutter.shank_diameter = 0.012;
   job.tooth_angles = {0, units::kPi};
-  job.process.direction = direction;
-  job.process.depth = job.process.infeed = 1.6e-3;
-  job.process.clearance = 0.5e-3;
-  job.process.overtravel_end = 3.5e-3;
-  job.process.overtravel_shank = 8e-3;
-  job.process.setup_swivel = 43.32 * kDegree;
-  job.process.setup_height = -1.366e-3;
+  job.process().direction = direction;
+  job.process().depth = job.process().infeed = 1.6e-3;
+  job.process().clearance = 0.5e-3;
+  job.process().overtravel_end = 3.5e-3;
+  job.process().overtravel_shank = 8e-3;
+  job.process().setup_swivel = 43.32 * kDegree;
+  job.process().setup_height = -1.366e-3;
   return job;
 }
 
@@ -95,7 +95,7 @@ TEST(ClearOfWork, WithoutACollisionClearanceAContactIsRefused) {
   // A shank that the run-out may not cut.
   GrindJob job = thickShankJob(StrokeDirection::kFromEnd);
   job.cutter.shank_diameter = 0.02;
-  job.process.clearance = 10e-3;
+  job.process().clearance = 10e-3;
   const Checked plan = checked(job, 0);
   ASSERT_TRUE(plan.reason);
   EXPECT_EQ(plan.reason->field, "");
@@ -103,7 +103,7 @@ TEST(ClearOfWork, WithoutACollisionClearanceAContactIsRefused) {
 
 TEST(ClearOfWork, ALiftOutOfAFluteIsAllowedAndOneFromBelowTheWorkIsNot) {
   GrindJob job = thickShankJob(StrokeDirection::kFromEnd);
-  job.process.clearance = 3e-3;
+  job.process().clearance = 3e-3;
   EXPECT_FALSE(checked(job, 1e-3, Axes(0.01, -1.6e-3, 0, 1)).reason);
   // The wheel's upper side is 3 mm below the cutter.
   const Axes below(0.01, -(0.005 + 0.1 + 3e-3), 0, 0);
@@ -140,7 +140,7 @@ struct Frustum {
 
 /// See CollisionCheck's tests for its place.
 Shape wheelOf(const GrindJob& job, const Axes& at) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double y = job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + at[kY];
   return wheelAt({at[kX], y, p.setup_height + at[kZ]}, p.setup_swivel, p.wheel_diameter / 2, p.wheel_width);
 }
@@ -164,7 +164,7 @@ rc::Gen<GrindJob> randomJob() {
     c.shank_diameter = std::max(1e-3, large + *uniform(-2, 6) * kMillimetre);
     c.neck_length = *uniform(0, 1) < 0.2 ? *uniform(5, 30) * kMillimetre : 0;
     job.tooth_angles = {0, 3};
-    GrindProcess& p = job.process;
+    GrindProcess& p = job.process();
     p.direction = *uniform(0, 1) < 0.5 ? StrokeDirection::kFromEnd : StrokeDirection::kToEnd;
     p.depth = p.infeed = *uniform(0.05, 0.2) * c.end_diameter;
     p.clearance = *uniform(0.1, 4) * kMillimetre;
@@ -209,7 +209,7 @@ RC_GTEST_PROP(ClearOfWorkProperty, NoSetpointOfAGoodPlanIsTooCloseAndEveryRefusa
   RC_CLASSIFY(!plan.reason);
   const bool in_work = plan.reason && !plan.reason->field.empty();
   RC_CLASSIFY(in_work);
-  const double allowed = std::min(1e-3, job.process.clearance / 2);
+  const double allowed = std::min(1e-3, job.process().clearance / 2);
   if (in_work) {
     const double distance = distanceOf(job, plan.closest->axes);
     RC_ASSERT(std::abs(distance - plan.closest->distance) <= kAccuracy);

@@ -20,7 +20,7 @@ using units::kDegree;
 GrindJob paperJob() {
   GrindJob job = test_support::paperJob();
   job.cutter.shank_diameter = 0.016;
-  job.process.setup_swivel = 31.769 * kDegree;
+  job.process().setup_swivel = 31.769 * kDegree;
   return job;
 }
 
@@ -30,7 +30,7 @@ GrindJob cylinderJob(double shank_diameter) {
   job.cutter.cone_angle = 0;
   job.cutter.flute_length = 0.02;
   job.cutter.shank_diameter = shank_diameter;
-  job.process.depth = job.process.infeed = 0.0016;
+  job.process().depth = job.process().infeed = 0.0016;
   return job;
 }
 
@@ -49,10 +49,10 @@ CollisionResult checked(const GrindJob& job, const std::string& urdf = shippedUr
 TEST(JobCollision, ATenthOfAMillimetreDecides) {
   for (const double wanted : {-0.1e-3, 0.9e-3, 1.1e-3}) {
     GrindJob job = cylinderJob(0.01);
-    job.process.setup_swivel = 0;
+    job.process().setup_swivel = 0;
     const double across = 0.055 - 0.0016 - 0.021;
     const double x = 0.062 - std::sqrt(std::pow(0.05 + wanted, 2) - across * across);
-    job.cutter.flute_length = x - job.process.overtravel_shank;
+    job.cutter.flute_length = x - job.process().overtravel_shank;
     const CollisionResult result = checked(job, SmallMachine().urdf());
     EXPECT_EQ(!result.reason, wanted > 1e-3) << wanted;
     EXPECT_NEAR(result.closest->distance, std::max(0.0, wanted), 3e-6);
@@ -71,7 +71,7 @@ TEST(JobCollision, AShiftTurnsTheCutterAndMovesNothingElse) {
   GrindJob job = paperJob();
   const ClosestPlace without = *checked(job).closest;
   for (const double x_shift : {-15e-3, 11.847e-3}) {
-    job.process.setup_x_shift = x_shift;
+    job.process().setup_x_shift = x_shift;
     const ClosestPlace with = *checked(job).closest;
     EXPECT_EQ(with.distance, without.distance) << x_shift;
     EXPECT_EQ(with.first + with.second, without.first + without.second) << x_shift;
@@ -81,12 +81,12 @@ TEST(JobCollision, AShiftTurnsTheCutterAndMovesNothingElse) {
 /// A job with a bow of Z of some tenths of a millimetre.
 ValidJob bentJob() {
   GrindJob job = paperJob();
-  job.process.infeed = job.process.depth / 2;
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process().infeed = job.process().depth / 2;
+  job.process().z_law = ZLaw::kConstantRake;
   ZCorrection bow;
-  bow.from = -job.process.overtravel_end;
+  bow.from = -job.process().overtravel_end;
   bow.pieces = 4;
-  bow.piece = (job.cutter.flute_length + job.process.overtravel_end + job.process.overtravel_shank) / bow.pieces;
+  bow.piece = (job.cutter.flute_length + job.process().overtravel_end + job.process().overtravel_shank) / bow.pieces;
   for (int i = 0; i < bow.coefficientCount(); ++i) {
     bow.coefficients[static_cast<std::size_t>(i)] = 0.3e-3 * std::sin(1.1 * i);
   }
@@ -122,7 +122,7 @@ TEST(JobCollision, ABentStrokeIsFollowedToAMicrometre) {
 
 TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
   GrindJob longer = *bentJob();
-  longer.process.wheel_diameter = 0.5;
+  longer.process().wheel_diameter = 0.5;
   longer.cutter.flute_length = 0.16;
   const ValidJob job = ValidJob(longer).withZCorrections({bentJob().zCorrectionOf(0)});
   const CollisionResult result = checkCollision(programOf(job), shippedShapes());
@@ -133,13 +133,13 @@ TEST(JobCollision, OfABentStrokeTheMoveIsNamed) {
 
 TEST(JobCollision, TheStrokesEndIsTheDeepestAtTheShank) {
   GrindJob job = paperJob();
-  job.process.infeed = job.process.depth / 3;
+  job.process().infeed = job.process().depth / 3;
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    job.process.direction = direction;
+    job.process().direction = direction;
     const Axes end = collisionJobOf(programOf(ValidJob(job))).stroke_end;
-    const double x = job.cutter.flute_length + job.process.overtravel_shank;
+    const double x = job.cutter.flute_length + job.process().overtravel_shank;
     EXPECT_DOUBLE_EQ(end[kX], x);
-    EXPECT_NEAR(end[kY], x * std::tan(job.cutter.cone_angle) - job.process.depth, 1e-12);
+    EXPECT_NEAR(end[kY], x * std::tan(job.cutter.cone_angle) - job.process().depth, 1e-12);
   }
 }
 

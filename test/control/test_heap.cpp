@@ -75,9 +75,9 @@ TEST(HeapUse, IsNoneOfStopsAndFeedOverrides) {
 TEST(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
   const LoopConfig config = machineConfig();
   GrindJob job = readJobFile("test/jobs/paper.yaml");
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process().z_law = ZLaw::kConstantRake;
   ZCorrection bow;
-  bow.from = -job.process.overtravel_end;
+  bow.from = -job.process().overtravel_end;
   bow.pieces = ZCorrection::kMaxPieces;
   bow.piece = 3e-3;
   for (double& c : bow.coefficients) c = 1e-6 * static_cast<double>(&c - bow.coefficients.data());

@@ -86,11 +86,11 @@ TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
     machine.flange = within(-0.05, 0.05);
     GrindJob job;
     job.cutter.end_diameter = within(0.0005, 0.03);
-    job.process.wheel_diameter = within(0.05, 0.2);
-    job.process.wheel_wear = within(0, 0.005);
-    job.process.wheel_width = within(0.0005, 0.02);
-    job.process.setup_height = within(-0.01, 0.01);
-    job.process.setup_swivel = within(-60, 60) * kDegree;
+    job.process().wheel_diameter = within(0.05, 0.2);
+    job.process().wheel_wear = within(0, 0.005);
+    job.process().wheel_width = within(0.0005, 0.02);
+    job.process().setup_height = within(-0.01, 0.01);
+    job.process().setup_swivel = within(-60, 60) * kDegree;
     const Mounting mounting{within(-0.02, 0.02), within(0.03, 0.1)};
     const Eigen::Vector3d zero = workZero(machine, job, mounting);
     const std::map<std::string, double> joints{{"axis_x", zero.x()},
@@ -98,17 +98,18 @@ TEST(WorkZero, PutsTheUrdfsWheelOverTheCuttersEnd) {
                                                {"axis_z", zero.z()},
                                                {"y_zero", machine.swivel_centre.y()},
                                                {"z_zero", machine.swivel_centre.z()},
-                                               {"wheel_swivel", job.process.setup_swivel}};
+                                               {"wheel_swivel", job.process().setup_swivel}};
     // In the URDF's wheel frame the flange's face looks down at the wheel's upper face.
     const double upper_face = machine.flange - mounting.flange_to_wheel;
     const Eigen::Vector3d wheel =
-        poseOf(model, "wheel", joints) * Eigen::Vector3d(0, 0, upper_face - job.process.wheel_width / 2);
+        poseOf(model, "wheel", joints) * Eigen::Vector3d(0, 0, upper_face - job.process().wheel_width / 2);
     const Eigen::Vector3d end =
         poseOf(model, "chuck", joints) * Eigen::Vector3d(machine.collet_face - mounting.stickout, 0, 0);
     const Eigen::Vector3d from_end = wheel - end;
     EXPECT_NEAR(from_end.x() + machine.swivel_centre.x(), 0, 1e-12);
-    EXPECT_NEAR(from_end.y() - machine.work_axis_y, (job.cutter.end_diameter + job.process.wheel_diameter) / 2, 1e-12);
-    EXPECT_NEAR(from_end.z() - machine.work_axis_z, job.process.setup_height, 1e-12);
+    EXPECT_NEAR(from_end.y() - machine.work_axis_y, (job.cutter.end_diameter + job.process().wheel_diameter) / 2,
+                1e-12);
+    EXPECT_NEAR(from_end.z() - machine.work_axis_z, job.process().setup_height, 1e-12);
   }
 }
 

@@ -55,7 +55,7 @@ def check_output(session, item, last):
 def grind_job(command, job, *arguments):
     """What a subcommand of grind says of a job that is given as text."""
     with tempfile.NamedTemporaryFile('w', suffix='.yaml') as file:
-        file.write(job)
+        file.write(job.replace('setup: {file: ', 'setup: {file: %s/jobs/' % ROOT))
         file.flush()
         return subprocess.run([ROOT / 'build/devel/lib/flute_grinder/grind', command, file.name, *arguments], check=True,
                               env=dict(os.environ, ROS_PACKAGE_PATH=str(ROOT)), stdout=subprocess.PIPE,

@@ -43,15 +43,15 @@ std::optional<GrindJob> jobFor(const Shop& s) {
   job.cutter.rake_tolerance = 2 * kDegree;
   test_support::askForRakeAlone(job.cutter);
   job.cutter.shank_diameter = 10 * kMillimetre;
-  job.process.wheel_diameter = s.wheel * kMillimetre;
-  job.process.wheel_width = s.width * kMillimetre;
-  job.process.depth = job.process.infeed = solved->depth;
-  job.process.setup_swivel = solved->setup.swivel;
-  job.process.setup_height = solved->setup.height;
+  job.process().wheel_diameter = s.wheel * kMillimetre;
+  job.process().wheel_width = s.width * kMillimetre;
+  job.process().depth = job.process().infeed = solved->depth;
+  job.process().setup_swivel = solved->setup.swivel;
+  job.process().setup_height = solved->setup.height;
   // The correction moves where the ends of the flute are formed by a little.
-  job.process.overtravel_end = solved->overtravel[0] + 0.2 * kMillimetre;
-  job.process.overtravel_shank = solved->overtravel[1] + 0.2 * kMillimetre;
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process().overtravel_end = solved->overtravel[0] + 0.2 * kMillimetre;
+  job.process().overtravel_shank = solved->overtravel[1] + 0.2 * kMillimetre;
+  job.process().z_law = ZLaw::kConstantRake;
   return job;
 }
 
@@ -70,7 +70,7 @@ double rakeError(const GroundCutter& cutter, const GrindJob& job) {
 }
 
 double publishedRakeError(GrindJob job) {
-  job.process.z_law = ZLaw::kPublished;
+  job.process().z_law = ZLaw::kPublished;
   return rakeError(groundCutterOf(ValidJob(job)), job);
 }
 
@@ -108,7 +108,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
     if (publishedRakeError(*job) > 0.005) ++bent;
     EXPECT_LE(rakeError(groundCutterOf(*with_law), *job), 0.005);
     const SetupRequest request = requestFor(s);
-    brute::Bench bench{request, job->process.setup_swivel, job->process.setup_height, job->process.depth, 800,
+    brute::Bench bench{request, job->process().setup_swivel, job->process().setup_height, job->process().depth, 800,
                        100,     with_law->zCorrectionOf(0)};
     for (const double part : {0.13, 0.5, 0.83}) {
       EXPECT_NEAR(bench.rake(part * job->cutter.flute_length) / kDegree, s.rake, 0.005) << part;
@@ -125,16 +125,16 @@ TEST(ConstantRake, WithAShiftTheRakeIsTheSameOverTheWholeFlute) {
     Shop shop = kSteep;
     if (hand < 0) shop.spiral = -shop.spiral, shop.cut = CutDirection::kLeftHand;
     GrindJob job = jobFor(shop).value();
-    job.process.setup_x_shift = x_shift;
-    (hand < 0 ? job.process.wheel_corner_radius_upper : job.process.wheel_corner_radius_lower) = 0.3 * kMillimetre;
+    job.process().setup_x_shift = x_shift;
+    (hand < 0 ? job.process().wheel_corner_radius_upper : job.process().wheel_corner_radius_lower) = 0.3 * kMillimetre;
     SetupRequest request = requestFor(shop);
     request.wheel = wheelOf(job);
     const ValidJob with_law = withLaws(ValidJob(job));
     EXPECT_LT(rakeError(groundCutterOf(with_law), job), 0.005);
     const brute::Bench bench{request,
-                             job.process.setup_swivel,
-                             job.process.setup_height,
-                             job.process.depth,
+                             job.process().setup_swivel,
+                             job.process().setup_height,
+                             job.process().depth,
                              800,
                              100,
                              with_law.zCorrectionOf(0),
@@ -149,7 +149,7 @@ TEST(ConstantRake, OfAWornWheelTeethShareACorrectionWithTheirSpiralAngle) {
   GrindJob job = steepJob();
   job.tooth_angles = {0, 1.5, 3.1, 4.6};
   job.spiral_angles = {20 * kDegree, 20.2 * kDegree, 20 * kDegree, 20.2 * kDegree};
-  job.process.wheel_wear = 5 * kMillimetre;
+  job.process().wheel_wear = 5 * kMillimetre;
   const ValidJob with_law = withLaws(ValidJob(job));
   const auto same = [&](int i, int k) {
     return with_law.zCorrectionOf(i).coefficients == with_law.zCorrectionOf(k).coefficients;
@@ -167,9 +167,9 @@ TEST(ConstantRake, TheSameJobGivesTheSameBitsEitherWayOfTheStroke) {
   other.coefficients[2] += 1e-6;
   const ValidJob again = withLaws(once.withZCorrections({other}));
   EXPECT_EQ(std::memcmp(&again.zCorrectionOf(0), &once.zCorrectionOf(0), sizeof(ZCorrection)), 0);
-  job.process.direction = StrokeDirection::kToEnd;
+  job.process().direction = StrokeDirection::kToEnd;
   EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).coefficients, once.zCorrectionOf(0).coefficients);
-  job.process.z_law = ZLaw::kPublished;
+  job.process().z_law = ZLaw::kPublished;
   EXPECT_EQ(withLaws(ValidJob(job)).zCorrectionOf(0).pieces, 0);
 }
 
@@ -185,7 +185,7 @@ TEST(ConstantRake, ACylinderNeedsNoCorrection) {
 
 TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
   GrindJob job = steepJob();
-  job.process.setup_swivel += 25 * kDegree;
+  job.process().setup_swivel += 25 * kDegree;
   const Reason reason = refusalOf(job);
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_DOUBLE_EQ(reason.limit, 14 * kDegree);
@@ -194,7 +194,7 @@ TEST(ConstantRake, ASetUpThatIsFarOffIsRefusedWithWhatIsGround) {
 
 TEST(ConstantRake, AWheelThatDoesNotReachTheFluteIsRefused) {
   GrindJob job = steepJob();
-  job.process.setup_height = 90 * kMillimetre;
+  job.process().setup_height = 90 * kMillimetre;
   const Reason reason = refusalOf(job);
   EXPECT_EQ(reason.kind, ReasonKind::kUnevenRake);
   EXPECT_GT(reason.low, reason.value);

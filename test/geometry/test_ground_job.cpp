@@ -47,19 +47,19 @@ Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
 GrindJob cylinder(double swivel_deg) {
   GrindJob job = paper();
   job.cutter.cone_angle = 0;
-  job.process.wheel_width = 6 * kMillimetre;
-  job.process.setup_swivel = swivel_deg * kDegree;
-  job.process.setup_height =
+  job.process().wheel_width = 6 * kMillimetre;
+  job.process().setup_swivel = swivel_deg * kDegree;
+  job.process().setup_height =
       job.cutter.end_diameter / 2 * std::sin(job.cutter.rake_angle) - 3 * kMillimetre / std::cos(swivel_deg * kDegree);
-  job.process.overtravel_end = job.process.overtravel_shank = 8 * kMillimetre;
+  job.process().overtravel_end = job.process().overtravel_shank = 8 * kMillimetre;
   return job;
 }
 
 TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    SCOPED_TRACE(entry.path());
-    const GrindJob job = readJobFile(entry.path(), {}, "flute");
+  for (const std::string& entry : test_support::shippedJobs()) {
+    SCOPED_TRACE(entry);
+    const GrindJob job = readJobFile(entry, "flute");
     const CutterCheck check = checked(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
@@ -96,11 +96,11 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
 /// @param angle of the point in the machine.
 double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, double x, double angle) {
   const GrindJob& job = *program.job();
-  const DepthLaw depth = program.job().depthLaw(0, job.process.deepest(), 0);
+  const DepthLaw depth = program.job().depthLaw(0, job.process().deepest(), 0);
   const double y = wheel_x * (std::tan(job.cutter.cone_angle) + depth.taper) - depth.at_end;
-  const double r = program.cutter().radius(x), swivel = job.process.setup_swivel;
-  const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process.wheel_diameter / 2 + y,
-                               job.process.setup_height + program.helix(tooth).z(wheel_x));
+  const double r = program.cutter().radius(x), swivel = job.process().setup_swivel;
+  const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process().wheel_diameter / 2 + y,
+                               job.process().setup_height + program.helix(tooth).z(wheel_x));
   const Eigen::Vector3d axis(-std::sin(swivel), 0, std::cos(swivel));
   const Eigen::Vector3d from_centre = Eigen::Vector3d(x, r * std::cos(angle), r * std::sin(angle)) - centre;
   const WheelProfile wheel = wheelOf(job);
@@ -110,9 +110,9 @@ double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, doub
 
 TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   constexpr double kLinear = 5e-6;  // between the sections that are known
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    GrindJob job = readJobFile(entry.path(), {}, "flute");
-    job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
+  for (const std::string& entry : test_support::shippedJobs()) {
+    GrindJob job = readJobFile(entry, "flute");
+    job.process().wheel_wear = job.process().wheel_wear_per_pass = 0;
     const GrindProgram program(ValidJob(job), roomyMachine(), roomyMachine().park);
     const CutterCheck check = checkGroundCutter(program.job());
     ASSERT_EQ(check.edges.size(), job.tooth_angles.size());
@@ -123,7 +123,7 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
       const int number = static_cast<int>(tooth);
       const LogCurve& curve = program.helix(number).curve;
       for (int i = 0; i <= 21; ++i) {
-        SCOPED_TRACE(::testing::Message() << entry.path() << " tooth " << tooth << " place " << i);
+        SCOPED_TRACE(::testing::Message() << entry << " tooth " << tooth << " place " << i);
         const GroundEdge::Place at = edge.at(i / 21.0 * job.cutter.flute_length);
         EXPECT_NEAR(edge.formedAt(at.wheel_x).x, at.x, 1e-12);
         EXPECT_NEAR(depthInWheel(program, number, at.wheel_x, at.x, at.turn), 0, kLinear);
@@ -170,7 +170,7 @@ TEST(GroundJob, AnEdgeOffItsHelixByMoreThanItsToleranceIsRefused) {
 
 TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   GrindJob job = paper();
-  job.process.overtravel_shank = 1 * kMillimetre;
+  job.process().overtravel_shank = 1 * kMillimetre;
   CutterCheck check = checked(job);
   const Reason reason = reasonOf(check, ReasonKind::kIncomplete);
   EXPECT_EQ(reason.low, 0);
@@ -179,25 +179,25 @@ TEST(GroundJob, AFluteThatIsNotCompleteIsRefusedUnlessTheJobAllowsIt) {
   EXPECT_EQ(check.complete->to, reason.value);
   // A longer stroke changes nothing up to there, and something behind.
   GrindJob longer = job;
-  longer.process.overtravel_shank = 10 * kMillimetre;
+  longer.process().overtravel_shank = 10 * kMillimetre;
   const GroundCutter ground = groundCutterOf(ValidJob(job)), whole = groundCutterOf(ValidJob(longer));
   const double inside = check.complete->to - 0.05 * kMillimetre, behind = check.complete->to + 0.5 * kMillimetre;
   EXPECT_NEAR(*ground.section(inside).teeth[0].rake, *whole.section(inside).teeth[0].rake, 1e-6);
   EXPECT_NEAR(ground.areaRemoved(ground.section(inside)), whole.areaRemoved(whole.section(inside)), 1e-12);
   EXPECT_LT(ground.areaRemoved(ground.section(behind)), whole.areaRemoved(whole.section(behind)));
 
-  job.process.incomplete_ok = true;
+  job.process().incomplete_ok = true;
   check = checked(job);
   EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   EXPECT_LT(check.complete->to, job.cutter.flute_length);
   // It allows one that is complete nowhere, but none that is too deep.
   job.cutter.flute_length = 3 * kMillimetre;
-  job.process.overtravel_end = job.process.overtravel_shank = 0;
+  job.process().overtravel_end = job.process().overtravel_shank = 0;
   check = checked(job);
   EXPECT_FALSE(check.complete.has_value());
   EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   job.cutter.core_tolerance = 0.02 * kMillimetre;
-  job.cutter.core_diameter = job.cutter.core_diameter_end = job.cutter.end_diameter - job.process.depth;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = job.cutter.end_diameter - job.process().depth;
   EXPECT_LT(reasonOf(checked(job), ReasonKind::kCoreSize).value, job.cutter.core_diameter);
 }
 
@@ -220,9 +220,9 @@ TEST(GroundJob, FlutesThatMeetBelowTheLandAreRefused) {
   job.cutter.end_diameter = job.cutter.shank_diameter = 12 * kMillimetre;
   job.cutter.core_diameter = job.cutter.core_diameter_end = 5 * kMillimetre;
   job.cutter.spiral_angle = job.cutter.rake_angle = 0;
-  job.process.depth = 3.5 * kMillimetre;
-  job.process.setup_swivel = 0;
-  job.process.setup_height = -1.5 * kMillimetre;
+  job.process().depth = 3.5 * kMillimetre;
+  job.process().setup_swivel = 0;
+  job.process().setup_height = -1.5 * kMillimetre;
   const auto withTeeth = [&](int teeth) {
     job.tooth_angles.clear();
     for (int i = 0; i < teeth; ++i) job.tooth_angles.push_back(2 * kPi * i / teeth);
@@ -230,7 +230,7 @@ TEST(GroundJob, FlutesThatMeetBelowTheLandAreRefused) {
   };
   for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
     job.cutter.cut = cut;
-    job.process.setup_height = (cut == CutDirection::kRightHand ? -1.5 : 1.5) * kMillimetre;
+    job.process().setup_height = (cut == CutDirection::kRightHand ? -1.5 : 1.5) * kMillimetre;
     EXPECT_TRUE(withTeeth(6).reasons.empty()) << text(withTeeth(6).reasons);
     const Reason reason = reasonOf(withTeeth(8), ReasonKind::kLand);
     EXPECT_NEAR(reason.limit, kPi / 4, 1e-12);
@@ -241,24 +241,24 @@ TEST(GroundJob, FlutesThatMeetBelowTheLandAreRefused) {
 
 TEST(GroundJob, CornersThatDoNotFitAreRefused) {
   GrindJob job = paper();
-  job.process.wheel_profile = WheelShape::kPoints;
-  job.wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
-  job.process.wheel_corner_radius_lower = 1 * kMillimetre;
+  job.process().wheel_profile = WheelShape::kPoints;
+  job.process().wheel_points = {{-1.5e-3, 50e-3}, {-1.4e-3, 49e-3}, {1.5e-3, 50e-3}};
+  job.process().wheel_corner_radius_lower = 1 * kMillimetre;
   const CutterCheck check = checked(job);
   EXPECT_NE(text(check.reasons).find("corner_radius"), std::string::npos);
 }
 
 TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
   GrindJob job = jobOf("roughing_d10_t4");
-  job.process.wheel_wear_per_pass = 0.05 * kMillimetre;
-  job.process.wheel_wear = 1 * kMillimetre;
+  job.process().wheel_wear_per_pass = 0.05 * kMillimetre;
+  job.process().wheel_wear = 1 * kMillimetre;
   const GroundSection section = groundCutterOf(ValidJob(job)).section(0.01);
   // Depths 0.4, 0.8, 1.2, 1.55, 1.6 and 1.6 mm: the fifth of six passes of a tooth is its deepest.
   for (std::size_t i = 0; i < 4; ++i) {
     GrindJob one = job;
     one.tooth_angles = {0};
-    one.process.wheel_wear_per_pass = 0;
-    one.process.wheel_wear = 1 * kMillimetre + static_cast<double>(6 * i + 4) * 0.05 * kMillimetre;
+    one.process().wheel_wear_per_pass = 0;
+    one.process().wheel_wear = 1 * kMillimetre + static_cast<double>(6 * i + 4) * 0.05 * kMillimetre;
     const ToothSection alone = groundCutterOf(ValidJob(one)).section(0.01).teeth[0];
     EXPECT_DOUBLE_EQ(*section.teeth[i].rake, *alone.rake);
     EXPECT_DOUBLE_EQ(section.teeth[i].depth, alone.depth);
@@ -268,8 +268,8 @@ TEST(GroundJob, EveryToothIsGroundByTheWheelAsWornInItsDeepestPass) {
 
 TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
   GrindJob job = cylinder(38);
-  job.process.wheel_width = 2 * kMillimetre;
-  job.process.setup_height += 2 * kMillimetre / std::cos(38 * kDegree);
+  job.process().wheel_width = 2 * kMillimetre;
+  job.process().setup_height += 2 * kMillimetre / std::cos(38 * kDegree);
   job.tooth_angles = {0, 180 * kDegree};
   job.spiral_angles = {30 * kDegree, 33 * kDegree};
   ASSERT_TRUE(validate(job).empty());
@@ -288,7 +288,7 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
   c.rake_angle = 0;
   c.flute_length = 4 * kMillimetre;
   c.shank_diameter = 6 * kMillimetre;
-  GrindProcess& p = job.process;
+  GrindProcess& p = job.process();
   p.depth = 0.095 * kMillimetre;
   p.depth_end = p.depth + c.flute_length * std::tan(c.cone_angle);
   p.infeed = 0.5 * kMillimetre;
@@ -310,10 +310,10 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
   SetupRequest request;
   request.cutter = job.cutter;
   request.wheel = wheelOf(job);
-  request.nominal_radius = job.process.wheel_diameter / 2;
-  brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 200, 100};
-  bench.x_shift = job.process.setup_x_shift;
-  bench.taper = (job.process.depth - job.process.depthEnd()) / job.cutter.flute_length;
+  request.nominal_radius = job.process().wheel_diameter / 2;
+  brute::Bench bench{request, job.process().setup_swivel, job.process().setup_height, job.process().depth, 200, 100};
+  bench.x_shift = job.process().setup_x_shift;
+  bench.taper = (job.process().depth - job.process().depthEnd()) / job.cutter.flute_length;
   double min = 1e9, max = -1e9;
   for (int i = 0; i <= 8; ++i) {
     const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
@@ -329,11 +329,11 @@ TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
 TEST(GroundJob, TheCoreIsJudgedBetweenTheEnds) {
   GrindJob job = cylinder(0);
   job.cutter.spiral_angle = 0;
-  job.process.setup_height = 2.5 * kMillimetre + job.process.wheel_width / 2;
-  job.process.depth = 1 * kMillimetre;
-  job.process.depth_end = 2 * kMillimetre;
-  job.process.infeed = 2 * kMillimetre;
-  const double slope = 1.0 / 30, deeper = job.process.wheel_diameter / 2 * (std::sqrt(1 + slope * slope) - 1);
+  job.process().setup_height = 2.5 * kMillimetre + job.process().wheel_width / 2;
+  job.process().depth = 1 * kMillimetre;
+  job.process().depth_end = 2 * kMillimetre;
+  job.process().infeed = 2 * kMillimetre;
+  const double slope = 1.0 / 30, deeper = job.process().wheel_diameter / 2 * (std::sqrt(1 + slope * slope) - 1);
   const auto core = [&](double depth) { return 2 * std::hypot(2.5e-3, 5e-3 - depth - deeper); };
   job.cutter.core_diameter = core(1e-3);
   job.cutter.core_diameter_end = core(2e-3);
@@ -358,13 +358,13 @@ GrindJob nearApex(double overtravel_mm) {
   job.cutter.rake_angle = 7.839 * kDegree;
   job.cutter.rake_tolerance = 5 * kDegree;
   job.cutter.flute_length = 3.784 * kMillimetre;
-  job.process.wheel_diameter = 82.663 * kMillimetre;
-  job.process.wheel_width = 1.072 * kMillimetre;
-  job.process.depth = job.process.infeed = 0.337 * kMillimetre;
-  job.process.finish_infeed = 0;
-  job.process.setup_height = 1.29902 * kMillimetre;
-  job.process.overtravel_end = overtravel_mm * kMillimetre;
-  job.process.overtravel_shank = 1 * kMillimetre;
+  job.process().wheel_diameter = 82.663 * kMillimetre;
+  job.process().wheel_width = 1.072 * kMillimetre;
+  job.process().depth = job.process().infeed = 0.337 * kMillimetre;
+  job.process().finish_infeed = 0;
+  job.process().setup_height = 1.29902 * kMillimetre;
+  job.process().overtravel_end = overtravel_mm * kMillimetre;
+  job.process().overtravel_shank = 1 * kMillimetre;
   return job;
 }
 
@@ -373,8 +373,9 @@ double spoiledByTrying(const GrindJob& job, double core) {
   SetupRequest request;
   request.cutter = job.cutter;
   request.wheel = wheelOf(job);
-  request.nominal_radius = job.process.wheel_diameter / 2;
-  const brute::Bench bench{request, job.process.setup_swivel, job.process.setup_height, job.process.depth, 120, 400};
+  request.nominal_radius = job.process().wheel_diameter / 2;
+  const brute::Bench bench{request, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120,
+                           400};
   double first = 12 * kMillimetre;
   for (int i = 1; i <= 6; ++i) {
     for (const int side : {-1, 1}) {
@@ -403,7 +404,7 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
   }
   for (const double overtravel : {9.95, 11.0, 11.7, 12.0}) {
     GrindJob spoiled = nearApex(overtravel);
-    spoiled.process.incomplete_ok = overtravel > 11.5;  // which makes it no better
+    spoiled.process().incomplete_ok = overtravel > 11.5;  // which makes it no better
     const ValidJob job(spoiled);
     const GroundCutter cutter = groundCutterOf(job);
     EXPECT_FALSE(cutter.section(0).teeth[0].complete) << overtravel;
@@ -412,7 +413,7 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
                                     [](const Reason& r) { return r.kind == ReasonKind::kNotBelow; });
     ASSERT_NE(named, check.reasons.end()) << text(check.reasons);
     EXPECT_EQ(named->field, "process.overtravel_end");
-    EXPECT_EQ(named->value, job->process.overtravel_end);
+    EXPECT_EQ(named->value, job->process().overtravel_end);
     EXPECT_NEAR(named->limit, expected, 0.02 * kMillimetre);
   }
   // Too short is too short.

@@ -54,11 +54,11 @@ GrindJob straight(CutDirection cut) {
   GrindJob job = paper();
   job.cutter.cone_angle = job.cutter.spiral_angle = 0;
   job.cutter.cut = cut;
-  job.process.wheel_diameter = 100 * kMillimetre;
-  job.process.wheel_width = 4 * kMillimetre;
-  job.process.depth = 2 * kMillimetre;
-  job.process.setup_swivel = 0;
-  job.process.setup_height = (cut == CutDirection::kRightHand ? -1.3 : 1.3) * kMillimetre;
+  job.process().wheel_diameter = 100 * kMillimetre;
+  job.process().wheel_width = 4 * kMillimetre;
+  job.process().depth = 2 * kMillimetre;
+  job.process().setup_swivel = 0;
+  job.process().setup_height = (cut == CutDirection::kRightHand ? -1.3 : 1.3) * kMillimetre;
   return job;
 }
 
@@ -67,7 +67,7 @@ GrindJob straight(CutDirection cut) {
 class Groove {
  public:
   explicit Groove(const ValidJob& job)
-      : job_(job), wheel_(wheelOf(*job).worn(job->process.wheel_wear)), z_correction_(job.zCorrectionOf(0)) {}
+      : job_(job), wheel_(wheelOf(*job).worn(job->process().wheel_wear)), z_correction_(job.zCorrectionOf(0)) {}
 
   /// The minimum depth in the wheel's way of the ball's points within the blank, while A is as given; negative if the
   /// ball is in the cutter [m].
@@ -105,7 +105,7 @@ class Groove {
 
   /// How deep a point of the cutter comes to lie in the wheel along the stroke.
   double depthInWay(double x, double from_axis, double angle) const {
-    const GrindProcess& p = job_->process;
+    const GrindProcess& p = job_->process();
     const double step = (job_->cutter.flute_length + p.overtravel_shank + p.overtravel_end) / kPlaces;
     const auto depth = [&](double i) { return depthAt(x, from_axis, angle, i * step - p.overtravel_end); };
     std::array<double, kPlaces + 1> values;
@@ -128,7 +128,7 @@ class Groove {
   }
 
   double depthAt(double x, double from_axis, double angle, double s) const {
-    const GrindProcess& p = job_->process;
+    const GrindProcess& p = job_->process();
     const CutterGeometry& c = job_->cutter;
     const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
     const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
@@ -172,7 +172,7 @@ class RandomJobs {
     job.cutter.cone_angle = flag() ? 0 : between(-1, 8) * kDegree;
     job.cutter.spiral_angle = between(-10, 45) * side * kDegree;
     job.cutter.rake_angle = between(0, 15) * kDegree;
-    GrindProcess& p = job.process;
+    GrindProcess& p = job.process();
     p.depth = between(0.1, 0.25) * job.cutter.end_diameter;
     if (flag()) p.depth_end = between(0.9, 1.1) * p.depth;
     if (flag()) p.setup_x_shift = between(-1, 0) * kMillimetre;
@@ -188,10 +188,10 @@ class RandomJobs {
   }
 
   Ball ball(const GrindJob& job) {
-    const double diameter = between(0.1, 0.6) * job.process.depth, length = job.cutter.flute_length;
+    const double diameter = between(0.1, 0.6) * job.process().depth, length = job.cutter.flute_length;
     const double x = between(diameter / 2, length - diameter / 2);
     const double outer = job.cutter.end_diameter / 2 + x * std::tan(job.cutter.cone_angle);
-    return {x, outer - between(0.05, 0.5) * job.process.depth, between(-1, 1) * kPi, diameter};
+    return {x, outer - between(0.05, 0.5) * job.process().depth, between(-1, 1) * kPi, diameter};
   }
 
  private:
@@ -236,8 +236,8 @@ TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
 
 TEST(RakeTouch, FollowsTheLawOfZ) {
   GrindJob asked = jobOf("taper_d6_t6");
-  asked.process.wheel_wear_per_pass = 0;
-  asked.process.z_law = ZLaw::kConstantRake;
+  asked.process().wheel_wear_per_pass = 0;
+  asked.process().z_law = ZLaw::kConstantRake;
   const ValidJob job = withLaws(ValidJob(asked));
   const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
   expectTouch(job, ball, touch(job, ball));
@@ -245,7 +245,7 @@ TEST(RakeTouch, FollowsTheLawOfZ) {
 
 TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFaceFirst) {
   GrindJob asked = paper();
-  asked.process.wheel_wear_per_pass = 0;
+  asked.process().wheel_wear_per_pass = 0;
   const ValidJob job(asked);
   int touched = 0, refused = 0;
   for (int i = 0; i < 8; ++i) {
@@ -304,9 +304,9 @@ TEST(RakeTouch, ABallThatIsTooLargeForTheFluteIsRefusedWithOneThatIsNot) {
 
 TEST(RakeTouch, InASlotTheOtherWallIsTouchedFirstByABallThatIsWiderThanTheSlot) {
   GrindJob job = straight(CutDirection::kRightHand);
-  job.process.depth = 3 * kMillimetre;
-  job.process.wheel_width = kMillimetre;
-  job.process.setup_height = 0;
+  job.process().depth = 3 * kMillimetre;
+  job.process().wheel_width = kMillimetre;
+  job.process().setup_height = 0;
   Ball ball{10 * kMillimetre, 3.5 * kMillimetre, 0, 0.99 * kMillimetre};
   EXPECT_NEAR(touch(ValidJob(job), ball), std::asin(0.005 / 3.5), 1e-9);
   ball.diameter = 1.01 * kMillimetre;
@@ -348,7 +348,7 @@ TEST(RakeTouch, NoBallAndNoPlaceAreRefused) {
 
 TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
   GrindJob job = straight(CutDirection::kRightHand);
-  job.process.setup_height = 20 * kMillimetre;  // the wheel passes above the cutter
+  job.process().setup_height = 20 * kMillimetre;  // the wheel passes above the cutter
   const auto reason = refusal(ValidJob(job), {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
   ASSERT_TRUE(reason);
   EXPECT_EQ(reason->field, "ball's X");

@@ -73,7 +73,7 @@ struct Stroke {
 /// The last stroke of a tooth.
 Stroke strokeOf(const ValidJob& job, int tooth) {
   const StrokeLaw& along = job.strokeLaw(tooth);
-  const GrindProcess& p = job->process;
+  const GrindProcess& p = job->process();
   const DepthLaw depth = job.depthLaw(tooth, job.deepest(), 0);
   const ConicalCutter cutter(along.cutter);
   return {std::min(along.from, along.to),
@@ -300,8 +300,7 @@ TEST(ReliefSection, EveryToothHasTheClearanceBehindItsOwnEdge) {
   p.setup_swivel = 38 * kDegree;
   const ReliefWheel wheel{p.wheel_diameter / 2, 0, p.wheel_width, p.setup_swivel, 0};
   p.setup_height = ReliefPath::heightFor(ConicalCutter(job.cutter), {job.cutter.clearance}, wheel, -2e-3);
-  job.operations = {{job.process, {}}, {p, {}}};
-  job.process = p;
+  job.operations.push_back(p);
   job.operation = 1;
   const ValidJob ground = withLaws(ValidJob(job));
   const GroundCutter cutter = groundCutterOf(ground);
@@ -360,10 +359,10 @@ double crossingOf(const Stroke& first, const Stroke& second, double x, double ed
 TEST(ReliefSection, OfTwoReliefsIsWhatBothLeave) {
   for (const double second : {20.0, 5.0}) {
     SCOPED_TRACE(second);
-    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "secondary");
+    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "secondary");
     if (second < 10) {
       job.cutter.second_clearance = second * kDegree;
-      job.process.setup_height = job.operations[2].process.setup_height = -4.30473 * kMillimetre;
+      job.process().setup_height = job.operations[2].setup_height = -4.30473 * kMillimetre;
     }
     const ValidJob secondary = withLaws(ValidJob(job)), primary = withLaws(ValidJob(job.ofOperation(1)));
     const Stroke front = strokeOf(primary, 0), back = strokeOf(secondary, 0);

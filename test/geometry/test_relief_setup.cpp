@@ -34,9 +34,9 @@ struct Tool {
     relief.kind = OperationKind::kPrimaryRelief;
     relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 4e-3;
     relief.wheel_diameter = 100 * kMillimetre, relief.wheel_width = width * kMillimetre;
-    job.operations = {{job.process, {}}, {relief, {}}};
+    job.operations.push_back(relief);
     relief.kind = OperationKind::kSecondaryRelief;
-    if (land > 0) job.operations.push_back({relief, {}});
+    if (land > 0) job.operations.push_back(relief);
     job = job.ofOperation(1);
   }
 
@@ -45,9 +45,9 @@ struct Tool {
   ReliefSetup find(std::optional<double> asked = {}) const { return findReliefSetup(job, flutes(), kSwivel, asked); }
 
   void take(const ReliefSetup& setup) {
-    job.process.setup_swivel = setup.swivel;
-    job.process.setup_height = setup.height;
-    job.operations[static_cast<std::size_t>(job.operation)].process = job.process;
+    job.process().setup_swivel = setup.swivel;
+    job.process().setup_height = setup.height;
+    job.operations[static_cast<std::size_t>(job.operation)] = job.process();
   }
 
   GroundCutter relieved() const { return groundCutterOf(withLaws(ValidJob(job))); }
@@ -82,11 +82,11 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
 // The nearest one with a margin: some degrees nearer to the flutes' it has none.
 TEST(ReliefSetup, TakesTheSwivelNearestToTheFlutes) {
   const Tool easy("jobs/roughing_d10_t4.yaml", 10, 6);
-  const double near = easy.flutes()->process.setup_swivel;
+  const double near = easy.flutes()->process().setup_swivel;
   EXPECT_EQ(easy.find().swivel, near);
 
   const Tool far("jobs/taper_d6_t6.yaml", 10, 3);
-  const double near_far = far.flutes()->process.setup_swivel;
+  const double near_far = far.flutes()->process().setup_swivel;
   const ReliefSetup setup = far.find();
   ASSERT_EQ(setup.refused, "");
   EXPECT_LT(setup.swivel, near_far - 2 * kDegree);
@@ -111,7 +111,7 @@ TEST(ReliefSetup, KeepsTheCore) {
   for (int i = 0; i <= 10; ++i) {
     EXPECT_GT(2 * relieved.section(tool.job.cutter.flute_length * i / 10).core_radius, least);
   }
-  const ReliefSetup other = tool.find(tool.flutes()->process.setup_swivel - 4 * kDegree);
+  const ReliefSetup other = tool.find(tool.flutes()->process().setup_swivel - 4 * kDegree);
   EXPECT_NE(other.refused.find("the wheel leaves a core of 4."), std::string::npos) << other.refused;
   EXPECT_NE(other.refused.find("allowed: from 6.79 mm"), std::string::npos) << other.refused;
 }
@@ -153,7 +153,7 @@ TEST(ReliefSetup, OfASmallToolHasSmallMargins) {
     *figure *= part;
   }
   const ReliefSetup large = Tool("jobs/roughing_d10_t4.yaml", 10, 6).find();
-  for (GrindOperation& operation : tool.job.operations) shrink(operation.process);
+  for (GrindProcess& operation : tool.job.operations) shrink(operation);
   tool.job = tool.job.ofOperation(1);
   const ReliefSetup small = tool.find();
   ASSERT_EQ(small.refused, "");

@@ -51,8 +51,8 @@ Error errorOf(int pass, MoveKind move, const Axes& error) {
 GrindJob roughing() {
   GrindJob job = readJobFile("jobs/roughing_d10_t4.yaml");
   job.tooth_angles = {0};
-  job.process.wheel_wear_per_pass = 0;
-  job.process.feed *= 3;
+  job.process().wheel_wear_per_pass = 0;
+  job.process().feed *= 3;
   return job;
 }
 
@@ -60,8 +60,8 @@ GrindJob roughing() {
 GrindJob straight() {
   GrindJob job = roughing();
   job.cutter.spiral_angle = 0;
-  job.process.setup_swivel = 0;
-  job.process.setup_height = 0;
+  job.process().setup_swivel = 0;
+  job.process().setup_height = 0;
   return job;
 }
 
@@ -88,7 +88,7 @@ const Error kExact = [](const Setpoint&) { return Axes(Axes::Zero()); };
 
 /// Whether a straight wheel, as worn by then but larger by `grown`, took a point away in one of the positions.
 bool removed(const GrindJob& job, const std::vector<Read>& read, double x, double r, double theta, double grown) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double sn = std::sin(p.setup_swivel), cs = std::cos(p.setup_swivel);
   const double half = p.wheel_width / 2 + grown;
   for (const Read& one : read) {
@@ -116,11 +116,11 @@ double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).c
 TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
   const GrindJob job = roughing();
   const RunStrokes strokes = runOf(job, kExact);
-  ASSERT_EQ(strokes.strokes().size(), passDepths(job.process).size());
+  ASSERT_EQ(strokes.strokes().size(), passDepths(job.process()).size());
   for (const RunStroke& stroke : strokes.strokes()) {
     EXPECT_EQ(stroke.move, MoveKind::kStroke);
-    EXPECT_NEAR(stroke.range.from, -job.process.overtravel_end, 1e-12);
-    EXPECT_NEAR(stroke.range.to, job.cutter.flute_length + job.process.overtravel_shank, 1e-12);
+    EXPECT_NEAR(stroke.range.from, -job.process().overtravel_end, 1e-12);
+    EXPECT_NEAR(stroke.range.to, job.cutter.flute_length + job.process().overtravel_shank, 1e-12);
   }
   const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(ValidJob(job));
   EXPECT_EQ(cutter.flutes().front().size(), 1u);
@@ -143,10 +143,10 @@ TEST(RunStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
   int taken = 0;
   for (int i = 0; i < kCases; ++i) {
     GrindJob job = roughing();
-    job.process.feed *= 2;
-    job.process.wheel_wear_per_pass = i % 2 * 20e-6;
+    job.process().feed *= 2;
+    job.process().wheel_wear_per_pass = i % 2 * 20e-6;
     std::vector<std::vector<Axes>> errors;
-    for (std::size_t pass = 0; pass < passDepths(job.process).size(); ++pass) {
+    for (std::size_t pass = 0; pass < passDepths(job.process()).size(); ++pass) {
       errors.emplace_back();
       for (int move = 0; move < kMoveKindCount; ++move) {
         const double size = std::pow(10.0, uniform(-7.5, -3.5));
@@ -207,7 +207,7 @@ TEST(Gouges, TellTheStrokeAndHowFar) {
   EXPECT_NEAR(gouge.depth, 3e-4, 1e-7);
   gouge = onlyGouge(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3)));
   EXPECT_EQ(gouge.place, (ToothPass{0, 0}));
-  EXPECT_NEAR(gouge.depth, passDepths(job.process).front() + 1.6e-3 - passDepths(job.process).back(), 1e-7);
+  EXPECT_NEAR(gouge.depth, passDepths(job.process()).front() + 1.6e-3 - passDepths(job.process()).back(), 1e-7);
 }
 
 // Its walls are so curved that a shallower pass lies far inside of them, but beyond their tangent.
@@ -288,7 +288,7 @@ TEST(RunStrokes, AStrokeThatWasBrokenOffCountsInBothParts) {
 
 /// Both reliefs of the shipped reamer, with one tooth.
 ValidJob reliefOf(const char* operation) {
-  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation);
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", operation);
   job.tooth_angles = {0};
   return withLaws(ValidJob(job));
 }

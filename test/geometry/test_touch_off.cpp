@@ -28,15 +28,15 @@ GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 GrindJob worn() {
   GrindJob job = paper();
-  job.process.wheel_wear = 0.25 * kMillimetre;
+  job.process().wheel_wear = 0.25 * kMillimetre;
   return job;
 }
 
 /// Only the edge of the upper face is as large as the wheel.
 GrindJob tapered() {
   GrindJob job = worn();
-  job.process.wheel_profile = WheelShape::kAngled;
-  job.process.wheel_angle = 20 * kDegree;
+  job.process().wheel_profile = WheelShape::kAngled;
+  job.process().wheel_angle = 20 * kDegree;
   return job;
 }
 
@@ -69,7 +69,7 @@ TEST(TouchOff, ATaperedWheelTouchesAtItsLargerFace) {
 /// trigonometry alone, turned about the spindle, at the work positions Y and Z.
 double gapToBlank(const GrindJob& job, double blank_diameter, double y, double z,
                   const std::function<double(double)>& radius) {
-  const GrindProcess& p = job.process;
+  const GrindProcess& p = job.process();
   const double centre_y = job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + y, centre_z = p.setup_height + z;
   double gap = std::numeric_limits<double>::infinity();
   constexpr int kPlaces = 2000, kTurns = 10;
@@ -133,7 +133,7 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
       for (const WheelShape shape : {WheelShape::kStraight, WheelShape::kAngled, WheelShape::kCup}) {
         if (shape == WheelShape::kStraight && c.angle != 0) continue;
         GrindJob job = worn();
-        GrindProcess& p = job.process;
+        GrindProcess& p = job.process();
         p.wheel_profile = shape;
         p.wheel_side = side;
         p.wheel_width = 10 * kMillimetre;
@@ -160,7 +160,7 @@ TEST(TouchOff, AWheelWithRoundedCornersTouchesTheBlankAtItsReading) {
 
 TEST(TouchOff, AFullRadiusAndPointsMeasureTheirDiameterToo) {
   GrindJob job = worn();
-  GrindProcess& p = job.process;
+  GrindProcess& p = job.process();
   const double max = p.wheel_diameter / 2;
   p.wheel_profile = WheelShape::kFullRadius;
   EXPECT_DOUBLE_EQ(wheelOf(job).maxRadius(), max);
@@ -169,14 +169,14 @@ TEST(TouchOff, AFullRadiusAndPointsMeasureTheirDiameterToo) {
   // A line of 45 deg up to a corner of 0.5 mm: its profile is as high as if it were rounded from outside.
   p.wheel_profile = WheelShape::kPoints;
   p.wheel_corner_radius_upper = 0.5 * kMillimetre;
-  job.wheel_points = {{-0.0015, max - 0.003}, {0.0015, max}};
+  job.process().wheel_points = {{-0.0015, max - 0.003}, {0.0015, max}};
   EXPECT_NEAR(wheelOf(job).maxRadius(), max, 1e-15);
   EXPECT_NEAR(wheelOf(job).radius(-0.0015), max - 0.003 + 0.0005 * std::sqrt(2), 1e-12);
   const double top = 0.0015 - 0.0005;
   EXPECT_NEAR(touchReadings(job).z_for_y, -(p.setup_height + top * std::cos(p.setup_swivel)), 1e-12);
   // Of two ribs, the upper one touches.
   p.wheel_corner_radius_upper = 0;
-  job.wheel_points = {{-0.0015, max}, {-0.0010, max}, {0, max - 0.001}, {0.0005, max}, {0.0015, max}};
+  job.process().wheel_points = {{-0.0015, max}, {-0.0010, max}, {0, max - 0.001}, {0.0005, max}, {0.0015, max}};
   EXPECT_NEAR(touchReadings(job).z_for_y, -(p.setup_height + 0.001 * std::cos(p.setup_swivel)), 1e-12);
   EXPECT_EQ(heightRefusal(job, touchReadings(job).z_for_y), "");
 }
@@ -193,11 +193,11 @@ MachineGeometry machine() {
 TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
   GrindJob job = readJobFile("jobs/unequal_d12_t4.yaml");
   const MachineGeometry m = machine();
-  const auto above = wheelAboveSwivel("jobs/unequal_d12_t4.yaml", job, m);
+  const auto above = wheelAboveSwivel(openJobFile("jobs/unequal_d12_t4.yaml").wheel, job, m);
   ASSERT_TRUE(above);
   EXPECT_NEAR(*above / kMillimetre, 23.5 - 2 - 1.5, 1e-9);
   for (const double swivel : {38.734, -55.0, 0.0}) {
-    job.process.setup_swivel = swivel * kDegree;
+    job.process().setup_swivel = swivel * kDegree;
     // With the swivel at 0 the wheel's middle is 20 mm above the swivel's centre, its lower face 1.5 mm below.
     const double blank = 12 * kMillimetre;
     const double at_touch = m.work_axis_z + blank / 2 + 1.5 * kMillimetre - (m.swivel_centre.z() + 20 * kMillimetre);
@@ -209,7 +209,7 @@ TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
 }
 
 TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
-  EXPECT_FALSE(wheelAboveSwivel("test/jobs/paper.yaml", paper(), machine()));
+  EXPECT_FALSE(wheelAboveSwivel(std::nullopt, paper(), machine()));
 }
 
 }  // namespace test_touch_off

@@ -27,16 +27,16 @@ void backTaper(GrindJob& j, double length, double shank) {
   j.cutter.end_diameter = 2e-3;
   j.cutter.cone_angle = -3 * kDeg;
   j.cutter.flute_length = length;
-  j.process.overtravel_shank = shank;
-  j.process.depth = j.process.infeed = 0.01e-3;
+  j.process().overtravel_shank = shank;
+  j.process().depth = j.process().infeed = 0.01e-3;
 }
 
 /// Of the wheel's 50 mm half a millimetre is left, for two teeth in two passes each.
 void wearPerPass(GrindJob& j, double wear) {
   j.tooth_angles = {0, 3};
-  j.process.spark_out = 1;
-  j.process.wheel_wear = 49.5e-3;
-  j.process.wheel_wear_per_pass = wear;
+  j.process().spark_out = 1;
+  j.process().wheel_wear = 49.5e-3;
+  j.process().wheel_wear_per_pass = wear;
 }
 
 /// A flute that is 1.5 mm deep, and more at its end.
@@ -57,30 +57,30 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
       {[](GrindJob& j) { backTaper(j, 18e-3, 2e-3); },
        "process.overtravel_mm[1] = 2 mm; allowed: less than 1.081136688 mm, where the cone closes"},
       // 10 mm at 5 deg closes at X = -57.15 mm.
-      {[](GrindJob& j) { j.process.overtravel_end = 58e-3; },
+      {[](GrindJob& j) { j.process().overtravel_end = 58e-3; },
        "process.overtravel_mm[0] = 58 mm; allowed: less than 57.15026151 mm, where the cone closes"},
-      {[](GrindJob& j) { j.process.depth = 5e-3; },
+      {[](GrindJob& j) { j.process().depth = 5e-3; },
        "process.depth_mm = 5 mm; allowed: less than 5 mm, the cutter's radius at the small end"},
-      {[](GrindJob& j) { backTaper(j, 10e-3, 0), j.process.depth = 0.5e-3; },
+      {[](GrindJob& j) { backTaper(j, 10e-3, 0), j.process().depth = 0.5e-3; },
        "process.depth_mm = 0.5 mm; allowed: less than 0.4759222072 mm, the cutter's radius at the flute's end"},
-      {[](GrindJob& j) { j.process.depth_end = 7.63e-3; },
+      {[](GrindJob& j) { j.process().depth_end = 7.63e-3; },
        "process.depth_end_mm = 7.63 mm; allowed: less than 7.624659906 mm, the cutter's radius at the flute's end"},
       {[](GrindJob& j) { chord(j, 1.5e-3); },
        "cutter.chordal_rake_depth_mm = 1.5 mm; allowed: less than 1.5 mm, the asked depth of the flute"},
-      {[](GrindJob& j) { j.process.finish_infeed = 0.6e-3; },
+      {[](GrindJob& j) { j.process().finish_infeed = 0.6e-3; },
        "process.finish_infeed_mm = 0.6 mm; allowed: up to the depth, 0.5 mm"},
-      {[](GrindJob& j) { j.process.wheel_wear = 50e-3; },
+      {[](GrindJob& j) { j.process().wheel_wear = 50e-3; },
        "process.wheel.wear_mm = 50 mm; allowed: less than 50 mm, the wheel's radius"},
       {[](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 + 1e-6)); },
        "process.wheel.wear_per_pass_mm = 0.125000125 mm; allowed: less than 0.125 mm, what is left of the wheel's "
        "radius, over the passes of all teeth"},
-      {[](GrindJob& j) { j.process.depth = 4e-3, j.process.infeed = 0.1e-6; },
+      {[](GrindJob& j) { j.process().depth = 4e-3, j.process().infeed = 0.1e-6; },
        "process.infeed_mm = 0.0001 mm; allowed: enough for the depth in 10000 passes per tooth, 20000 of all teeth"},
       // 64 times 313 are 20,032.
       {[](GrindJob& j) {
          j.tooth_angles.clear();
          for (int i = 0; i < 64; ++i) j.tooth_angles.push_back(i * 0.09);
-         j.process.infeed = j.process.depth / 311;
+         j.process().infeed = j.process().depth / 311;
        },
        "process.infeed_mm = 0.001607717042 mm; allowed: enough for the depth in 312 passes per tooth, 20000 of all "
        "teeth"},
@@ -89,11 +89,11 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
          for (int i = 1; i < 65; ++i) j.tooth_angles.push_back(i * 0.09);
        },
        "cutter.teeth = 65; allowed: 1 to 64"},
-      {[](GrindJob& j) { j.process.order = static_cast<GrindOrder>(2); }, "process.order = 2; allowed: 0 to 1"},
-      {[](GrindJob& j) { j.process.order = static_cast<GrindOrder>(-1); }, "process.order = -1; allowed: 0 to 1"},
-      {[](GrindJob& j) { j.process.direction = static_cast<StrokeDirection>(2); },
+      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(2); }, "process.order = 2; allowed: 0 to 1"},
+      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(-1); }, "process.order = -1; allowed: 0 to 1"},
+      {[](GrindJob& j) { j.process().direction = static_cast<StrokeDirection>(2); },
        "process.direction = 2; allowed: 0 to 1"},
-      {[](GrindJob& j) { j.process.z_law = static_cast<ZLaw>(2); }, "process.z_law = 2; allowed: 0 to 1"},
+      {[](GrindJob& j) { j.process().z_law = static_cast<ZLaw>(2); }, "process.z_law = 2; allowed: 0 to 1"},
       {[](GrindJob& j) { j.interpolation.even_step = static_cast<EvenStepRule>(3); },
        "interpolation.even_step = 3; allowed: 0 to 2"},
   };
@@ -106,10 +106,10 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
 
 TEST(GrindJob, TakesAsMuchAsIsAllowed) {
   const std::function<void(GrindJob&)> changes[]{
-      [](GrindJob& j) { j.process.overtravel_end = 57e-3; },
-      [](GrindJob& j) { backTaper(j, 18e-3, 1e-3), j.process.overtravel_end = 100e-3; },
+      [](GrindJob& j) { j.process().overtravel_end = 57e-3; },
+      [](GrindJob& j) { backTaper(j, 18e-3, 1e-3), j.process().overtravel_end = 100e-3; },
       [](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 - 1e-6)); },
-      [](GrindJob& j) { j.process.depth_end = 7.62e-3; },
+      [](GrindJob& j) { j.process().depth_end = 7.62e-3; },
       [](GrindJob& j) { chord(j, 1.499e-3); },
       [](GrindJob& j) {
         j.tooth_angles = {0, 88 * kDeg, 180 * kDeg, 268 * kDeg, 359.999 * kDeg};
@@ -181,7 +181,7 @@ TEST(PassDepths, AreThoseByHand) {
 TEST(ValidJob, RefusesAnInvalidJobWithAllReasons) {
   GrindJob job = paperJob();
   job.cutter.end_diameter = -1;
-  job.process.feed = std::numeric_limits<double>::quiet_NaN();
+  job.process().feed = std::numeric_limits<double>::quiet_NaN();
   try {
     const ValidJob valid(job);
     FAIL();
@@ -196,16 +196,16 @@ TEST(ValidJob, RefusesAnInvalidJobWithAllReasons) {
 TEST(ValidJob, HasThePlaceDepthAndWearOfEveryPassInOrder) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 1, 3};
-  job.process.depth = 1.5e-3;
-  job.process.infeed = 1e-3;
-  job.process.wheel_wear = 0.25e-3;
-  job.process.wheel_wear_per_pass = 1e-6;
+  job.process().depth = 1.5e-3;
+  job.process().infeed = 1e-3;
+  job.process().wheel_wear = 0.25e-3;
+  job.process().wheel_wear_per_pass = 1e-6;
   const std::pair<GrindOrder, std::vector<ToothPass>> rows[]{
       {GrindOrder::kToothMajor, {{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {2, 1}}},
       {GrindOrder::kPassMajor, {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {2, 1}}}};
   for (const auto& [order, places] : rows) {
     SCOPED_TRACE(static_cast<int>(order));
-    job.process.order = order;
+    job.process().order = order;
     const ValidJob valid = ValidJob(job);
     ASSERT_EQ(valid.passes().size(), places.size());
     for (std::size_t i = 0; i < places.size(); ++i) {

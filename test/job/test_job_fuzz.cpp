@@ -94,14 +94,14 @@ std::vector<double> anyTeeth(Dice& dice) {
 void spoilChoices(Dice& dice, GrindJob& job) {
   const auto whole = [&] { return dice.of({-1, 0, 1, 2, 3, 255, std::numeric_limits<int>::min()}); };
   if (dice.once(8))
-    job.process.spark_out = dice.of({-1, kMaxSparkOut, kMaxSparkOut + 1, std::numeric_limits<int>::max()});
-  if (dice.once(8)) job.process.order = static_cast<GrindOrder>(whole());
-  if (dice.once(8)) job.process.direction = static_cast<StrokeDirection>(whole());
-  if (dice.once(16)) job.process.z_law = static_cast<ZLaw>(whole());
+    job.process().spark_out = dice.of({-1, kMaxSparkOut, kMaxSparkOut + 1, std::numeric_limits<int>::max()});
+  if (dice.once(8)) job.process().order = static_cast<GrindOrder>(whole());
+  if (dice.once(8)) job.process().direction = static_cast<StrokeDirection>(whole());
+  if (dice.once(16)) job.process().z_law = static_cast<ZLaw>(whole());
   if (dice.once(4)) job.interpolation.even_step = static_cast<EvenStepRule>(whole());
   if (dice.once(16)) job.cutter.cut = static_cast<CutDirection>(whole());
-  if (dice.once(16)) job.process.wheel_profile = static_cast<WheelShape>(whole());
-  if (dice.once(16)) job.wheel_points = {{-4e-3, 50e-3}, {dice.within(-5e-3, 5e-3), 50e-3}};
+  if (dice.once(16)) job.process().wheel_profile = static_cast<WheelShape>(whole());
+  if (dice.once(16)) job.process().wheel_points = {{-4e-3, 50e-3}, {dice.within(-5e-3, 5e-3), 50e-3}};
   if (dice.once(16)) job.spiral_angles = {job.cutter.spiral_angle, dice.within(-2, 2)};
   if (dice.once(8)) job.tooth_angles = anyTeeth(dice);
 }
@@ -138,7 +138,7 @@ GrindJob allowedJob(Dice& dice) {
   GrindJob job = paperJob();
   for (const Number& n : numbers()) n.of(job) = anyWithin(dice, n.min, n.max);
   CutterGeometry& g = job.cutter;
-  GrindProcess& p = job.process;
+  GrindProcess& p = job.process();
   g.end_diameter = dice.scaled(0.1e-3, 10e-3);
   if (dice.once(2)) g.spiral_angle *= dice.scaled(1e-12, 1);
   if (dice.once(2)) g.cone_angle *= dice.scaled(1e-12, 1);

@@ -93,10 +93,10 @@ void expectSame(const GrindJob& a, const GrindJob& b) {
   visitJobFields([&](const JobField& field, auto of) { EXPECT_EQ(of(a), of(b)) << field.path; });
   visitJobChoices([&](const char* path, int, auto of) { EXPECT_EQ(of(a), of(b)) << path; });
   EXPECT_EQ(a.tooth_angles, b.tooth_angles);
-  ASSERT_EQ(a.wheel_points.size(), b.wheel_points.size());
-  for (std::size_t i = 0; i < a.wheel_points.size(); ++i) {
-    EXPECT_EQ(a.wheel_points[i].w, b.wheel_points[i].w);
-    EXPECT_EQ(a.wheel_points[i].radius, b.wheel_points[i].radius);
+  ASSERT_EQ(a.process().wheel_points.size(), b.process().wheel_points.size());
+  for (std::size_t i = 0; i < a.process().wheel_points.size(); ++i) {
+    EXPECT_EQ(a.process().wheel_points[i].w, b.process().wheel_points[i].w);
+    EXPECT_EQ(a.process().wheel_points[i].radius, b.process().wheel_points[i].radius);
   }
 }
 
@@ -171,7 +171,7 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
     const std::string own =
         write("jobs/own.yaml", jobText("    profile: straight\n    diameter_mm: " + decimal(diameter) +
                                        "\n    width_mm: 3\n    wear_mm: " + decimal(wear) + "\n"));
-    const GrindProcess a = readJobFile(named).process, b = readJobFile(own).process;
+    const GrindProcess a = readJobFile(named).process(), b = readJobFile(own).process();
     RC_ASSERT(a.wheel_wear == b.wheel_wear);
     RC_ASSERT(a.wheel_diameter == b.wheel_diameter);
   }));
@@ -179,8 +179,9 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
 
 TEST_F(WheelOfAJob, CanBeFound) {
   const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
-  EXPECT_EQ(wheelFileOf(named), folder_ + "/jobs/../wheels/wheel.yaml");
-  EXPECT_EQ(wheelFileOf(write("jobs/own.yaml", jobText("    diameter_mm: 100\n"))), "");
+  write("wheels/wheel.yaml", kWheel);
+  EXPECT_EQ(openJobFile(named).wheel_path, folder_ + "/jobs/../wheels/wheel.yaml");
+  EXPECT_EQ(openJobFile("test/jobs/paper.yaml").wheel_path, "");
 }
 
 TEST_F(WheelOfAJob, StandsAloneInTheJob) {

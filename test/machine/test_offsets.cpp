@@ -148,23 +148,23 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
     const Mounting mounting{between(-0.01, 0.01), between(0.01, 0.1)};
     GrindJob was;
     was.cutter.end_diameter = between(0.0001, 0.1);
-    was.process.wheel_diameter = between(0.01, 0.5);
-    was.process.wheel_width = between(0.001, 0.1);
-    was.process.setup_swivel = between(-1, 1);
-    was.process.setup_height = between(-0.05, 0.05);
+    was.process().wheel_diameter = between(0.01, 0.5);
+    was.process().wheel_width = between(0.001, 0.1);
+    was.process().setup_swivel = between(-1, 1);
+    was.process().setup_height = between(-0.05, 0.05);
     GrindJob is = was;
     is.cutter.end_diameter = between(0.0001, 0.1);
-    is.process.setup_height = between(-0.05, 0.05);
+    is.process().setup_height = between(-0.05, 0.05);
     const auto basis = [](const GrindJob& job) {
       return OffsetBasis{OffsetMethod::kComputed,
                          "",
                          "",
                          std::string(64, 'a'),
                          job.cutter.end_diameter,
-                         job.process.wheel_diameter,
-                         job.process.wheel_width,
-                         job.process.setup_swivel,
-                         job.process.setup_height,
+                         job.process().wheel_diameter,
+                         job.process().wheel_width,
+                         job.process().setup_swivel,
+                         job.process().setup_height,
                          ""};
     };
     WorkOffsets offsets = offsetsFor(basis(was));

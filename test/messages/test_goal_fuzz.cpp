@@ -22,13 +22,13 @@ flute_grinder::GrindGoal goodGoal() {
   j.cutter = {10e-3, 0.09, 0.5, 0.1, 2e-3, CutDirection::kRightHand, 0.01, 10e-3};
   test_support::askForRakeAlone(j.cutter);
   j.tooth_angles = {0, 1};
-  j.process.feed = 0.02;
-  j.process.depth = 0.5e-3;
-  j.process.infeed = 0.5e-3;
-  j.process.clearance = 1e-3;
-  j.process.overtravel_end = 0.1e-3;
-  j.process.wheel_diameter = 100e-3;
-  j.process.wheel_width = 8e-3;
+  j.process().feed = 0.02;
+  j.process().depth = 0.5e-3;
+  j.process().infeed = 0.5e-3;
+  j.process().clearance = 1e-3;
+  j.process().overtravel_end = 0.1e-3;
+  j.process().wheel_diameter = 100e-3;
+  j.process().wheel_width = 8e-3;
   j.interpolation = {EvenStepRule::kPublished, 1e-6, 1e-3};
   flute_grinder::GrindGoal goal = goalFromJob(j);
   goal.job_name = "paper.yaml";
@@ -57,7 +57,6 @@ bool goalOf(std::vector<std::uint8_t> bytes, flute_grinder::GrindGoal& goal) {
 flute_grinder::GrindGoal thereAndBack(flute_grinder::GrindGoal goal) {
   const flute_grinder::GrindGoal back = goalFromJob(jobFromGoal(goal));
   goal.cutter = back.cutter;
-  goal.process = back.process;
   goal.interpolation = back.interpolation;
   goal.operations = back.operations;
   goal.operation = back.operation;
@@ -96,7 +95,7 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   static const std::size_t counts[] = {
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
-      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.process.wheel_points; }),
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.operations[0].wheel_points; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<flute_grinder::Process>& { return g.operations; })};
   const std::vector<std::uint8_t> whole = bytesOf(good);
   for (const std::size_t at : counts) std::copy_n(whole.begin() + at, 4, bytes.begin() + at);
@@ -111,7 +110,7 @@ TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
   for (int i = 0; i < 20000 && !HasFailure(); ++i) {
     flute_grinder::GrindGoal goal;
     if (!goalOf(spoiledBytes(dice), goal)) continue;
-    goal.process.incomplete_ok = goal.process.incomplete_ok != 0;
+    for (flute_grinder::Process& process : goal.operations) process.incomplete_ok = process.incomplete_ok != 0;
     ++goals;
     if (answer(goal)) ++good_jobs;
   }

@@ -1,10 +1,12 @@
 #include "flute_grinder/messages/json.h"
 
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "motion/generators.h"
+
+#include "jobs.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -36,12 +38,12 @@ GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 TEST(JobJson, OfEveryShippedJobIsTheSameJob) {
   int jobs = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    SCOPED_TRACE(entry.path());
-    expectSameBits(readJobFile(entry.path(), {}, "flute"));
-    const std::size_t operations = readJobFile(entry.path(), {}, "flute").operations.size();
+  for (const std::string& entry : test_support::shippedJobs()) {
+    SCOPED_TRACE(entry);
+    expectSameBits(readJobFile(entry, "flute"));
+    const std::size_t operations = readJobFile(entry, "flute").operations.size();
     for (std::size_t i = 1; i < operations; ++i) {
-      expectSameBits(readJobFile(entry.path(), {}, std::to_string(i + 1)));
+      expectSameBits(readJobFile(entry, std::to_string(i + 1)));
     }
     ++jobs;
   }
@@ -49,15 +51,16 @@ TEST(JobJson, OfEveryShippedJobIsTheSameJob) {
 }
 
 TEST(JobJson, HasTheKeysAndNumbersOfTheFile) {
-  const Json file = toJson(paper());
+  const Json file = toJson(paper()), process = file["operations"][0];
+  EXPECT_EQ(file["operation"], "flute");
   EXPECT_EQ(file["cutter"]["end_diameter_mm"], 10);
   EXPECT_EQ(file["cutter"]["teeth"], 1);
   EXPECT_EQ(file["cutter"]["cut"], "right_hand");
-  EXPECT_EQ(file["process"]["feed_mm_min"], 600);
-  EXPECT_EQ(file["process"]["overtravel_mm"], Json({1.0, 7.0}));
-  EXPECT_EQ(file["process"]["setup"]["swivel_deg"], 31.769);
-  EXPECT_EQ(file["process"]["wheel"]["profile"], "straight");
-  EXPECT_FALSE(file["process"]["wheel"].contains("side"));
+  EXPECT_EQ(process["feed_mm_min"], 600);
+  EXPECT_EQ(process["overtravel_mm"], Json({1.0, 7.0}));
+  EXPECT_EQ(process["setup"]["swivel_deg"], 31.769);
+  EXPECT_EQ(process["wheel"]["profile"], "straight");
+  EXPECT_FALSE(process["wheel"].contains("side"));
   EXPECT_EQ(file["interpolation"]["tolerance_um"], 1);
 }
 
@@ -69,16 +72,16 @@ TEST(JobJson, OfListsAndOfEveryWheelIsTheSameJob) {
   EXPECT_EQ(toJson(job)["cutter"]["tooth_angles_deg"][2], 180.5);
   EXPECT_FALSE(toJson(job)["cutter"].contains("spiral_angle_deg"));
   job = paper();
-  job.process.wheel_profile = WheelShape::kAngled;
-  job.process.wheel_angle = 12.5 * kDegree;
-  job.process.wheel_side = WheelFace::kLower;
-  job.process.wheel_corner_radius_upper = 0.1 * kMillimetre;
+  job.process().wheel_profile = WheelShape::kAngled;
+  job.process().wheel_angle = 12.5 * kDegree;
+  job.process().wheel_side = WheelFace::kLower;
+  job.process().wheel_corner_radius_upper = 0.1 * kMillimetre;
   expectSameBits(job);
   job = paper();
-  job.process.wheel_profile = WheelShape::kPoints;
-  job.wheel_points = {{-1.5 * kMillimetre, 49.7 * kMillimetre},
-                      {0.2 * kMillimetre, 50 * kMillimetre},
-                      {1.5 * kMillimetre, 49 * kMillimetre}};
+  job.process().wheel_profile = WheelShape::kPoints;
+  job.process().wheel_points = {{-1.5 * kMillimetre, 49.7 * kMillimetre},
+                                {0.2 * kMillimetre, 50 * kMillimetre},
+                                {1.5 * kMillimetre, 49 * kMillimetre}};
   expectSameBits(job);
 }
 
@@ -101,7 +104,7 @@ TEST(JobDigest, DependsOnEveryFigureAndChoice) {
   });
   expectOther("teeth", [](GrindJob& other) { other.tooth_angles.push_back(1); });
   expectOther("spirals", [](GrindJob& other) { other.spiral_angles = {other.cutter.spiral_angle}; });
-  expectOther("points", [](GrindJob& other) { other.wheel_points.push_back({0, 0.05}); });
+  expectOther("points", [](GrindJob& other) { other.process().wheel_points.push_back({0, 0.05}); });
 }
 
 /// Numbers of any digits, as somebody may write them into a file.

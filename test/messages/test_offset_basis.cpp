@@ -1,8 +1,8 @@
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
 
 TEST(GoalFromFile, HasWhenTheWheelWasDressed) {
   const test_support::TempFolder folder;
-  for (const std::string& file : {kJob, std::string("wheels/straight_d100_w3.yaml")}) {
+  for (const std::string& file :
+       {kJob, std::string("jobs/unequal_d12_t4.setup.yaml"), std::string("wheels/straight_d100_w3.yaml")}) {
     std::filesystem::create_directory((folder.path() / file).parent_path());
     std::filesystem::copy_file(file, folder.path() / file);
   }
@@ -59,34 +60,34 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
   });
   EXPECT_EQ(of_wheel, 4) << "diameter, angle, two corners";
   GrindJob other = job;
-  other.process.wheel_profile = WheelShape::kFullRadius;
+  other.process().wheel_profile = WheelShape::kFullRadius;
   EXPECT_NE(wheelDigest(other), digest);
   other = job;
-  other.process.wheel_side = WheelFace::kLower;
+  other.process().wheel_side = WheelFace::kLower;
   EXPECT_NE(wheelDigest(other), digest);
   other = job;
-  other.wheel_points.push_back({0, 0.05});
+  other.process().wheel_points.push_back({0, 0.05});
   EXPECT_NE(wheelDigest(other), digest);
 }
 
 /// What the operator changes between flutes and reliefs, or after dressing, does not make another tool of it.
 TEST(OffsetBasis, TheToolIsKnownByWhatPlacesItsTeeth) {
-  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "flute");
+  const GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "flute");
   const std::string digest = toolDigest(job);
   for (const int operation : {1, 2}) EXPECT_EQ(toolDigest(job.ofOperation(operation)), digest) << operation;
   const auto changed = [&](auto change) {
     GrindJob other = job;
     change(other);
-    other.operations[0].process = other.process;
+    other.operations[0] = other.process();
     return toolDigest(other) != digest;
   };
   EXPECT_TRUE(changed([](GrindJob& j) { j.tooth_angles[1] += 0.01; }));
   EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.end_diameter += 1e-4; }));
   EXPECT_TRUE(changed([](GrindJob& j) { j.cutter.cut = CutDirection::kLeftHand; }));
-  EXPECT_TRUE(changed([](GrindJob& j) { j.process.setup_swivel += 1e-3; }));
-  EXPECT_TRUE(changed([](GrindJob& j) { j.process.depth += 1e-4; }));
-  EXPECT_FALSE(changed([](GrindJob& j) { j.process.feed *= 2; }));
-  EXPECT_FALSE(changed([](GrindJob& j) { j.process.wheel_wear += 1e-5; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process().setup_swivel += 1e-3; }));
+  EXPECT_TRUE(changed([](GrindJob& j) { j.process().depth += 1e-4; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process().feed *= 2; }));
+  EXPECT_FALSE(changed([](GrindJob& j) { j.process().wheel_wear += 1e-5; }));
   EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.clearance += 0.01; }));
   EXPECT_FALSE(changed([](GrindJob& j) { j.cutter.rake_tolerance *= 2; }));
 }

@@ -34,10 +34,10 @@ inline rc::Gen<Machine> machine() {
 
 /// Now and then none; the edge stays where the radius is at least a fifth of that at X = 0. [m]
 inline rc::Gen<double> x_shift(const GrindJob& j) {
-  const double shank = j.cutter.flute_length + j.process.overtravel_shank, longest = 3 * j.cutter.end_diameter;
+  const double shank = j.cutter.flute_length + j.process().overtravel_shank, longest = 3 * j.cutter.end_diameter;
   const auto room = [&](int side, double reached) { return openLength(j.cutter, side, reached + longest) - reached; };
   return rc::gen::weightedOneOf<double>(
-      {{1, rc::gen::just(0.0)}, {2, uniform(-room(1, shank), room(-1, j.process.overtravel_end))}});
+      {{1, rc::gen::just(0.0)}, {2, uniform(-room(1, shank), room(-1, j.process().overtravel_end))}});
 }
 
 /// One tooth, one or two passes, feeds of 60 to 6000 mm/min, all rules, both directions; its figures pass validate().
@@ -48,25 +48,25 @@ inline rc::Gen<GrindJob> job() {
     // Some turns at the most, or else the way back takes most of the time.
     const double turns = 8 * j.cutter.end_diameter / 2 / std::max(0.01, std::abs(std::tan(j.cutter.spiral_angle)));
     j.cutter.flute_length = std::min(j.cutter.flute_length, std::max(0.2e-3, turns));
-    j.process.overtravel_end = openLength(j.cutter, -1, *uniform(0, 2e-3));
-    j.process.overtravel_shank = std::min(j.cutter.flute_length / 4, *uniform(0, 2e-3));
-    j.cutter.flute_length -= j.process.overtravel_shank;  // so that the cone stays open beyond the flute
+    j.process().overtravel_end = openLength(j.cutter, -1, *uniform(0, 2e-3));
+    j.process().overtravel_shank = std::min(j.cutter.flute_length / 4, *uniform(0, 2e-3));
+    j.cutter.flute_length -= j.process().overtravel_shank;  // so that the cone stays open beyond the flute
     j.tooth_angles = {0};
-    j.process.feed = *logUniform(60e-3 / 60, 6000e-3 / 60);
-    j.process.depth = j.cutter.end_diameter / 2 * *uniform(0.05, 0.15);
-    j.process.infeed = j.process.depth;
-    j.process.finish_infeed = 0;
-    j.process.spark_out = *whole(0, 1);
-    j.process.clearance = *uniform(0.1e-3, 2e-3);
-    j.process.direction = *rc::gen::element(StrokeDirection::kFromEnd, StrokeDirection::kToEnd);
-    j.process.wheel_diameter = 100e-3;
-    j.process.wheel_width = 8e-3;
-    j.process.wheel_wear = 0;
+    j.process().feed = *logUniform(60e-3 / 60, 6000e-3 / 60);
+    j.process().depth = j.cutter.end_diameter / 2 * *uniform(0.05, 0.15);
+    j.process().infeed = j.process().depth;
+    j.process().finish_infeed = 0;
+    j.process().spark_out = *whole(0, 1);
+    j.process().clearance = *uniform(0.1e-3, 2e-3);
+    j.process().direction = *rc::gen::element(StrokeDirection::kFromEnd, StrokeDirection::kToEnd);
+    j.process().wheel_diameter = 100e-3;
+    j.process().wheel_width = 8e-3;
+    j.process().wheel_wear = 0;
     j.interpolation.even_step =
         *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
     j.interpolation.tolerance = *logUniform(0.1e-6, 100e-6);
     j.interpolation.rotary_scale = *logUniform(0.1e-3, 10e-3);
-    j.process.setup_x_shift = *x_shift(j);
+    j.process().setup_x_shift = *x_shift(j);
     return j;
   });
 }
@@ -75,8 +75,8 @@ inline rc::Gen<GrindJob> job() {
 inline rc::Gen<ZCorrection> zCorrection(const GrindJob& job) {
   return rc::gen::exec([=] {
     ZCorrection c;
-    const double length = job.process.overtravel_end + job.cutter.flute_length + job.process.overtravel_shank;
-    c.from = -job.process.overtravel_end;
+    const double length = job.process().overtravel_end + job.cutter.flute_length + job.process().overtravel_shank;
+    c.from = -job.process().overtravel_end;
     c.pieces = *whole(1, ZCorrection::kMaxPieces);
     c.piece = length / c.pieces;
     const double size = length * *logUniform(1e-5, 3e-2);
@@ -94,7 +94,7 @@ struct Work {
 
   ValidJob valid() const {
     const ValidJob valid(job);
-    if (job.process.z_law == ZLaw::kPublished) return valid;
+    if (job.process().z_law == ZLaw::kPublished) return valid;
     return valid.withZCorrections(std::vector<ZCorrection>(job.tooth_angles.size(), z_correction));
   }
   GrindProgram program() const { return GrindProgram(valid(), machine, start); }
@@ -105,7 +105,7 @@ inline rc::Gen<Work> work(double cycles) {
   return rc::gen::exec([=] {
     Work w{*job(), *machine(), Axes::Zero()};
     CutterGeometry& g = w.job.cutter;
-    GrindProcess& p = w.job.process;
+    GrindProcess& p = w.job.process();
     const double growth = std::tan(g.cone_angle);
     for (int i = 0; i < 6; ++i) {
       const double highest = std::max(-p.overtravel_end * growth, (g.flute_length + p.overtravel_shank) * growth);
@@ -129,7 +129,7 @@ inline rc::Gen<Work> toothedWork(double cycles) {
     Work w = *work(cycles);
     const int teeth = *whole(2, 3);
     for (int i = 1; i < teeth; ++i) w.job.tooth_angles.push_back(w.job.tooth_angles.back() + *uniform(0.2, 3));
-    w.job.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
+    w.job.process().order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
     return w;
   });
 }
@@ -139,14 +139,14 @@ inline GrindJob paperJob() {
   GrindJob j;
   j.cutter = paperCutter();
   j.tooth_angles = {0};
-  j.process.feed = 0.01;
-  j.process.depth = 0.5e-3;
-  j.process.infeed = 0.5e-3;
-  j.process.clearance = 5e-3;
-  j.process.overtravel_end = 1e-3;
-  j.process.overtravel_shank = 1e-3;
-  j.process.wheel_diameter = 100e-3;
-  j.process.wheel_width = 8e-3;
+  j.process().feed = 0.01;
+  j.process().depth = 0.5e-3;
+  j.process().infeed = 0.5e-3;
+  j.process().clearance = 5e-3;
+  j.process().overtravel_end = 1e-3;
+  j.process().overtravel_shank = 1e-3;
+  j.process().wheel_diameter = 100e-3;
+  j.process().wheel_width = 8e-3;
   j.interpolation.tolerance = 1e-6;
   j.interpolation.rotary_scale = 1e-3;
   return j;
@@ -190,12 +190,12 @@ inline std::ostream& operator<<(std::ostream& out, const Machine& m) {
 }
 
 inline std::ostream& operator<<(std::ostream& out, const GrindJob& j) {
-  return out << j.cutter << ", " << toString(j.interpolation.even_step) << ", " << toString(j.process.direction)
-             << ", feed " << j.process.feed << " m/s, overtravel " << j.process.overtravel_end << " "
-             << j.process.overtravel_shank << " m, shift in X " << j.process.setup_x_shift << " m, depth "
-             << j.process.depth << " m, clearance " << j.process.clearance << " m, tolerance "
+  return out << j.cutter << ", " << toString(j.interpolation.even_step) << ", " << toString(j.process().direction)
+             << ", feed " << j.process().feed << " m/s, overtravel " << j.process().overtravel_end << " "
+             << j.process().overtravel_shank << " m, shift in X " << j.process().setup_x_shift << " m, depth "
+             << j.process().depth << " m, clearance " << j.process().clearance << " m, tolerance "
              << j.interpolation.tolerance << " m, scale " << j.interpolation.rotary_scale << " m/rad, spark out "
-             << j.process.spark_out << ", " << j.tooth_angles.size() << " teeth, " << toString(j.process.order);
+             << j.process().spark_out << ", " << j.tooth_angles.size() << " teeth, " << toString(j.process().order);
 }
 
 namespace test_support {

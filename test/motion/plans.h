@@ -50,8 +50,8 @@ inline GrindJob steepJob() {
   j.cutter.spiral_angle = 45 * units::kDegree;
   j.cutter.rake_angle = 0;
   j.cutter.flute_length = 20e-3;
-  j.process.overtravel_end = 0;
-  j.process.depth = j.process.infeed = 0.2e-3;
+  j.process().overtravel_end = 0;
+  j.process().depth = j.process().infeed = 0.2e-3;
   return j;
 }
 

@@ -100,7 +100,7 @@ inline std::string beyondLimits(std::vector<Setpoint> setpoints, const Machine& 
 
 /// How far the strokes' points are off what the paper's construction gives, as text; empty where they are not.
 inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, const GrindJob& job, std::size_t every) {
-  const ReferenceCurve curve(job.cutter, job.process.setup_x_shift);
+  const ReferenceCurve curve(job.cutter, job.process().setup_x_shift);
   const Real scale = job.interpolation.rotary_scale;
   const Axes noise = 4 * roundingOf(setpoints);
   const Real x_noise = noise[kX];
@@ -132,7 +132,7 @@ inline std::string offTheConstruction(const std::vector<Setpoint>& setpoints, co
 class Deviation {
  public:
   explicit Deviation(const GrindJob& job)
-      : curve_(job.cutter, job.process.setup_x_shift),
+      : curve_(job.cutter, job.process().setup_x_shift),
         teeth_(job.tooth_angles),
         end_radius_(Real(job.cutter.end_diameter) / 2),
         growth_(std::tan(Real(job.cutter.cone_angle))),

@@ -55,7 +55,7 @@ std::string errorOf(const std::function<void()>& make) {
 GrindJob manyPasses() {
   GrindJob j = paperJob();
   j.tooth_angles = {0, 3};
-  j.process.depth = 1.5e-3;
+  j.process().depth = 1.5e-3;
   return j;
 }
 
@@ -123,7 +123,7 @@ TEST(GrindProgram, ContinuesFromAPassOfATooth) {
   EXPECT_EQ(strokesOf(programOf(manyPasses(), {0, 2})), (std::vector<std::string>{"0/2", "1/0", "1/1", "1/2"}));
   EXPECT_EQ(strokesOf(programOf(manyPasses(), {1, 2})), (std::vector<std::string>{"1/2"}));
   GrindJob job = manyPasses();
-  job.process.order = GrindOrder::kPassMajor;
+  job.process().order = GrindOrder::kPassMajor;
   EXPECT_EQ(strokesOf(programOf(job, {1, 1})), (std::vector<std::string>{"1/1", "0/2", "1/2"}));
 }
 
@@ -178,8 +178,8 @@ RC_GTEST_PROP(GrindProgramProperty, WearOfAllPassesBeforeMovesYOfInfeedsAndStrok
   const RunStart run{work.start, passes[static_cast<std::size_t>(begin)].place};
   const GrindProgram without(work.valid(), work.machine, run);
   const double before = *test_support::uniform(0, 1e-3), wear = *test_support::uniform(1e-6, 1e-4);
-  work.job.process.wheel_wear = before;
-  work.job.process.wheel_wear_per_pass = wear;
+  work.job.process().wheel_wear = before;
+  work.job.process().wheel_wear_per_pass = wear;
   const GrindProgram with(work.valid(), work.machine, run);
   RC_ASSERT(with.moves().size() == without.moves().size());
   double deeper = before + (begin - 1) * wear;
@@ -212,7 +212,7 @@ RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnlyAndBelowTheClearanc
   const GrindProgram program = work.program();
   const double growth = std::tan(work.job.cutter.cone_angle);
   const double plane =
-      std::max(program.strokeFrom() * growth, program.strokeTo() * growth) + work.job.process.clearance;
+      std::max(program.strokeFrom() * growth, program.strokeTo() * growth) + work.job.process().clearance;
   RC_ASSERT(std::abs(program.clearanceHeight() - plane) <= 1e-15);
   Axes at = work.start;
   for (const Move& move : program.moves()) {

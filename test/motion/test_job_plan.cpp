@@ -19,11 +19,11 @@ TEST(JobPlan, RefusesASwivelThatTheMachineDoesNotHave) {
   machine.swivel = {-30 * units::kDegree, 45 * units::kDegree};
   GrindJob job = paperJob();
   for (const double swivel : {machine.swivel.from, 0.0, machine.swivel.to}) {
-    job.process.setup_swivel = swivel;
+    job.process().setup_swivel = swivel;
     EXPECT_TRUE(planOf(job, machine).good()) << swivel;
   }
   for (const double swivel : {-30.0001 * units::kDegree, 45.0001 * units::kDegree}) {
-    job.process.setup_swivel = swivel;
+    job.process().setup_swivel = swivel;
     const JobPlan plan = planOf(job, machine);
     EXPECT_EQ(plan.fault, PlanFault::kInvalidJob);
     EXPECT_TRUE(contains(textOf(plan), "; allowed: -30 to 45 deg, to which the machine swivels")) << textOf(plan);
@@ -35,8 +35,8 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   GrindJob job = paperJob();
   job.tooth_angles.clear();
   for (int i = 0; i < 64; ++i) job.tooth_angles.push_back(i * 0.09);
-  job.process.infeed = job.process.depth / 300;
-  job.process.feed = 0.1e-3 / 60;
+  job.process().infeed = job.process().depth / 300;
+  job.process().feed = 0.1e-3 / 60;
   const Machine machine = plainMachine();
   int looks = 0;
   const JobPlan plan = planJob(ValidJob(job), machine, machine.park, {}, [&](double) { return ++looks > 0; });
@@ -71,11 +71,11 @@ TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {
 TEST(JobPlan, CountsOnlyThePassesThatAreLeft) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 2};
-  job.process.spark_out = 4;
+  job.process().spark_out = 4;
   Machine machine = plainMachine();
   machine.max_job_duration = planOf(job).statistics.duration * 0.7;
   for (const GrindOrder order : {GrindOrder::kToothMajor, GrindOrder::kPassMajor}) {
-    job.process.order = order;
+    job.process().order = order;
     EXPECT_EQ(planOf(job, machine).fault, PlanFault::kTooLong);
     const ToothPass half = order == GrindOrder::kToothMajor ? ToothPass{1, 0} : ToothPass{1, 2};
     const JobPlan plan = planJob(ValidJob(job), machine, {machine.park, half});
@@ -85,7 +85,7 @@ TEST(JobPlan, CountsOnlyThePassesThatAreLeft) {
 
 TEST(JobPlan, AsksItsWatchAllTheTime) {
   GrindJob job = paperJob();
-  job.process.spark_out = 9;
+  job.process().spark_out = 9;
   const Machine machine = plainMachine();
   std::uint64_t visited = 0;
   std::uint64_t seen = 0;
@@ -113,8 +113,8 @@ GrindJob apexJob(double short_of_apex, double spiral_deg) {
   job.cutter.end_diameter = 1.6e-3;
   job.cutter.cone_angle = 15 * units::kDegree;
   job.cutter.spiral_angle = spiral_deg * units::kDegree;
-  job.process.depth = job.process.infeed = 0.1e-3;
-  job.process.overtravel_end = 0.8e-3 / std::tan(job.cutter.cone_angle) * (1 - short_of_apex);
+  job.process().depth = job.process().infeed = 0.1e-3;
+  job.process().overtravel_end = 0.8e-3 / std::tan(job.cutter.cone_angle) * (1 - short_of_apex);
   return job;
 }
 
@@ -135,8 +135,8 @@ TEST(JobPlan, GoesNoFartherTowardAnApexThanItsStepsHold) {
     SCOPED_TRACE(apex.short_of_apex);
     GrindJob job = apexJob(apex.short_of_apex, apex.spiral_deg);
     job.cutter.flute_length = 0.5e-3;
-    job.process.feed = apex.feed_mm_min * units::kMillimetrePerMinute;
-    job.process.direction = apex.direction;
+    job.process().feed = apex.feed_mm_min * units::kMillimetrePerMinute;
+    job.process().direction = apex.direction;
     job.interpolation = {apex.rule, apex.tolerance, apex.scale};
     ASSERT_TRUE(validate(job).empty());
     for (const Machine& machine : {plainMachine(), strongMachine()}) {
@@ -161,7 +161,7 @@ TEST(JobPlan, NamesTheControlRateWhereTheApexIsTooNear) {
 
 TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
   GrindJob job = steepJob();
-  job.process.feed = 600 * units::kMillimetrePerMinute;
+  job.process().feed = 600 * units::kMillimetrePerMinute;
   const auto deviationAt = [&](double override_fraction) {
     SetpointStream stream(GrindProgram(ValidJob(job), strongMachine(), strongMachine().park));
     stream.setFeedOverride(override_fraction);
@@ -186,7 +186,7 @@ TEST(JobPlan, RefusesPublishedWhereTheFeedOverrideWouldLeaveTheTolerance) {
 
 TEST(JobPlan, TakesTheOtherRulesWherePublishedDriftsOff) {
   GrindJob job = steepJob();
-  job.process.feed = 0.1;
+  job.process().feed = 0.1;
   job.interpolation.tolerance = 0.2e-6;
   for (const EvenStepRule rule : {EvenStepRule::kThirdOrder, EvenStepRule::kExact}) {
     job.interpolation.even_step = rule;
@@ -207,11 +207,11 @@ TEST(JobPlan, LetsTheRoundingPassOfAShift) {
   job.cutter.spiral_angle = -60 * units::kDegree;
   job.cutter.flute_length = 0.41e-3;
   job.cutter.core_diameter = job.cutter.core_diameter_end = 0.285e-3;
-  job.process.depth = job.process.infeed = 7.5e-6;
-  job.process.clearance = 0.1e-3;
-  job.process.overtravel_end = job.process.overtravel_shank = 0;
-  job.process.feed = 1e-3;
-  job.process.direction = StrokeDirection::kToEnd;
+  job.process().depth = job.process().infeed = 7.5e-6;
+  job.process().clearance = 0.1e-3;
+  job.process().overtravel_end = job.process().overtravel_shank = 0;
+  job.process().feed = 1e-3;
+  job.process().direction = StrokeDirection::kToEnd;
   job.interpolation.rotary_scale = 0.1e-3;
   Machine machine = test_support::plainMachine();
   machine.limits.max_velocity << 0.02, 0.02, 0.02, 3;
@@ -219,7 +219,7 @@ TEST(JobPlan, LetsTheRoundingPassOfAShift) {
   machine.limits.max_jerk << 5, 5, 5, 300;
   machine.park << 0.2e-3, 0.2e-3, 0, 0;
   for (int i = 0; i < 20; ++i) {
-    job.process.setup_x_shift = (0.38 + i * 1e-3) * 1e-3;
+    job.process().setup_x_shift = (0.38 + i * 1e-3) * 1e-3;
     machine.period = (0.78 + i * 1e-3) * 1e-3;
     const JobPlan plan = planOf(job, machine);
     EXPECT_TRUE(plan.good()) << i << ": " << textOf(plan);

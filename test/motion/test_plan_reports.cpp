@@ -48,7 +48,7 @@ TEST(JobPlan, RefusesEveryAxisBeyondItsLimitsWithTheWorstOfEveryMove) {
   machine.limits.min_position[kZ] = -1e-5;             // and begins at -12 um
   GrindJob job = paperJob();
   job.tooth_angles = {0, 1, 2};
-  job.process.spark_out = 1;
+  job.process().spark_out = 1;
   std::vector<Setpoint> visited;
   const JobPlan plan = planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
@@ -76,7 +76,7 @@ TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
     GrindJob job = paperJob();
     job.cutter.spiral_angle *= way;
     Setpoint end;
-    end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process.setup_x_shift).a(0.031) + 1;
+    end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process().setup_x_shift).a(0.031) + 1;
     const double room = job.interpolation.tolerance / Deviation(job).of(end);
     Machine machine = plainMachine();
     double& limit = (way > 0 ? machine.limits.max_position : machine.limits.min_position)[kA];
@@ -94,7 +94,7 @@ TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
 
 TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   GrindJob job = steepJob();
-  job.process.feed = 0.1;
+  job.process().feed = 0.1;
   job.interpolation.tolerance = 0.2e-6;
   Machine machine = strongMachine();
   machine.limits.max_position[kX] = 0.015;
@@ -117,7 +117,7 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
 
 /// Every statistic once more, from the setpoints that the visitor saw.
 PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
-  const ReferenceCurve curve(job.cutter, job.process.setup_x_shift);
+  const ReferenceCurve curve(job.cutter, job.process().setup_x_shift);
   PathStatistics s;
   s.setpoints = setpoints.size();
   s.max_deviation = maxDeviation(setpoints, job);
@@ -183,17 +183,17 @@ void expectSame(const GrindJob& job, const Machine& machine) {
 TEST(JobPlan, ReportsTheStatisticsOfItsSetpoints) {
   GrindJob behind = paperJob();  // the edge is behind the wheel, or ahead of it
   behind.cutter.cone_angle = 9.6 * units::kDegree;
-  behind.process.setup_x_shift = -15e-3;
+  behind.process().setup_x_shift = -15e-3;
   GrindJob ahead = behind;
-  ahead.process.setup_x_shift = 11.847e-3;
+  ahead.process().setup_x_shift = 11.847e-3;
   GrindJob many = steepJob();  // teeth and passes
   many.interpolation.even_step = EvenStepRule::kThirdOrder;
   many.interpolation.tolerance = 10e-6;
   many.tooth_angles = {0, 2, 4};
-  many.process.infeed = 0.1e-3;
-  many.process.spark_out = 1;
-  many.process.order = GrindOrder::kPassMajor;
-  many.process.direction = StrokeDirection::kToEnd;
+  many.process().infeed = 0.1e-3;
+  many.process().spark_out = 1;
+  many.process().order = GrindOrder::kPassMajor;
+  many.process().direction = StrokeDirection::kToEnd;
   for (const GrindJob& job : {behind, ahead, many}) {
     SCOPED_TRACE(::testing::PrintToString(job));
     expectSame(job, plainMachine());
@@ -224,7 +224,7 @@ RC_GTEST_PROP(JobPlanProperty, ReportsWhereEveryMoveEnds, ()) {
   checkMoveEnds(work);
   work.job.cutter.spiral_angle = 0;  // A never turns: there are moves of no length
   work.job.tooth_angles = {0};
-  work.job.process.spark_out = 2;
+  work.job.process().spark_out = 2;
   checkMoveEnds(work);
 }
 

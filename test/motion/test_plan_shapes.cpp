@@ -33,14 +33,14 @@ rc::Gen<Work> wholeTool() {
     if (*whole(0, 3) == 0) {
       for (int i = 0; i < teeth; ++i) j.spiral_angles.push_back(j.cutter.spiral_angle * (i % 2 == 0 ? 1 : 0.9));
     }
-    j.process.order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
-    j.process.infeed = j.process.depth / *uniform(1, 4);
-    j.process.finish_infeed = *whole(0, 1) * j.process.depth * 0.1;
-    j.process.wheel_wear_per_pass = *whole(0, 1) * 1e-6;
-    if (*whole(0, 3) == 0) j.process.depth_end = j.process.depth * *uniform(0.6, 1.2);
+    j.process().order = *rc::gen::element(GrindOrder::kToothMajor, GrindOrder::kPassMajor);
+    j.process().infeed = j.process().depth / *uniform(1, 4);
+    j.process().finish_infeed = *whole(0, 1) * j.process().depth * 0.1;
+    j.process().wheel_wear_per_pass = *whole(0, 1) * 1e-6;
+    if (*whole(0, 3) == 0) j.process().depth_end = j.process().depth * *uniform(0.6, 1.2);
     RC_PRE(validate(j).empty());
     if (*whole(0, 3) == 0) {
-      j.process.z_law = ZLaw::kConstantRake;
+      j.process().z_law = ZLaw::kConstantRake;
       w.z_correction = *zCorrection(j);
     }
     return w;
@@ -125,8 +125,8 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
     Work work{paperJob(), plainMachine(), plainMachine().park};
     work.job.interpolation.even_step = rule;
     work.job.tooth_angles = {0, 1.1, 2.5, 4};
-    work.job.process.infeed = work.job.process.depth / 5;
-    work.job.process.spark_out = 20;
+    work.job.process().infeed = work.job.process().depth / 5;
+    work.job.process().spark_out = 20;
     const JobPlan all = planOfAllSetpoints(work);
     ASSERT_TRUE(all.good()) << textOf(all);
     requireSame(planJob(work.valid(), work.machine, work.start), all);
@@ -142,7 +142,7 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
 TEST(PlanShapes, AreGivenUp) {
   for (const double from : {-1.0, -1e9}) {
     Work work{paperJob(), plainMachine(), plainMachine().park};
-    work.job.process.feed /= 3;
+    work.job.process().feed /= 3;
     work.start[kX] = work.machine.limits.min_position[kX] = from;
     work.machine.max_job_duration = 1e9;
     int looks = 0;

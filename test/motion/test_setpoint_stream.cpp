@@ -37,7 +37,7 @@ RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
   const Work work = *toothedWork(kCycles / 3);
   const GrindProgram program = work.program();
   const auto setpoints = all(work);
-  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_x_shift);
+  const ReferenceCurve curve(work.job.cutter, work.job.process().setup_x_shift);
   const bool exact = work.job.interpolation.even_step == EvenStepRule::kExact;
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
     const Setpoint& p = setpoints[i];
@@ -78,7 +78,7 @@ RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstructionAndRepor
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
   RC_ASSERT(offTheConstruction(setpoints, work.job, 37) == "");
-  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_x_shift);
+  const ReferenceCurve curve(work.job.cutter, work.job.process().setup_x_shift);
   const Axes noise = roundingOf(setpoints);
   for (const Setpoint& p : setpoints) {
     if (p.step == StepKind::kNone) continue;

@@ -25,7 +25,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeedAsOverridden, 
   const FeedSchedule& schedule = stream.program().schedule();
   const double edge = edgePerTravel(work.job.cutter);
   if (schedule.feedLimits().empty()) {
-    RC_ASSERT(std::abs(schedule.feedSpeed() * edge - work.job.process.feed) <= 1e-12 * work.job.process.feed);
+    RC_ASSERT(std::abs(schedule.feedSpeed() * edge - work.job.process().feed) <= 1e-12 * work.job.process().feed);
   }
   const double fraction = *rc::gen::oneOf(rc::gen::just(1.0), uniform(0.1, 1.2));
   stream.setFeedOverride(fraction);
@@ -48,7 +48,7 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathO
   const double step = work.program().schedule().feedSpeed() * work.machine.period;
   const auto setpoints = all(work);
   const double rounding = 2 * roundingOf(setpoints)[kX];
-  const ReferenceCurve curve(work.job.cutter, work.job.process.setup_x_shift);
+  const ReferenceCurve curve(work.job.cutter, work.job.process().setup_x_shift);
   for (const SeenPair& s : pairsOf(setpoints)) {
     if (!s.odd.at_feed) continue;
     // 2 |kappa| dl tan theta = 2 sin^2 theta |b| dX / u
@@ -68,10 +68,10 @@ TEST(SetpointStream, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
   work.machine.limits.max_jerk << 10, 10, 10, 1257;
   for (const int feed : {600, 1800}) {
     SCOPED_TRACE(feed);
-    work.job.process.feed = feed * units::kMillimetrePerMinute;
+    work.job.process().feed = feed * units::kMillimetrePerMinute;
     // The quickest way from rest to rest over 32 mm that X's limits allow: full acceleration is reached at both feeds
     // or not by v j against a^2. The other axes' limits can only make it slower.
-    const double v = work.job.process.feed / edgePerTravel(work.job.cutter), a = 0.5, j = 10;
+    const double v = work.job.process().feed / edgePerTravel(work.job.cutter), a = 0.5, j = 10;
     const double ramp = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
     ASSERT_LT(ramp * v, 32e-3);
     const double quickest = 32e-3 / v + ramp;

@@ -25,7 +25,7 @@ double maxCoefficient(const ZCorrection& c) {
 
 GrindJob constantRakeJob() {
   GrindJob job = paperJob();
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process().z_law = ZLaw::kConstantRake;
   return job;
 }
 

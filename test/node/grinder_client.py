@@ -30,7 +30,7 @@ import rosunit.xmlrunner
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
-                               ProbeGoal, SetpointBatch, WrittenSetpoint)
+                               ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
 from flute_grinder.srv import ConfirmSwivel, InjectFault, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -78,8 +78,19 @@ def goal_of(job, **fields):
         setattr(goal, name, value)
     for path, value in () if isinstance(job, GrindGoal) else job.items():
         part, name = path.split('.')
-        setattr(getattr(goal, part), name, value)
+        setattr(part_of(goal, part), name, value)
     return goal
+
+
+def part_of(goal, part):
+    """Where a goal has the fields of a part of a job: 'cutter', 'process' or 'interpolation'."""
+    return process_of(goal) if part == 'process' else getattr(goal, part)
+
+
+def process_of(goal):
+    """The operation of a goal; of a new goal the only one, which is new, too."""
+    goal.operations = goal.operations or [Process()]
+    return goal.operations[goal.operation]
 
 
 @lru_cache(None)
@@ -111,7 +122,8 @@ def reamer_file(path):
     """Writes jobs/taper_reamer_d6_t6.yaml to `path`, with reliefs that are over soon: in one pass each, at ten times the feed."""
     text = pathlib.Path(package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
     for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.05', ' infeed_mm: 2'),
-                     ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels'))):
+                     ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels')),
+                     ('file: taper', 'file: ' + package_file('jobs/taper'))):
         assert old in text, old
         text = text.replace(old, new)
     pathlib.Path(path).write_text(text)
@@ -141,13 +153,19 @@ def job_from_file(path):
         measured = wheel.pop('measured', {})
         wheel['wear_mm'] = round((wheel['diameter_mm'] - measured.get('diameter_mm', wheel['diameter_mm'])) / 2, 9)
         wheel['width_mm'] = measured.get('width_mm', wheel['width_mm'])
+    setup = process.pop('setup')
+    if 'file' in setup:
+        with open(os.path.join(os.path.dirname(path), setup['file'])) as text:
+            setup = yaml.safe_load(text)['flute']
+        setup.pop('solved_for')
+        process.update((key, setup.pop(key)) for key in ('depth_mm', 'depth_end_mm', 'overtravel_mm'))
     teeth = cutter.pop('teeth', 0)
     cutter.setdefault('tooth_angles_deg', [i * 360.0 / teeth for i in range(teeth)])
-    for part, values in (('wheel_', wheel), ('setup_', process.pop('setup'))):
+    for part, values in (('wheel_', wheel), ('setup_', setup)):
         process.update((part + key, value) for key, value in values.items())
 
     goal = GrindGoal()
-    job = {part + '.' + name: getattr(getattr(goal, part), name) for part in file for name in getattr(goal, part).__slots__}
+    job = {part + '.' + name: getattr(part_of(goal, part), name) for part in file for name in part_of(goal, part).__slots__}
     for part, values in file.items():
         for key, value in values.items():
             name, unit = re.fullmatch('(.*?)(?:_(%s))?' % '|'.join(UNITS), key).groups()
@@ -288,7 +306,7 @@ class Run:
         self._grinder = grinder
         if confirm and not goal.dry_run:
             # Refused during another job or if the drive measures it: then the goal's answer says so.
-            grinder.confirm_swivel(goal.process.setup_swivel)
+            grinder.confirm_swivel(process_of(goal).setup_swivel)
         self.feedback = []
         self.sent = time.time()
         self._handle = grinder.client.send_goal(goal, self._on_transition, self._on_feedback)

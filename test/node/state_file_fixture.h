@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/plan/sha256.h"
+#include "flute_grinder/job/sha256.h"
 
 #include "temp_folder.h"
 

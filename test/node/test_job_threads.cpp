@@ -44,7 +44,7 @@ class JobThreads : public ::testing::Test {
     test_support::setUp(drive_, machineConfig());
     drive_.on_read = [this](FakeDrive& drive) { drive.status.emergency_stop = emergency_stop_; };
     loop_ = std::make_unique<ControlLoop>(drive_, machineConfig());
-    loop_->postSwivel(job_->process.setup_swivel);
+    loop_->postSwivel(job_->process().setup_swivel);
   }
 
   template <typename Work>

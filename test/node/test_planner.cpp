@@ -31,15 +31,15 @@ GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 /// Takes hours to plan: with a depth that changes along the flute, no pass is like another.
 GrindJob endless() {
   GrindJob job = paper();
-  job.process.depth_end = 0.99 * job.process.depth;
-  job.process.feed = kMinFeed;
-  job.process.infeed = job.process.depth / 200;
+  job.process().depth_end = 0.99 * job.process().depth;
+  job.process().feed = kMinFeed;
+  job.process().infeed = job.process().depth / 200;
   return job;
 }
 
 ValidJob changed(const std::function<void(GrindProcess&)>& change) {
   GrindJob job = paper();
-  change(job.process);
+  change(job.process());
   return ValidJob(job);
 }
 
@@ -114,10 +114,10 @@ TEST(Planner, KeepsNoPlanOfAReliefThatIsNowTheLast) {
     EXPECT_TRUE(planner.submit(asked.request));
     return asked.wait();
   };
-  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, "primary");
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "primary");
   const auto plan = planOf(job);
   ASSERT_TRUE(plan->good()) << text(plan->reasons);
-  job.operations[2].process.feed *= 0.9;
+  job.operations[2].feed *= 0.9;
   EXPECT_EQ(planOf(job), plan);
   job.operations.pop_back();
   EXPECT_EQ(planOf(job)->fault, PlanFault::kTool);

@@ -115,7 +115,7 @@ class TestCycles(ProbeTest):
                              rake_angle_deg=math.degrees(math.asin(1.2 / 5)), tooth_angles_deg=[0, 180])
         job['cutter'].update(gc.ANY_TOOL)
         job['process']['wheel'] = {'file': gc.package_file('wheels/straight_d100_w3.yaml')}
-        job['process']['setup'] = {'swivel_deg': 0, 'height_mm': 1.2 - 1.5}
+        job['process'].update(depth_mm=3.1, overtravel_mm=[1, 9], setup={'swivel_deg': 0, 'height_mm': 1.2 - 1.5})
         path = os.path.join(self.folder, 'straight.yaml')
         with open(path, 'w') as file:
             yaml.safe_dump(job, file)

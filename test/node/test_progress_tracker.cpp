@@ -19,7 +19,7 @@ const ToothPass kFirst{0, 0};
 /// One tooth in as many passes.
 GrindProgram program(int passes, const Axes& offset = Axes::Zero()) {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
-  job.process.infeed = job.process.depth / passes;
+  job.process().infeed = job.process().depth / passes;
   const Machine machine = test_support::machineConfig().machine;
   return {ValidJob(job), machine, {machine.park, {}, offset}};
 }

@@ -1,4 +1,4 @@
-#include "flute_grinder/plan/job_digest.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
@@ -7,7 +7,7 @@
 namespace grinder {
 
 std::string digestOf(const QString& job, const std::string& operation) {
-  return jobDigest(readJobFile(job.toStdString(), {}, operation));
+  return jobDigest(readJobFile(job.toStdString(), operation));
 }
 
 }  // namespace grinder

@@ -97,6 +97,13 @@ QString changedJob(const QString& job, const QString& path,
     text.replace(from, to);
   }
   text.replace("../wheels", kPackage.toUtf8() + "/wheels");
+  const QFileInfo from(job), to(path);
+  QFile setup(from.path() + "/" + from.completeBaseName() + ".setup.yaml");
+  if (setup.open(QFile::ReadOnly)) {
+    QFile copy(to.path() + "/" + QFileInfo(setup).fileName());
+    const QByteArray solved = setup.readAll().replace(from.fileName().toUtf8(), to.fileName().toUtf8());
+    EXPECT_TRUE(copy.open(QFile::WriteOnly) && copy.write(solved) == solved.size());
+  }
   QFile file(path);
   EXPECT_TRUE(file.open(QFile::WriteOnly) && file.write(text) == text.size());
   return path;

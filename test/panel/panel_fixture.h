@@ -40,7 +40,8 @@ using Names = std::set<std::string>;
 inline const Names kRequests{"enable", "disable", "home", "start",  "hold",
                              "resume", "retract", "lift", "cancel", "reset"};
 
-/// Writes a copy of a job file with other values, and the same wheel files. @return its path.
+/// Writes a copy of a job file with other values, the same wheel files, and a copy of its set-up file. @return its
+/// path.
 QString changedJob(const QString& job, const QString& path,
                    const std::vector<std::pair<QByteArray, QByteArray>>& changes);
 

@@ -685,7 +685,7 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
   EXPECT_TRUE(goals().empty());
-  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.process.depth, 1.5e-3);
+  EXPECT_DOUBLE_EQ(processOf(stage.get(&Stage::plans).at(1).goal).depth, 1.5e-3);
 }
 
 TEST_F(OnStage, ConfigurationIsSavedAndLoaded) {

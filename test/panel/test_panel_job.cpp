@@ -63,7 +63,7 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 const QString kJob = kPackage + "/jobs/paper.yaml";
-const QByteArray kSetup = "  setup: {swivel_deg: 32.34, height_mm: 5.882, x_shift_mm: 11.853}";
+const QByteArray kSetup = "paper.setup.yaml", kNone = "job.setup.yaml";
 
 class SetupSheet : public ::testing::Test {
  protected:
@@ -78,17 +78,12 @@ class SetupSheet : public ::testing::Test {
     WAIT_FOR(dialog());
     WAIT_FOR(sheet() != "Solving ...");
   }
-  void write() {
+  void write(const char* setup) {
     panel->press("write_setup");
-    EXPECT_TRUE(panel->says("write_question", "The old file is kept as " + file.toStdString() + ".before."));
+    EXPECT_TRUE(panel->says("write_question", "Write this set-up into " + folder.filePath(setup).toStdString() + "?"));
     panel->press("write_over");
     WAIT_FOR(sheet().find("Written into ") != std::string::npos);
     EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U) << panel->text("verdict");
-  }
-  std::string readAll() {
-    QFile job(file);
-    EXPECT_TRUE(job.open(QFile::ReadOnly));
-    return job.readAll().toStdString();
   }
   void closeSheet() {
     panel->click("close_setup");
@@ -110,29 +105,27 @@ class SetupSheet : public ::testing::Test {
 
 TEST_F(SetupSheet, IsShownAndWritten) {
   ASSERT_TRUE(test_support::hasComma()) << "Qt has given this process the desktop's locale, here a German one";
-  open({{kSetup, ""}});
+  open({{kSetup, kNone}});
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
-  EXPECT_TRUE(panel->says("verdict", "'grind setup --write' finds it"));
+  EXPECT_TRUE(panel->says("verdict", "'grind setup --write' solves it"));
   EXPECT_NEAR(figure("swivel"), 32.350, 0.02);
-  ASSERT_NO_FATAL_FAILURE(write());
+  ASSERT_NO_FATAL_FAILURE(write("job.setup.yaml"));
   EXPECT_FALSE(panel->enabled("write_setup"));
   closeSheet();
 }
 
 TEST_F(SetupSheet, ShowsWhatTheFileHasAndIsWrittenOnlyIfTheOperatorSaysSoTwice) {
   open({}, QString(kJob).replace("paper", "roughing_d10_t4"));
-  EXPECT_TRUE(panel->says("setup_sheet", "swivel_deg        43.32 in the file, 43.2"));
-  const std::string before = goalFromFile(file.toStdString()).job_name + readAll();
+  EXPECT_TRUE(panel->says("setup_sheet", "swivel_deg        43.32 before, 43.2"));
   panel->press("write_setup");
   panel->press("decline_write");
   QTest::keyClick(dialog(), Qt::Key_Return);
   WAIT_FOR(!dialog());
-  EXPECT_EQ(goalFromFile(file.toStdString()).job_name + readAll(), before) << "Enter closes it";
+  const auto swivel = [&] { return processOf(goalFromFile(file.toStdString())).setup_swivel / units::kDegree; };
+  EXPECT_DOUBLE_EQ(swivel(), 43.32) << "Enter closes it";
   ASSERT_NO_FATAL_FAILURE(openSheet());
-  ASSERT_NO_FATAL_FAILURE(write());
-  QFile old(file + ".before");
-  ASSERT_TRUE(old.open(QFile::ReadOnly));
-  EXPECT_EQ("job.yaml" + old.readAll().toStdString(), before);
+  ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
+  EXPECT_NEAR(swivel(), 43.2, 0.1);
   closeSheet();
 }
 
@@ -153,7 +146,7 @@ TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
   }
   for (const char* answer : {"ignore_offset_check", "confirm_swivel"}) panel->press(answer);
   WAIT_FOR(panel->state() == "Running" && !panel->enabled("write_setup"));
-  EXPECT_EQ(panel->label("why_not_written"), "This job runs: its file is not written.");
+  EXPECT_EQ(panel->label("why_not_written"), "This job runs: its set-up file is not written.");
   panel->click("cancel");
   WAIT_FOR(panel->state() == "Ready");
   panel->press("write_setup");
@@ -164,22 +157,20 @@ TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
   WAIT_FOR(panel->state() == "Disabled");
 }
 
-TEST_F(SetupSheet, KeepsTheFigureThatIsChosen) {
+TEST_F(SetupSheet, KeepsTheFigureThatTheJobAsksFor) {
   // On a cylinder, of which one figure may stay.
-  open({{"swivel_deg: 43.32", "swivel_deg: 43"}}, QString(kJob).replace("paper", "roughing_d10_t4"));
-  EXPECT_NE(figure("swivel"), 43);
-  auto& keep = panel->the<QComboBox>("keep_figure");
-  ASSERT_EQ(keep.currentText(), "nothing");
-  QTest::keyClick(&keep, Qt::Key_Down);
-  EXPECT_EQ(keep.currentText(), "swivel");
-  EXPECT_FALSE(panel->enabled("write_setup"));
-  WAIT_FOR(panel->enabled("write_setup"));
+  open({{"roughing_d10_t4.setup.yaml", "roughing_d10_t4.setup.yaml, swivel_deg: 43"}},
+       QString(kJob).replace("paper", "roughing_d10_t4"));
   EXPECT_EQ(figure("swivel"), 43);
-  ASSERT_NO_FATAL_FAILURE(write());
-  EXPECT_DOUBLE_EQ(goalFromFile(file.toStdString()).process.setup_swivel, 43 * units::kDegree);
-  QTest::keyClick(&keep, Qt::Key_Down);  // and once more
-  WAIT_FOR(panel->enabled("write_setup"));
+  ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
+  EXPECT_DOUBLE_EQ(processOf(goalFromFile(file.toStdString())).setup_swivel, 43 * units::kDegree);
   closeSheet();
+}
+
+TEST_F(SetupSheet, IsNotWrittenForAJobWithFigures) {
+  open({}, kPaper);
+  EXPECT_TRUE(panel->says("setup_sheet", "The figures of the set-up are written by hand in the job file"));
+  EXPECT_FALSE(panel->enabled("write_setup"));
 }
 
 TEST_F(SetupSheet, IsNotWrittenWithoutASolutionOrIfAPlanWouldRefuseIt) {
@@ -187,7 +178,7 @@ TEST_F(SetupSheet, IsNotWrittenWithoutASolutionOrIfAPlanWouldRefuseIt) {
   EXPECT_EQ(sheet().find("no land is left: "), 0u) << sheet();
   EXPECT_FALSE(panel->enabled("write_setup"));
   // Each tooth has a helix of its own, and the set-up is for the middle.
-  open({{kSetup, ""}, {"teeth: 1", "teeth: 2"}, {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"}});
+  open({{kSetup, kNone}, {"teeth: 1", "teeth: 2"}, {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"}});
   EXPECT_TRUE(panel->says("setup_sheet", "a plan would refuse this tool: cutter.rake_angle_deg = 8 deg"));
   EXPECT_TRUE(panel->says("setup_sheet", "It is not written."));
   EXPECT_FALSE(panel->enabled("write_setup"));
@@ -224,15 +215,22 @@ TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
 }
 
 TEST_F(SetupSheet, OfAReliefGoesToItsOperation) {
-  open({{"    setup: {swivel_deg: 13.104, height_mm: -3.864}\n", ""}},
-       QString(kJob).replace("paper", "taper_reamer_d6_t6"));
+  open({}, QString(kJob).replace("paper", "taper_reamer_d6_t6"));
+  QFile solved(folder.filePath("taper_reamer_d6_t6.setup.yaml"));
+  ASSERT_TRUE(solved.open(QFile::ReadOnly));
+  QByteArray others = solved.readAll();
+  solved.close();
+  const auto primary = others.indexOf("primary:");
+  others.remove(primary, others.indexOf("secondary:") - primary);
+  ASSERT_TRUE(solved.open(QFile::WriteOnly) && solved.write(others) == others.size());
+  solved.close();
   EXPECT_FALSE(panel->enabled("setup"));
   panel->chooseOperation("2 primary relief");
   WAIT_FOR(panel->enabled("setup"));
-  EXPECT_TRUE(panel->says("verdict", "'grind setup --write' finds it"));
+  EXPECT_TRUE(panel->says("verdict", "'grind setup --operation primary --write' solves it"));
   ASSERT_NO_FATAL_FAILURE(openSheet());
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml, 2 primary relief for /grinder");
-  ASSERT_NO_FATAL_FAILURE(write());
+  ASSERT_NO_FATAL_FAILURE(write("taper_reamer_d6_t6.setup.yaml"));
   EXPECT_EQ(panel->the<QComboBox>("operation").currentText(), "2 primary relief");
   closeSheet();
 }

@@ -20,7 +20,7 @@ class ZeroPoints : public OnStage {
   void setFor(double diameter, double height = 0.002788) {
     flute_grinder::GrindGoal goal = goalFromFile(kPaper.toStdString());
     goal.cutter.end_diameter = diameter;
-    goal.process.setup_height = height;
+    processOf(goal).setup_height = height;
     goal.job_name = "other.yaml";
     setFor(goal);
   }
@@ -137,7 +137,7 @@ TEST_F(ZeroPoints, ThatWereNeverSetCannotBeComputed) {
 TEST_F(ZeroPoints, OfALongQuestionMustHaveBeenInSightBeforeTheyAreIgnored) {
   flute_grinder::GrindGoal goal = goalFromFile(kPaper.toStdString());
   goal.cutter.end_diameter = 0.006;
-  goal.process.setup_swivel = 0.3;
+  processOf(goal).setup_swivel = 0.3;
   setFor(goal);
   WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
   panel.click("start");

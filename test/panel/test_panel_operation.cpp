@@ -62,17 +62,17 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   panel.widget().load(config);
   panel.chooseOperation("2 primary relief");
   panel.plan();
-  changedJob(kReamer, path, {{"height_mm: -3.864", "height_mm: -3.863"}});
+  changedJob(kReamer, path, {{"feed_mm_min: 700", "feed_mm_min: 701"}});
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
-  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.process.setup_height, -3.863e-3);
+  EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.operations.at(0).feed, 701e-3 / 60);
   EXPECT_EQ(box.currentText(), "2 primary relief");
   WAIT_FOR(says("Takes "));
   changedJob(
       kReamer, path,
       {{"  - kind: relief\n    relief: secondary\n    feed_mm_min: 300\n    infeed_mm: 0.05\n    finish_infeed_mm: "
-        "0.01\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    setup: {swivel_deg: 13.104, height_mm: "
-        "-3.648}\n",
+        "0.01\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    setup: {file: "
+        "taper_reamer_d6_t6.setup.yaml}\n",
         ""},
        {"  second_clearance_deg: 22\n", ""}});
   panel.click("start");

@@ -1,9 +1,9 @@
 #include "flute_grinder/curve/relief_path.h"
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/yaml_text.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/plan/planned_job.h"
 #include "jobs.h"
 #include "motion/generators.h"
@@ -27,7 +27,7 @@ using units::kMillimetre;
 
 constexpr const char* kReamer = "jobs/taper_reamer_d6_t6.yaml";
 
-GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, {}, operation); }
+GrindJob reamer(const std::string& operation) { return readJobFile(kReamer, operation); }
 
 CutterCheck checkOf(const GrindJob& job) { return checkGroundCutter(withLaws(ValidJob(job))); }
 
@@ -39,8 +39,8 @@ std::set<ReasonKind> kindsOf(const CutterCheck& check) {
 
 /// With another height of the set-up, in the operation and in the list.
 GrindJob withHeight(GrindJob job, double height) {
-  job.process.setup_height = height;
-  job.operations[static_cast<std::size_t>(job.operation)].process.setup_height = height;
+  job.process().setup_height = height;
+  job.operations[static_cast<std::size_t>(job.operation)].setup_height = height;
   return job;
 }
 
@@ -48,13 +48,13 @@ TEST(Operations, AreNamedByNumberOrKindAndNeverGuessed) {
   for (const auto& [name, kind] :
        {std::pair{"1", OperationKind::kFlute}, std::pair{"flute", OperationKind::kFlute},
         std::pair{"2", OperationKind::kPrimaryRelief}, std::pair{"secondary", OperationKind::kSecondaryRelief}}) {
-    EXPECT_EQ(reamer(name).process.kind, kind) << name;
+    EXPECT_EQ(reamer(name).process().kind, kind) << name;
   }
   const std::string allowed = "; allowed: 1 or flute, 2 or primary, 3 or secondary";
   EXPECT_EQ(refusalOf([] { reamer(""); }), std::string(kReamer) + ": operation is missing" + allowed);
   EXPECT_EQ(refusalOf([] { reamer("4"); }), std::string(kReamer) + ": operation = 4" + allowed);
-  EXPECT_EQ(readJobFile("test/jobs/paper.yaml", {}, "flute").operations.size(), 0u);
-  EXPECT_THROW(readJobFile("test/jobs/paper.yaml", {}, "primary"), JobFileError);
+  EXPECT_EQ(readJobFile("test/jobs/paper.yaml", "flute").operations.size(), 1u);
+  EXPECT_THROW(readJobFile("test/jobs/paper.yaml", "primary"), JobFileError);
 }
 
 TEST(Operations, MayHaveAWheelOfPoints) {
@@ -63,34 +63,24 @@ TEST(Operations, MayHaveAWheelOfPoints) {
   ASSERT_NE(text.find(straight), std::string::npos);
   text.replace(text.find(straight), straight.size(),
                "      width_mm: 3\n      profile: points\n      points_mm: [[-1.5, 50], [1.5, 49]]\n");
-  const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), {}, "flute");
-  ASSERT_EQ(job.wheel_points.size(), 2u);
-  EXPECT_DOUBLE_EQ(job.wheel_points[1].radius, 49 * kMillimetre);
-}
-
-TEST(Operations, OnlyThoseAheadMustBeSolvedForOneToBe) {
-  std::string text = readTextFile(kReamer);
-  const std::string setup = "    setup: {swivel_deg: 13.104, height_mm: -3.864}\n";
-  ASSERT_NE(text.find(setup), std::string::npos);
-  text.erase(text.find(setup), setup.size());
-  const std::vector<std::string> fields{"process.setup_swivel", "process.setup_height"};
-  const std::string wheels = std::filesystem::absolute("jobs/reamer.yaml");
-  EXPECT_EQ(parseJob(text, wheels, fields, "flute").operation, 0);
-  EXPECT_EQ(parseJob(text, wheels, fields, "primary").operation, 1);
-  const std::string said = refusalOf([&] { parseJob(text, wheels, fields, "secondary"); });
-  EXPECT_NE(said.find("operations[1].setup.swivel_deg is missing"), std::string::npos) << said;
+  const std::string solved = "    setup: {file: end_mill_d10_t4.setup.yaml}\n";
+  text.replace(text.find(solved), solved.size(),
+               "    depth_mm: 1.6\n    overtravel_mm: [3.5, 1]\n    setup: {swivel_deg: 43.32, height_mm: -1.366}\n");
+  const GrindJob job = parseJob(text, std::filesystem::absolute("jobs/mill.yaml"), "flute");
+  ASSERT_EQ(job.process().wheel_points.size(), 2u);
+  EXPECT_DOUBLE_EQ(job.process().wheel_points[1].radius, 49 * kMillimetre);
 }
 
 // What a relief leaves out and may take from the flutes, and what it may not.
 TEST(Operations, TakeWhatTheReferenceSaysFromTheOneAhead) {
   const GrindJob flute = reamer("flute"), primary = reamer("primary");
-  EXPECT_EQ(primary.process.clearance, flute.process.clearance);
-  EXPECT_EQ(primary.process.direction, flute.process.direction);
-  EXPECT_EQ(primary.process.order, flute.process.order);
-  EXPECT_EQ(primary.process.spark_out, flute.process.spark_out);
-  EXPECT_NE(primary.process.feed, flute.process.feed);
-  EXPECT_EQ(primary.process.depth, 0);
-  EXPECT_EQ(primary.process.setup_x_shift, 0);
+  EXPECT_EQ(primary.process().clearance, flute.process().clearance);
+  EXPECT_EQ(primary.process().direction, flute.process().direction);
+  EXPECT_EQ(primary.process().order, flute.process().order);
+  EXPECT_EQ(primary.process().spark_out, flute.process().spark_out);
+  EXPECT_NE(primary.process().feed, flute.process().feed);
+  EXPECT_EQ(primary.process().depth, 0);
+  EXPECT_EQ(primary.process().setup_x_shift, 0);
 }
 
 TEST(Operations, EachHasItsDigestAndKnowsWhatWasGroundBefore) {
@@ -98,10 +88,10 @@ TEST(Operations, EachHasItsDigestAndKnowsWhatWasGroundBefore) {
   for (const char* name : {"flute", "primary", "secondary"}) digests.insert(jobDigest(reamer(name)));
   EXPECT_EQ(digests.size(), 3u);
   GrindJob other = reamer("secondary");
-  other.operations[1].process.setup_swivel += 1e-3;  // of the primary relief
+  other.operations[1].setup_swivel += 1e-3;  // of the primary relief
   EXPECT_NE(jobDigest(other), jobDigest(reamer("secondary")));
   other = reamer("primary");
-  other.operations[2].process.setup_swivel += 1e-3;  // of what comes after
+  other.operations[2].setup_swivel += 1e-3;  // of what comes after
   EXPECT_EQ(jobDigest(other), jobDigest(reamer("primary")));
 }
 
@@ -114,16 +104,14 @@ TEST(Operations, AreRefusedWhereTheyDoNotFollowOneAnother) {
       {"primary", [](GrindJob& j) { std::swap(j.operations[1], j.operations[2]); },
        "process.kind = 2; allowed: 1 to 1"},
       {"primary", [](GrindJob& j) { j.operation = 3; }, "operation = 3; allowed: 0 to 2"},
-      {"primary", [](GrindJob& j) { j.process.feed *= 2; },
-       "process.feed_mm_min = 600 mm/min; allowed: as in its operation, 300 mm/min"},
+      {"primary", [](GrindJob& j) { j.operations.clear(); }, "operations = 0; allowed: 1 to 3"},
       {"primary", [](GrindJob& j) { j.cutter.clearance = 0; },
        "cutter.clearance_deg = 0 deg; allowed: more than 0 with a relief"},
       {"secondary", [](GrindJob& j) { j.cutter.land = 0; },
        "cutter.land_mm = 0 mm; allowed: more than 0 with a secondary relief"},
-      {"flute", [](GrindJob& j) { j.process.behind = 1e-4; },
+      {"flute", [](GrindJob& j) { j.process().behind = 1e-4; },
        "process.behind_mm = 0.1 mm; allowed: 0 for this operation"},
-      {"primary",
-       [](GrindJob& j) { j.process.wheel_profile = j.operations[1].process.wheel_profile = WheelShape::kFullRadius; },
+      {"primary", [](GrindJob& j) { j.process().wheel_profile = WheelShape::kFullRadius; },
        "process.wheel_profile = 2; allowed: 0, straight, for a relief: its cylinder is what grinds it"},
   };
   for (const auto& row : rows) {
@@ -160,9 +148,9 @@ TEST(Operations, AReliefsStrokesAreTheClosedForm) {
     EXPECT_LT(plan.statistics.max_even_error, 1e-9);
     // From where the wheel first touches to the full depth, in infeeds.
     for (std::size_t i = 1; i < job.depths().size(); ++i) {
-      EXPECT_LE(job.depths()[i] - job.depths()[i - 1], job->process.infeed * (1 + 1e-9));
+      EXPECT_LE(job.depths()[i] - job.depths()[i - 1], job->process().infeed * (1 + 1e-9));
     }
-    EXPECT_LE(job.depths().front(), job->process.infeed * (1 + 1e-9));
+    EXPECT_LE(job.depths().front(), job->process().infeed * (1 + 1e-9));
     EXPECT_EQ(job.depths().back(), path.depth());
   }
 }
@@ -175,11 +163,11 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   EXPECT_NEAR(find(good.figures, ToolFigure::kPrimary)->least.value / kMillimetre, 0.3, 0.02);
   // The edge near the wheel's lower face: so much of the rim is behind it that it reaches the next tooth.
   const GrindJob secondary = reamer("secondary");
-  const double per_width = std::cos(secondary.process.setup_swivel);
-  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process.setup_height + 2.5e-3 * per_width))),
+  const double per_width = std::cos(secondary.process().setup_swivel);
+  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process().setup_height + 2.5e-3 * per_width))),
             std::set<ReasonKind>{ReasonKind::kNextEdge});
   // And near the upper face it ends on the land.
-  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process.setup_height - 1.2e-3 * per_width))),
+  EXPECT_EQ(kindsOf(checkOf(withHeight(secondary, secondary.process().setup_height - 1.2e-3 * per_width))),
             std::set<ReasonKind>{ReasonKind::kHeel});
   // Of the primary, 0.15 mm of the rim are behind the edge, where the secondary is to begin at 0.3 mm.
   EXPECT_EQ(kindsOf(checkOf(withHeight(reamer("primary"), -4.19e-3))), std::set<ReasonKind>{ReasonKind::kHeel});
@@ -192,10 +180,10 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
   }
   // A corner is none of the rim: neither where the relief ends, nor where it begins.
   GrindJob round = reamer("secondary");
-  GrindProcess& own = round.operations[2].process;
-  round.process.wheel_corner_radius_upper = own.wheel_corner_radius_upper = 0.5e-3;
+  GrindProcess& own = round.operations[2];
+  round.process().wheel_corner_radius_upper = own.wheel_corner_radius_upper = 0.5e-3;
   EXPECT_EQ(kindsOf(checkOf(round)), std::set<ReasonKind>{ReasonKind::kHeel});
-  round.process.wheel_corner_radius_lower = own.wheel_corner_radius_lower = 5e-3;
+  round.process().wheel_corner_radius_lower = own.wheel_corner_radius_lower = 5e-3;
   EXPECT_THROW(checkOf(round), InvalidJob);
 }
 
@@ -205,7 +193,7 @@ TEST(Operations, AReliefFollowsTheEdgeAsItIsGround) {
   for (const char* name : {"primary", "secondary"}) {
     GrindJob job = reamer(name);
     job.cutter.spiral_tolerance = 1 * kDegree;
-    job.operations[0].process.setup_x_shift += 3e-3;
+    job.operations[0].setup_x_shift += 3e-3;
     const CutterCheck check = checkOf(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     EXPECT_GT(find(check.figures, ToolFigure::kOffHelix)->largest.value, 0.9 * kDegree) << name;
@@ -243,7 +231,7 @@ CutterCheck checkOfRoughing(double clearance, double width, double swivel, doubl
   relief.setup_swivel = swivel;
   relief.setup_height =
       ReliefPath::heightFor(ConicalCutter(job.cutter), {clearance}, {50e-3, 0, width, swivel, 0}, contact);
-  job.operations = {{job.process, {}}, {relief, {}}};
+  job.operations.push_back(relief);
   return checkOf(job.ofOperation(1));
 }
 

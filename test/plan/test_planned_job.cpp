@@ -1,8 +1,8 @@
 #include "flute_grinder/curve/units.h"
 #include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/plan/planned_job.h"
 
 #include "collision/machine.h"
@@ -33,7 +33,7 @@ GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 GrindJob withConstantRake() {
   GrindJob job = paper();
-  job.process.z_law = ZLaw::kConstantRake;
+  job.process().z_law = ZLaw::kConstantRake;
   return job;
 }
 
@@ -41,7 +41,7 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
   const GrindJob job = withConstantRake();
   const PlannedJob whole = planned(job);
   ASSERT_TRUE(whole.good()) << text(whole.reasons);
-  EXPECT_EQ(whole.digest, jobDigest(job));
+  EXPECT_EQ(whole.program->job().digest(), jobDigest(job));
   const ValidJob with_law = withLaws(ValidJob(job));
   EXPECT_EQ(whole.program->job().zCorrectionOf(0).coefficients, with_law.zCorrectionOf(0).coefficients);
   EXPECT_EQ(whole.move_ends, planJob(with_law, machine(), machine().park).move_ends);
@@ -55,9 +55,9 @@ TEST(PlannedJob, HasWhatItsPartsFind) {
 
 TEST(PlannedJob, OfEveryShippedFileIsGood) {
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator("jobs")) {
-    const PlannedJob whole = planned(readJobFile(entry.path(), {}, "flute"));
-    EXPECT_TRUE(whole.good()) << entry.path() << text(whole.reasons);
+  for (const std::string& entry : test_support::shippedJobs()) {
+    const PlannedJob whole = planned(readJobFile(entry, "flute"));
+    EXPECT_TRUE(whole.good()) << entry << text(whole.reasons);
     ++files;
   }
   EXPECT_GE(files, 8);
@@ -65,7 +65,7 @@ TEST(PlannedJob, OfEveryShippedFileIsGood) {
 
 TEST(PlannedJob, WithoutALawOfZThereIsNoProgram) {
   GrindJob job = withConstantRake();
-  job.process.setup_swivel += 25 * kDegree;
+  job.process().setup_swivel += 25 * kDegree;
   const PlannedJob whole = planned(job);
   EXPECT_EQ(whole.fault, PlanFault::kTool);
   EXPECT_EQ(whole.program, nullptr);
@@ -86,7 +86,7 @@ TEST(PlannedJob, IsGivenUpByItsWatch) {
 TEST(PlannedJob, TheFirstFaultCountsAndAllReasonsAreThere) {
   GrindJob job = paper();
   job.cutter.rake_angle = 20 * kDegree;  // which the set-up does not grind
-  job.process.wheel_diameter = 0.5;
+  job.process().wheel_diameter = 0.5;
   job.cutter.flute_length = 0.16;  // the wheel reaches the chuck
   const PlannedJob whole = planned(job);
   EXPECT_EQ(whole.fault, PlanFault::kTool) << text(whole.reasons);

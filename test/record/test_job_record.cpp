@@ -1,4 +1,4 @@
-#include "flute_grinder/plan/job_digest.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/record/job_record.h"
 
 #include "any_tool.h"
@@ -39,12 +39,12 @@ GrindJob shortJob() {
   GrindJob job = readJobFile("test/jobs/paper.yaml");
   test_support::askForRakeAlone(job.cutter);
   job.cutter.flute_length = 2e-3;
-  job.process.overtravel_shank = 1e-3;
-  job.process.feed = 0.05;
-  job.process.depth = 1e-3;
-  job.process.depth_end = 0.8e-3;
-  job.process.setup_x_shift = -15e-3;
-  job.process.infeed = 0.6e-3;
+  job.process().overtravel_shank = 1e-3;
+  job.process().feed = 0.05;
+  job.process().depth = 1e-3;
+  job.process().depth_end = 0.8e-3;
+  job.process().setup_x_shift = -15e-3;
+  job.process().infeed = 0.6e-3;
   job.tooth_angles = {0, 3.1};
   job.spiral_angles = {job.cutter.spiral_angle, job.cutter.spiral_angle * 0.9};
   return job;
@@ -60,7 +60,6 @@ class JobRecordTest : public ::testing::Test {
  protected:
   JobRecordTest() {
     plan_.program = std::make_shared<const GrindProgram>(ValidJob(job_), config_.machine, config_.machine.park);
-    plan_.digest = jobDigest(job_);
     plan_.statistics.setpoints = 4321;
     plan_.statistics.duration = 4.32;
     plan_.statistics.max_deviation = 0.5e-6;
@@ -358,7 +357,7 @@ TEST_F(JobRecordTest, HeadSaysWhichPartOfItsToolItIs) {
         std::make_shared<const GrindProgram>(ValidJob(job), config_.machine, RunStart(config_.machine.park, first));
     return JobRecord(plan_, {}, {}, false).record("/grinder", kMachine, kTolerances).head;
   };
-  const RecordHead alone = head(job_, {}), flute = head(readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1"), {1, 0});
+  const RecordHead alone = head(job_, {}), flute = head(readJobFile("jobs/end_mill_d10_t4.yaml", "1"), {1, 0});
   EXPECT_EQ(alone.operation, "");
   EXPECT_TRUE(alone.ends_tool);
   EXPECT_FALSE(alone.continues);

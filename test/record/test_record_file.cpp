@@ -68,8 +68,11 @@ TEST_F(RecordFile, CutOffAtAnyByteIsRefusedAndTheHeadIsReadWhereItIsWhole) {
   const std::size_t head = whole.find('\n') + 1;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THROW(readRecord(write(whole.substr(0, size))), FileError) << size;
-    if (size < head) EXPECT_THROW(readHead(path_), FileError) << size;
-    if (size >= head) EXPECT_EQ(readHead(path_).outcome, "done") << size;
+    if (size < head) {
+      EXPECT_THROW(readHead(path_), FileError) << size;
+    } else {
+      EXPECT_EQ(readHead(path_).outcome, "done") << size;
+    }
   }
 }
 

@@ -5,8 +5,8 @@
 #include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/format.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/ground_strokes.h"
 #include "temp_folder.h"
 
@@ -62,7 +62,7 @@ class ToolRecordsTest : public ::testing::Test {
     return files;
   }
 
-  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", {}, "1");
+  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", "1");
   const test_support::TempFolder folder_;
   int count_ = 0;
 };
@@ -117,7 +117,7 @@ TEST_F(ToolRecordsTest, AreMeasuredOnWhatWasGroundBefore) {
       const FigureValue a = measured(row.value, {asked, ground.sections[i].ground, 2});
       const FigureValue b = measured(row.value, {asked, planned.sections[i].ground, 2});
       ASSERT_EQ(a.has_value(), b.has_value()) << row.name;
-      if (a) EXPECT_NEAR(*a, *b, 1e-6) << row.name;
+      EXPECT_NEAR(a.value_or(0), b.value_or(0), 1e-6) << row.name;
     }
   }
   keep(0);

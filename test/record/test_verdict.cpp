@@ -44,8 +44,8 @@ struct Ground {
       StrokeFigures& stroke = strokes.emplace_back();
       stroke.place = {tooth, 0};
       stroke.has_feed = true;
-      stroke.min_feed = 0.99 * job->process.feed;
-      stroke.max_feed = 1.01 * job->process.feed;
+      stroke.min_feed = 0.99 * job->process().feed;
+      stroke.max_feed = 1.01 * job->process().feed;
       stroke.min_feed_x = 7 * kMillimetre;
       stroke.deviation_x = 4.5 * kMillimetre;
     }
@@ -98,7 +98,7 @@ GrindJob fluteJob() {
 }
 
 Ground flutes() { return Ground(fluteJob()); }
-Ground reliefs(const char* operation) { return Ground(readJobFile("jobs/end_mill_d10_t4.yaml", {}, operation)); }
+Ground reliefs(const char* operation) { return Ground(readJobFile("jobs/end_mill_d10_t4.yaml", operation)); }
 
 Criterion criterion(const Ground& run, const std::string& name) {
   for (const Criterion& line : run.criteria()) {
@@ -152,7 +152,7 @@ TEST(Verdict, PassedByAllCriteria) {
 
 TEST(Verdict, EachCriterionPassesWithinItsToleranceAndFailsBeyond) {
   const Ground good = flutes();
-  const double feed = good.job->process.feed;
+  const double feed = good.job->process().feed;
   const Edge edges[]{
       {"path deviation", [](Ground& r, double v) { r.strokes[1].deviation = v * kMicrometre; }, 1, 1.001,
        "tooth 2, pass 1, X = 4.500 mm"},
@@ -247,7 +247,7 @@ TEST(Verdict, IncompleteFluteHasNoRakeOnlyWhereTheJobAllowsIt) {
   run.tooth(0, 0).complete = false;
   expectVerdict(run, "failed", {"rake", "chordal rake"});
   GrindJob allowed = fluteJob();
-  allowed.process.incomplete_ok = true;
+  allowed.process().incomplete_ok = true;
   Ground other(allowed);
   other.tooth(0, 0).complete = false;
   expectVerdict(other, "passed", {});

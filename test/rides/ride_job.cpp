@@ -75,8 +75,8 @@ GrindJob randomFlutes(Random& random) {
     for (int i = 0; i < teeth; ++i)
       job.spiral_angles.push_back(job.cutter.spiral_angle * (i == 0 ? 1 : between(random, 0.8, 1)));
   }
-  job.process = randomProcess(random, job.cutter);
-  if (flip(random, 0.2)) job.process.z_law = ZLaw::kConstantRake;
+  job.process() = randomProcess(random, job.cutter);
+  if (flip(random, 0.2)) job.process().z_law = ZLaw::kConstantRake;
   job.interpolation.even_step = std::array{EvenStepRule::kPublished, EvenStepRule::kThirdOrder,
                                            EvenStepRule::kExact}[static_cast<std::size_t>(fraction(random) * 3)];
   job.interpolation.tolerance = acrossDecades(random, 0.2e-6, 20e-6);
@@ -94,9 +94,8 @@ ValidJob withRelief(Random& random, GrindJob job) {
     c.land = between(random, 0.1e-3, 0.4e-3);
     c.second_clearance = c.clearance + between(random, 0.1, 0.25);
   }
-  job.operations.push_back({job.process, {}});
   for (int i = 0; i < (secondary ? 2 : 1); ++i) {
-    GrindProcess relief = job.process;
+    GrindProcess relief = job.process();
     relief.kind = i == 0 ? OperationKind::kPrimaryRelief : OperationKind::kSecondaryRelief;
     relief.depth = relief.depth_end = relief.overtravel_end = relief.overtravel_shank = relief.setup_x_shift = 0;
     relief.z_law = ZLaw::kPublished;
@@ -108,7 +107,7 @@ ValidJob withRelief(Random& random, GrindJob job) {
     relief.setup_height = ReliefPath::heightFor(
         ConicalCutter(c), {clearance, 1, 0}, {relief.wheel_diameter / 2, 0, relief.wheel_width, relief.setup_swivel, 0},
         between(random, -3e-3, 3e-3));
-    job.operations.push_back({relief, {}});
+    job.operations.push_back(relief);
   }
   const ValidJob flutes(job.ofOperation(0));
   const int index = flip(random, 0.5) || !secondary ? 1 : 2;
@@ -135,7 +134,7 @@ ValidJob withCorrections(Random& random, const ValidJob& job) {
 /// Of Z, limits that the bends of its correction come near, or beyond which they take some of the feed.
 void limitBends(Random& random, const ValidJob& job, AxisLimits& limits) {
   const ZCorrection::Bounds bend = job.zCorrectionOf(0).bounds();
-  const double speed = job->process.feed;
+  const double speed = job->process().feed;
   const double acceleration = bend.second * speed * speed * acrossDecades(random, 0.1, 10);
   const double jerk = bend.third * speed * speed * speed * acrossDecades(random, 0.1, 10);
   limits.max_acceleration[kZ] = std::clamp(acceleration, 0.01, 10.0);
@@ -167,11 +166,11 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   }
   asked.from = job.strokeLaw(0).from;
   asked.to = job.strokeLaw(0).to;
-  asked.clearance = job->process.clearance;
+  asked.clearance = job->process().clearance;
   asked.offset_y = offset[kY];
   asked.deviation = job->interpolation.tolerance;
   asked.radius = Real(job->cutter.end_diameter) / 2;
-  asked.feed = kMaxFeedOverride * Real(job->process.feed);
+  asked.feed = kMaxFeedOverride * Real(job->process().feed);
   asked.period = machine.period;
   for (int i = 0; i < kAxisCount; ++i) {
     const auto axis = static_cast<std::size_t>(i);
@@ -195,7 +194,7 @@ double minCycles(const GrindProgram& program) {
     const Axes least = (way / limits.max_velocity)
                            .max(2 * (way / limits.max_acceleration).sqrt())
                            .max((32 * way / limits.max_jerk).pow(1.0 / 3));
-    time += std::max(at_feed / program.job()->process.feed, least.maxCoeff());
+    time += std::max(at_feed / program.job()->process().feed, least.maxCoeff());
     at = move.to;
   }
   return time / program.machine().period;
@@ -249,12 +248,12 @@ bool limitToPath(Random& random, RideJob& ride) {
 std::optional<RideJob> draw(Random& random) {
   GrindJob flutes = randomFlutes(random);
   ValidJob job = flip(random, 0.3) ? withRelief(random, flutes) : ValidJob(flutes);
-  if (job->process.z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
+  if (job->process().z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
   Machine machine = randomMachine(random);
-  if (job->process.z_law == ZLaw::kConstantRake) limitBends(random, job, machine.limits);
+  if (job->process().z_law == ZLaw::kConstantRake) limitBends(random, job, machine.limits);
   const double growth = std::tan(job->cutter.cone_angle);
   const StrokeLaw& law = job.strokeLaw(0);
-  const double clear = std::max(law.from * growth, law.to * growth) + job->process.clearance;
+  const double clear = std::max(law.from * growth, law.to * growth) + job->process().clearance;
   Axes offset = Axes::Zero();
   if (flip(random, 0.5))
     offset << between(random, -0.5, 0.5), between(random, -0.3, 0.3), between(random, -0.5, 0.5),

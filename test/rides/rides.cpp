@@ -199,7 +199,7 @@ class Ride {
         watch_(job_.asked) {
     drive_.setUp(job_.machine, flip(random_, 0.5) ? 0 : static_cast<std::size_t>(between(random_, 1, kMostBuffered)));
     loop_ = std::make_unique<ControlLoop>(drive_, configOf(job_.machine));
-    loop_->postSwivel(job_.job->process.setup_swivel);
+    loop_->postSwivel(job_.job->process().setup_swivel);
   }
 
   RideResult run() {

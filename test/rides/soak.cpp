@@ -3,8 +3,8 @@
 
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/plan/job_digest.h"
 #include "flute_grinder/record/record_file.h"
 #include "node/job_recorder.h"
 #include "node/progress_tracker.h"
@@ -77,10 +77,9 @@ class Soak {
         tracker_(journal_) {
     static_cast<JobPlan&>(plan_) = planJob(job_, config_.machine, RunStart(config_.machine.park));
     require(plan_.good(), job + " has no plan");
-    plan_.digest = jobDigest(*job_);
     drive_.init(driveModel(config_), equipment());
     loop_ = std::make_unique<ControlLoop>(drive_, config_);
-    loop_->postSwivel(job_->process.setup_swivel);
+    loop_->postSwivel(job_->process().setup_swivel);
     loop_->post(MachineEvent::kEnable);
     while (loop_->status().state != MachineState::kReady) cycle();
   }
@@ -95,7 +94,7 @@ class Soak {
     recorder_.announce(jobs_, std::make_shared<JobRecord>(plan_, JobNames{"soak.yaml", "", ""}, WorkOffsets{}, false));
     OffsetBasis job;
     job.job_name = "soak.yaml";
-    tracker_.begin(*plan_.program, plan_.digest, job, jobs_, {});
+    tracker_.begin(*plan_.program, plan_.program->job().digest(), job, jobs_, {});
     require(loop_->startJob({&stream, wheelOf(stream.program())}), "the loop has not answered the start before");
     std::uint64_t setpoints = 0;
     while (loop_->status().jobs_ended < jobs_) {

@@ -66,9 +66,9 @@ void expectFit(const GrindJob& job) {
 }
 
 TEST(GroundMarkers, OfEveryJobFitAMessage) {
-  for (const auto& file : std::filesystem::directory_iterator("jobs")) {
-    SCOPED_TRACE(file.path());
-    expectFit(readJobFile(file.path(), {}, "flute"));
+  for (const std::string& file : test_support::shippedJobs()) {
+    SCOPED_TRACE(file);
+    expectFit(readJobFile(file, "flute"));
   }
 }
 
@@ -85,11 +85,11 @@ TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
 
 TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
   GrindJob even = paper();
-  even.process.z_law = ZLaw::kConstantRake;
+  even.process().z_law = ZLaw::kConstantRake;
   for (const GrindJob& asked :
        {jobOf("roughing_d10_t4"), paper(), jobOf("left_hand_d8_t3"), jobOf("unequal_d12_t4"), even}) {
     const ValidJob job = withLaws(ValidJob(asked));
-    SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process.z_law));
+    SCOPED_TRACE(toolText(job->cutter, job->tooth_angles.size()) + " " + toString(job->process().z_law));
     const GroundCutter planned = groundCutterOf(job),
                        done = groundSoFar(job, {job.passes().back().place, PassPhase::kAfter, 0});
     for (const double part : {0.1, 0.5, 0.9}) {
@@ -107,10 +107,10 @@ TEST(GroundMarkers, AfterTheLastStrokeTheCutterIsThePlannedOne) {
 TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
   GrindJob job = jobOf("roughing_d10_t4");
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    job.process.direction = direction;
+    job.process().direction = direction;
     const double length = job.cutter.flute_length, reached = length / 2;
     // The second tooth in its last pass; the first is done.
-    const ToothPass pass{1, static_cast<int>(passDepths(job.process).size()) - 1};
+    const ToothPass pass{1, static_cast<int>(passDepths(job.process()).size()) - 1};
     const GroundCutter cutter = groundSoFar(ValidJob(job), {pass, PassPhase::kStroke, reached});
     const GroundCutter planned = groundCutterOf(ValidJob(job));
     const bool from_end = direction == StrokeDirection::kFromEnd;
@@ -123,7 +123,7 @@ TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
     EXPECT_EQ(cutter.section(ground_at).teeth[2].depth, 0);
     EXPECT_EQ(cutter.section(ground_at).teeth[3].depth, 0);
     const GroundCutter first = groundSoFar(ValidJob(job), {{1, 0}, PassPhase::kStroke, reached});
-    EXPECT_GT(first.section(ground_at).teeth[1].depth, 0.9 * job.process.infeed);
+    EXPECT_GT(first.section(ground_at).teeth[1].depth, 0.9 * job.process().infeed);
     EXPECT_EQ(first.section(whole_at).teeth[1].depth, 0);
   }
 }
@@ -158,10 +158,10 @@ TEST(GroundMarkers, ColourTheRakeFacesByTheirDeviationWithinTheTolerance) {
 
 TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
   GrindJob asked = jobOf("roughing_d10_t4");
-  const int last = static_cast<int>(passDepths(asked.process).size()) - 1;
+  const int last = static_cast<int>(passDepths(asked.process()).size()) - 1;
   ASSERT_GT(last, 0);
   for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
-    asked.process.direction = direction;
+    asked.process().direction = direction;
     const ValidJob job(asked);
     const double half = job->cutter.flute_length / 2;
     // X between which points are coloured; none if the first is larger.
@@ -194,7 +194,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
 }
 
 /// One operation of a taper reamer of 6 mm and 2 deg, with six teeth and a clearance of 10 deg.
-GrindJob reamer(const char* operation) { return readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation); }
+GrindJob reamer(const char* operation) { return readJobFile("jobs/taper_reamer_d6_t6.yaml", operation); }
 
 /// The corners of the triangles whose colour stands for a part of the tolerance, by threes.
 std::vector<geometry_msgs::Point> colouredAs(const MarkerArray& array, double expected) {
@@ -290,8 +290,8 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
       SCOPED_TRACE(::testing::Message() << shank << " " << neck);
       job.cutter.end_diameter = 0.2 * kMillimetre;
       job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
-      job.process.depth = 0.04 * kMillimetre;
-      job.process.depth_end = job.process.setup_x_shift = 0;
+      job.process().depth = 0.04 * kMillimetre;
+      job.process().depth_end = job.process().setup_x_shift = 0;
       job.cutter.shank_diameter = shank * kMillimetre;
       job.cutter.neck_length = neck * kMillimetre;
       for (const bool ground : {false, true}) {
@@ -325,8 +325,8 @@ TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   GrindJob job = jobOf("roughing_d10_t4");
-  job.process.depth = job.process.infeed = 0.49999 * job.cutter.end_diameter;
-  job.process.setup_height = 0;
+  job.process().depth = job.process().infeed = 0.49999 * job.cutter.end_diameter;
+  job.process().setup_height = 0;
   const MarkerArray array = plannedMarkers(job);
   EXPECT_TRUE(solidOf(array, "planned").empty());
   EXPECT_NE(textsOf(array).find("core radius = "), std::string::npos) << textsOf(array);

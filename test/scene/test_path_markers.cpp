@@ -96,7 +96,7 @@ std::string looksOf(const ToolPath& flutes) {
 TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
   GrindJob job = paper();
   job.tooth_angles = {0, 2, 4};
-  job.process.infeed = job.process.depth / 2;
+  job.process().infeed = job.process().depth / 2;
   const GrindProgram of_job = programOf(job);
   ToolPath flutes(of_job, edgesOf(of_job));
   std::string done(job.tooth_angles.size(), 'p');
@@ -210,7 +210,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
   for (const char* name : {"jobs/paper.yaml", "test/jobs/paper.yaml", "jobs/taper_d6_t6.yaml"}) {
     SCOPED_TRACE(name);
     GrindJob job = readJobFile(name);
-    job.process.wheel_wear = job.process.wheel_wear_per_pass = 0;
+    job.process().wheel_wear = job.process().wheel_wear_per_pass = 0;
     const GrindProgram of_job = programOf(job, test_support::roomyMachine());
     const GroundCutter cutter = groundCutterOf(of_job.job());
     const std::vector<GroundEdge> edges = edgesOf(of_job);
@@ -236,7 +236,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
       flutes.add(p, off);
       if (p.step == StepKind::kNone) continue;
       const double error = std::abs(of_job.helix(0).curve.a(p.position[kX]) - off[kA]);
-      max = std::max(max, error * cutter.cutter().radius(p.position[kX] - job.process.setup_x_shift) * normal);
+      max = std::max(max, error * cutter.cutter().radius(p.position[kX] - job.process().setup_x_shift) * normal);
     }
     EXPECT_NEAR(flutes.maxMeasured(), max, 1e-15);
     const MarkerArray arrows = errors.markers();
@@ -266,7 +266,7 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
 TEST(PathMarkers, OfAReliefAreOnTheEdgeAndMeasureNoErrorOfAPerfectDrive) {
   for (const char* operation : {"primary", "secondary"}) {
     SCOPED_TRACE(operation);
-    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/taper_reamer_d6_t6.yaml", {}, operation)));
+    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/taper_reamer_d6_t6.yaml", operation)));
     const Machine machine = test_support::roomyMachine();
     const GrindProgram of_job(job, machine, machine.park);
     const GroundCutter cutter = groundCutterOf(job);
@@ -341,7 +341,7 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   job.cutter.cone_angle = 0;
   job.cutter.spiral_angle = 1;
   job.cutter.flute_length = 500e-3;
-  job.process.depth = job.process.infeed = 0.01e-3;
+  job.process().depth = job.process().infeed = 0.01e-3;
   const GrindProgram program = programOf(job);
   const MarkerArray array = ToolPath(program, {centralEdge(job)}).markers();
   std::size_t points = 0;

@@ -17,6 +17,10 @@ double lowerFaceHeight(const GrindJob& job);
 /// @param above_swivel see wheelAboveSwivel(); if unknown, the sheet states its effect [m].
 std::string setupSheet(const JobSetup& setup, const Range& swivel, const std::optional<double>& above_swivel);
 
+/// The changes of a set-up, a line for each figure in the job file's units: before, solved, and the difference.
+/// @param before operation with its present set-up; nothing if it has none.
+std::string changesText(const std::optional<GrindProcess>& before, const GrindJob& solved);
+
 /// Why a plan would refuse the tool, a line for each reason; empty if it would not. A set-up with a reason must not be
 /// written.
 std::string planRefusal(const JobSetup& setup);

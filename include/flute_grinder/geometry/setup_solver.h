@@ -2,6 +2,7 @@
 
 #include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/geometry/ground_cutter.h"
+#include "flute_grinder/job/setup_file.h"
 #include "flute_grinder/job/z_law.h"
 
 #include <array>
@@ -14,12 +15,6 @@
 /// @file
 /// Solves the set-up for a tool: the swivel, wheel height and depth that give the asked rake and core.
 namespace grinder {
-
-/// A figure of the set-up that the operator keeps.
-enum class SetupFigure : std::uint8_t { kSwivel, kHeight, kDepth };
-constexpr EnumRow<SetupFigure> kSetupFigures[] = {
-    {SetupFigure::kSwivel, "swivel"}, {SetupFigure::kHeight, "height"}, {SetupFigure::kDepth, "depth"}};
-constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
 
 struct SolvedSetup;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/machine/machine_geometry.h"
 
 #include <optional>
@@ -22,12 +23,11 @@ struct TouchReadings {
 ///        from 0 to S lowers the wheel by 1 - cos S of it [m].
 TouchReadings touchReadings(const GrindJob& job, double above_swivel = 0);
 
-/// Height of the middle of a job's wheel above the swivel's centre, along the spindle; nothing unless the job names a
+/// Height of the middle of a job's wheel above the swivel's centre, along the spindle; nothing unless there is a
 /// wheel file with the wheel's position on the flange [m].
-/// @param file the job's file.
 /// @param machine only its flange is used.
-/// @throw JobFileError if a file cannot be read.
-std::optional<double> wheelAboveSwivel(const std::string& file, const GrindJob& job, const MachineGeometry& machine);
+std::optional<double> wheelAboveSwivel(const std::optional<WheelFile>& wheel, const GrindJob& job,
+                                       const MachineGeometry& machine);
 
 /// The work Y at which the largest circumference of the job's wheel touches a blank.
 /// @param diameter diameter of the blank [m].

@@ -79,6 +79,7 @@ struct GrindProcess {
   double behind = 0;        ///< distance of a primary relief behind the edge at the small end [m]
   double setup_x_shift =
       0;  ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
+  std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< depth at the flute's end [m]
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< the larger of the two depths [m]
@@ -91,11 +92,12 @@ struct GrindInterpolation {
   double rotary_scale = 0;  ///< step length equivalent to one radian of A [m/rad]
 };
 
-/// One of several operations on a cutter.
-struct GrindOperation {
-  GrindProcess process;
-  std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
-};
+/// The operation of a job or of a goal, whose members have the same names.
+/// @throw std::out_of_range if there is none with the job's index.
+template <typename Job>
+auto& processOf(Job&& job) {
+  return job.operations.at(static_cast<std::size_t>(job.operation));
+}
 
 /// The complete data of a job in SI units, whether it comes from a file or a goal.
 struct GrindJob {
@@ -103,19 +105,20 @@ struct GrindJob {
   std::vector<double> tooth_angles;  ///< angle of every tooth, from 0, ascending, below one full turn [rad]
   /// Spiral angle of every tooth, the first as in `cutter`; empty if all teeth have the cutter's [rad].
   std::vector<double> spiral_angles;
-  std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
-  GrindProcess process;
   GrindInterpolation interpolation;
-  /// All operations on the cutter, in order: flutes, primary relief, secondary relief. Empty if the flutes are the only
-  /// one; otherwise `process` and `wheel_points` are copies of this job's operation.
-  std::vector<GrindOperation> operations;
+  /// All operations on the cutter, in order: flutes, primary relief, secondary relief.
+  std::vector<GrindProcess> operations{GrindProcess{}};
   int operation = 0;  ///< index of this job's operation, from 0
 
+  GrindProcess& process() { return processOf(*this); }              ///< the job's operation
+  const GrindProcess& process() const { return processOf(*this); }  ///< the job's operation
   /// The operation for people, e.g. "primary relief"; empty for the only operation of a cutter.
-  std::string operationText() const { return operations.empty() ? "" : rowOf(process.kind).words; }
+  std::string operationText() const { return operations.size() < 2 ? "" : rowOf(process().kind).words; }
   /// The job of another operation on the same cutter.
-  /// @param index from 0; must be 0 for a single operation.
+  /// @param index from 0. @throw std::out_of_range for another one.
   GrindJob ofOperation(int index) const;
+  /// The jobs of all operations.
+  std::vector<GrindJob> ofAllOperations() const;
 };
 
 /// The minimum and maximum spiral angle of the teeth [rad].
@@ -124,7 +127,7 @@ Range askedSpiral(const GrindJob& job);
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< maximum variation of the rake with kConstantRake [rad]
 constexpr int kMaxWheelPoints = 100;                  ///< maximum number of points of a wheel's profile
 constexpr int kMaxSparkOut = 100;
-constexpr std::size_t kMaxOperations = std::size(kOperationKinds);
+constexpr int kMaxOperations = countOf<OperationKind>();
 constexpr int kMaxPassesOfAll = 20000;    ///< maximum number of passes of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 
@@ -132,7 +135,7 @@ constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 /// @return one reason for each number that is not allowed; empty if the job is valid.
 std::vector<Reason> validate(const GrindJob& job);
 
-/// Checks the numbers of the wheel alone: `wheel_points`, and the members of `process` that begin with wheel_.
+/// Checks the numbers of the wheel alone: the members of its operation that begin with wheel_.
 std::vector<Reason> validateWheel(const GrindJob& job);
 
 /// The depths of the passes, see ValidJob::depths(), for numbers that are each within their range.

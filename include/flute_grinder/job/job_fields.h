@@ -16,8 +16,8 @@ struct JobField {
   Unit unit;
   double min, max;      ///< allowed range in shop units, inclusive
   const char* meaning;  ///< for people, in Markdown
-  /// What it means if a file omits the key, together with the other element of a pair; the number is then 0. Null if the
-  /// key is required.
+  /// What it means if a file omits the key, together with the other element of a pair; the number is then 0. Null if
+  /// the key is required.
   const char* omitted = nullptr;
   /// The operations that have the field; it is 0 in the others.
   enum class Of { kAll, kFlute, kRelief } of = Of::kAll;
@@ -74,43 +74,43 @@ void visitJobFields(const Visit& visit) {
   visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, "radial clearance of the secondary relief where it begins", "0, without a secondary relief"},
         [](auto& j) -> auto& { return j.cutter.second_clearance; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000, "along the cutting edge; also of the infeed"},
-        [](auto& j) -> auto& { return j.process.feed; });
+        [](auto& j) -> auto& { return processOf(j).feed; });
   visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, "radial depth of the flute at the small end; less than the cutter's radius there", nullptr, F::Of::kFlute},
-        [](auto& j) -> auto& { return j.process.depth; });
+        [](auto& j) -> auto& { return processOf(j).depth; });
   visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, "radial depth at the flute's end, linear in between: a core taper; less than the cutter's radius there", "0, as `process.depth_mm`", F::Of::kFlute},
-        [](auto& j) -> auto& { return j.process.depth_end; });
+        [](auto& j) -> auto& { return processOf(j).depth_end; });
   visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50, "radial infeed per pass where the flute is deepest; the last may be smaller"},
-        [](auto& j) -> auto& { return j.process.infeed; });
+        [](auto& j) -> auto& { return processOf(j).infeed; });
   visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10, "infeed of a final finishing pass; 0 for none"},
-        [](auto& j) -> auto& { return j.process.finish_infeed; });
+        [](auto& j) -> auto& { return processOf(j).finish_infeed; });
   visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100, "between wheel and work outside the cut"},
-        [](auto& j) -> auto& { return j.process.clearance; });
+        [](auto& j) -> auto& { return processOf(j).clearance; });
   visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, "extension of the stroke beyond the small end", nullptr, F::Of::kFlute},
-        [](auto& j) -> auto& { return j.process.overtravel_end; });
+        [](auto& j) -> auto& { return processOf(j).overtravel_end; });
   visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, "extension of the stroke beyond the shank end of the flute", nullptr, F::Of::kFlute},
-        [](auto& j) -> auto& { return j.process.overtravel_shank; });
+        [](auto& j) -> auto& { return processOf(j).overtravel_shank; });
   visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500, "maximum diameter, with its corners rounded, to which Y = 0 is set"},
-        [](auto& j) -> auto& { return j.process.wheel_diameter; });
+        [](auto& j) -> auto& { return processOf(j).wheel_diameter; });
   visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100, "width of the wheel"},
-        [](auto& j) -> auto& { return j.process.wheel_width; });
+        [](auto& j) -> auto& { return processOf(j).wheel_width; });
   visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, "of the surface of an angled wheel or a cup against the wheel's axis", "0"},
-        [](auto& j) -> auto& { return j.process.wheel_angle; });
+        [](auto& j) -> auto& { return processOf(j).wheel_angle; });
   visit(F{"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", mm, 0, 50, "between surface and lower face", "0, sharp"},
-        [](auto& j) -> auto& { return j.process.wheel_corner_radius_lower; });
+        [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_lower; });
   visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, "between surface and upper face", "0, sharp"},
-        [](auto& j) -> auto& { return j.process.wheel_corner_radius_upper; });
+        [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_upper; });
   visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100, "by which the radius is below half of `process.wheel.diameter_mm`; compensated by Y"},
-        [](auto& j) -> auto& { return j.process.wheel_wear; });
+        [](auto& j) -> auto& { return processOf(j).wheel_wear; });
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed", "0"},
-        [](auto& j) -> auto& { return j.process.wheel_wear_per_pass; });
+        [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
-        [](auto& j) -> auto& { return j.process.setup_swivel; });
+        [](auto& j) -> auto& { return processOf(j).setup_swivel; });
   visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100, "of the wheel's centre above the cutter's axis at Z = 0"},
-        [](auto& j) -> auto& { return j.process.setup_height; });
-  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, "shift of A's curve along X: A follows the curve at X - shift. On a cone it makes the ground edge the asked helix; it is not simply the distance from the wheel's centre to the edge. `grind setup --write` finds it", "0, the paper's motion", F::Of::kFlute},
-        [](auto& j) -> auto& { return j.process.setup_x_shift; });
+        [](auto& j) -> auto& { return processOf(j).setup_height; });
+  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, "shift of A's curve along X: A follows the curve at X - shift. On a cone it makes the ground edge the asked helix; it is not simply the distance from the wheel's centre to the edge.", "0, the paper's motion", F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).setup_x_shift; });
   visit(F{"process.behind", "process.behind_mm", mm, 0, 50, "of a primary relief: width of the round margin between edge and relief, at the small end, along the circle", "0", F::Of::kRelief},
-        [](auto& j) -> auto& { return j.process.behind; });
+        [](auto& j) -> auto& { return processOf(j).behind; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000, "maximum deviation at the cutter's surface; the feed is reduced to keep it"},
         [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000, "weight of A in the step length; 1 in the paper"},
@@ -124,21 +124,21 @@ template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off
   visit("cutter.cut", countOf<CutDirection>() - 1, [](auto& j) -> auto& { return j.cutter.cut; });
-  visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return j.process.kind; });
-  visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return j.process.spark_out; });
-  visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return j.process.order; });
-  visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return j.process.direction; });
-  visit("process.z_law", countOf<ZLaw>() - 1, [](auto& j) -> auto& { return j.process.z_law; });
-  visit("process.incomplete_ok", 1, [](auto& j) -> auto& { return j.process.incomplete_ok; });
-  visit("process.wheel_profile", countOf<WheelShape>() - 1, [](auto& j) -> auto& { return j.process.wheel_profile; });
-  visit("process.wheel_side", countOf<WheelFace>() - 1, [](auto& j) -> auto& { return j.process.wheel_side; });
+  visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return processOf(j).kind; });
+  visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return processOf(j).spark_out; });
+  visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return processOf(j).order; });
+  visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return processOf(j).direction; });
+  visit("process.z_law", countOf<ZLaw>() - 1, [](auto& j) -> auto& { return processOf(j).z_law; });
+  visit("process.incomplete_ok", 1, [](auto& j) -> auto& { return processOf(j).incomplete_ok; });
+  visit("process.wheel_profile", countOf<WheelShape>() - 1, [](auto& j) -> auto& { return processOf(j).wheel_profile; });
+  visit("process.wheel_side", countOf<WheelFace>() - 1, [](auto& j) -> auto& { return processOf(j).wheel_side; });
   visit("interpolation.even_step", countOf<EvenStepRule>() - 1, [](auto& j) -> auto& { return j.interpolation.even_step; });
   // clang-format on
 }
 
 /// A key of a job file or a wheel file that is no number of one field: a choice, a count, a list or a text.
 struct OtherKey {
-  const char* path;     ///< name in messages; as in visitJobChoices()
+  const char* path;  ///< name in messages; as in visitJobChoices()
   const char* file_key;
   std::string allowed;  ///< choices separated by commas, or a description
   const char* meaning;

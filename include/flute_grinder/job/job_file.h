@@ -1,34 +1,50 @@
 #pragma once
 
+#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/setup_file.h"
+#include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/job/yaml_text.h"
 
+#include <optional>
 #include <string>
-#include <vector>
 
 namespace grinder {
 
-struct GrindJob;
-
-/// Reads and checks a job from a YAML file in the operator's units (mm, deg, mm/min), with its wheel from the wheel
-/// file that it may name, relative to the job file.
+/// Reads and checks a job from a YAML file in the operator's units (mm, deg, mm/min), with the wheel files and the
+/// set-up file that it may name, relative to the job file.
 /// @param path the file.
-/// @param unsolved fields that the file may omit because they are yet to be found, for this operation and those after
-///        it: process.setup_swivel and process.setup_height, which are then 0, and process.depth, which is then the
-///        depth that leaves the asked core under an upright wheel.
 /// @param operation the job's operation if there are several: its number, from 1, or its kind, e.g. "primary".
 /// @return the job in SI.
-/// @throw JobFileError if the file cannot be read, a key is missing, unknown or duplicated, or a value has the wrong
-///        type, is not finite or is not allowed.
-GrindJob readJobFile(const std::string& path, const std::vector<std::string>& unsolved = {},
-                     const std::string& operation = "");
+/// @throw JobFileError if a file cannot be read, a key is missing, unknown or duplicated, a value has the wrong type,
+/// is
+///        not finite or is not allowed, or a set-up was solved for another cutter or wheel.
+GrindJob readJobFile(const std::string& path, const std::string& operation = "");
 
-/// Reads and checks a job from text; `name` is the file in messages, and a wheel file is relative to its folder.
-GrindJob parseJob(const std::string& text, const std::string& name, const std::vector<std::string>& unsolved = {},
-                  const std::string& operation = "");
+/// Reads and checks a job from text; `name` is the file in messages, and other files are relative to its folder.
+GrindJob parseJob(const std::string& text, const std::string& name, const std::string& operation = "");
 
-/// The path of the wheel file that an operation of a job file names; empty if it names none.
-/// @param operation index, from 0.
-/// @throw JobFileError if the file cannot be read.
-std::string wheelFileOf(const std::string& path, int operation = 0);
+/// A job file, and the files that the job's operation names.
+struct JobFile {
+  std::string path;
+  GrindJob job;
+  std::string wheel_path;          ///< path of the wheel file; empty if the job file states the wheel itself
+  std::optional<WheelFile> wheel;  ///< what the wheel file says
+  std::string setup_path;          ///< path of the set-up file; empty if the job file states the set-up itself
+};
+
+/// Reads a job as readJobFile(), once for everything that its files say.
+JobFile openJobFile(const std::string& path, const std::string& operation = "");
+
+/// A job whose set-up is to be solved: with the set-up that its file states, or else that of clearSetup() with the
+/// wanted figure.
+struct JobToSetUp : JobFile {
+  std::optional<GrindProcess>
+      before;                         ///< its operation with the set-up that it has; nothing if there is none that fits
+  std::optional<SetupFigure> wanted;  ///< the figure that the job file asks for beside the set-up file
+};
+
+/// Reads a job to solve the set-up of one of its operations, as readJobFile(), but the set-ups of this and of the later
+/// operations need not be there. The preceding operations must be set up.
+JobToSetUp readJobToSetUp(const std::string& path, const std::string& operation = "");
 
 }  // namespace grinder

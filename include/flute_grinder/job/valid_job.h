@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace grinder {
@@ -67,6 +68,9 @@ class ValidJob {
   const GrindJob& operator*() const noexcept { return content_->job; }
   const GrindJob* operator->() const noexcept { return &content_->job; }
 
+  /// See jobDigest().
+  const std::string& digest() const noexcept { return content_->digest; }
+
   int teeth() const noexcept { return static_cast<int>(content_->cutters.size()); }
   /// The cutter with the spiral angle of one of its teeth.
   const CutterGeometry& cutterOf(int tooth) const { return content_->cutters.at(static_cast<std::size_t>(tooth)); }
@@ -112,6 +116,7 @@ class ValidJob {
  private:
   struct Content {
     GrindJob job;
+    std::string digest;
     std::vector<CutterGeometry> cutters;  ///< cutters of the teeth
     std::vector<double> depths;
     std::vector<JobPass> passes;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/yaml_text.h"
 
 #include <optional>
 #include <string>
@@ -18,9 +18,8 @@ struct WheelFile {
   /// Only the wheel_... members are set: wheel_diameter is the diameter to which Y = 0 is set, wheel_wear follows from
   /// the measured diameter, and wheel_width is the measured width.
   GrindProcess process;
-  std::vector<ProfilePoint> points;  ///< profile, see GrindJob::wheel_points
-  double new_width = 0;              ///< width of the new wheel [m]
-  std::optional<double> flange;      ///< distance from the flange's face down to the wheel's upper face, if stated [m]
+  double new_width = 0;          ///< width of the new wheel [m]
+  std::optional<double> flange;  ///< distance from the flange's face down to the wheel's upper face, if stated [m]
   bool measured = false;
   std::string date;     ///< date of the measurement: YYYY-MM-DD, or YYYY-MM-DDThh:mm:ssZ
   std::string by;       ///< name of whoever measured; may be empty

@@ -13,11 +13,12 @@
 /// The values of a goal that its zero points depend on, and the fit of work offsets to them.
 namespace grinder {
 
+struct JobFile;
+
 /// The goal of a job file, with the names of the file and of its wheel file.
 /// @throw JobFileError if a file cannot be read.
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation = "");
-/// @param job job that was read from the file.
-flute_grinder::GrindGoal goalFromFile(const std::string& path, const GrindJob& job);
+flute_grinder::GrindGoal goalFromFile(const JobFile& file);
 
 /// The basis of a work offset that is set for a goal.
 OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method);

@@ -13,7 +13,6 @@ namespace grinder {
 
 /// A job's complete plan. Its program holds the job with its law of Z, the machine, and the start of the run.
 struct PlannedJob : JobPlan {
-  std::string digest;                   ///< see jobDigest()
   std::optional<Range> complete;        ///< range in which the flutes would be complete, if checked
   CutterFigures figures;                ///< figures of the tool, if checked
   std::vector<GroundEdge> edges;        ///< edges of the teeth, if checked

@@ -22,7 +22,7 @@ class ToolRecords {
     /// The strokes of the job that no record has ground to the end; none without a record.
     std::vector<ToothPass> missing() const;
     /// The name of the operation in words.
-    std::string name() const { return rowOf(asked.process.kind).words; }
+    std::string name() const { return rowOf(asked.process().kind).words; }
   };
 
   /// Finds the tool's other operations among the records of the same folder: before and after the given record, of the

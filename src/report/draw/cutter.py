@@ -3,6 +3,11 @@
 import math
 
 
+def process_of(file):
+    """The operation of a job's file that was ground."""
+    return next(each for each in file['operations'] if each.get('relief', each['kind']) == file['operation'])
+
+
 def spiral_angles(cutter):
     """The spiral angles of the teeth, or the one of all teeth [deg]."""
     return cutter.get('spiral_angles_deg') or [cutter['spiral_angle_deg']]

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cutter import process_of
 from style import CURVE, EVEN_STYLE, HELD, LIMIT, ODD_STYLE, THEORY, new_figure, picture
 
 MM = 1e-3
@@ -116,7 +117,7 @@ class Clock:
 
 def feed_picture(data, clock):
     """The feed of the strokes, and the override."""
-    asked = data['job']['file']['process']['feed_mm_min'] if data.get('job') else None
+    asked = process_of(data['job']['file'])['feed_mm_min'] if data.get('job') else None
     figure = new_figure(3)
     axes = figure.add_subplot(xlabel='time since the start [s]', ylabel='feed [mm/min]')
     time, feed = broken(data['plots']['feed'], clock.gap)

@@ -5,7 +5,7 @@ import os
 import re
 from datetime import datetime
 
-from cutter import radius, spiral_angles, tooth_angles
+from cutter import process_of, radius, spiral_angles, tooth_angles
 from figures import QUANTITIES
 
 PAGE = '''<!DOCTYPE html>
@@ -148,7 +148,7 @@ def operations_of(data):
     if 'operations' in data or not data.get('job'):
         return data.get('operations', [])
     file = data['job']['file']
-    return [{'operation': file.get('operation', 'flute'), 'process': file['process'], 'runs': [data], 'missing': []}]
+    return [{'operation': file['operation'], 'process': process_of(file), 'runs': [data], 'missing': []}]
 
 
 def who_and_when(data):

@@ -1,8 +1,8 @@
-#include "flute_grinder/plan/job_digest.h"
+#include "flute_grinder/job/job_digest.h"
 
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
-#include "flute_grinder/plan/sha256.h"
+#include "flute_grinder/job/sha256.h"
 
 #include <string_view>
 
@@ -11,11 +11,10 @@ namespace grinder {
 namespace {
 
 bool isOfWheel(std::string_view path) {
-  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
-  return begins("process.wheel_") && !begins("process.wheel_wear") && path != "process.wheel_width";
+  return begins(path, "process.wheel_") && !begins(path, "process.wheel_wear") && path != "process.wheel_width";
 }
 
-bool isOfProcess(std::string_view path) { return path.substr(0, 8) == "process."; }
+bool isOfProcess(std::string_view path) { return begins(path, "process."); }
 
 /// The numbers and choices that are not 0, one per line.
 /// @param wanted whether a path counts.
@@ -27,15 +26,15 @@ std::string figuresOf(const GrindJob& job, const Wanted& wanted) {
   };
   visitJobFields([&](const JobField& field, auto of) { add(field.path, of(job)); });
   visitJobChoices([&](const char* path, int, auto of) { add(path, static_cast<double>(of(job))); });
-  for (const ProfilePoint& point : job.wheel_points) figures += format("point %a %a\n", point.w, point.radius);
+  for (const ProfilePoint& point : job.process().wheel_points)
+    figures += format("point %a %a\n", point.w, point.radius);
   return figures;
 }
 
 bool placesTeeth(std::string_view path) {
-  const auto begins = [&](std::string_view with) { return path.substr(0, with.size()) == with; };
   const bool of_relief = path == "cutter.clearance" || path == "cutter.land" || path == "cutter.second_clearance";
-  if (begins("cutter.")) return !of_relief && path.find("tolerance") == std::string_view::npos;
-  return begins("process.setup_") || begins("process.depth") || path == "process.z_law" || isOfWheel(path);
+  if (begins(path, "cutter.")) return !of_relief && path.find("tolerance") == std::string_view::npos;
+  return begins(path, "process.setup_") || begins(path, "process.depth") || path == "process.z_law" || isOfWheel(path);
 }
 
 std::string teethOf(const GrindJob& job) {

@@ -1,4 +1,4 @@
-#include "flute_grinder/plan/sha256.h"
+#include "flute_grinder/job/sha256.h"
 
 #include <openssl/evp.h>
 

@@ -17,12 +17,11 @@ namespace {
 void takeTeeth(FlatFile& file, GrindJob& job) {
   const std::string counted = "cutter.teeth";
   const std::string listed = "cutter.tooth_angles_deg";
-  const std::string angles_allowed = "angles in deg, 0 first, ascending, below 360";
-  const std::string teeth_allowed = "1 to " + std::to_string(kMaxTeeth);
+  const std::string& teeth_allowed = otherJobKey(counted).allowed;
   int teeth = 0;
   if (file.hasAny(listed)) {
     if (file.refuseBoth(listed, counted)) return file.drop(listed);
-    return file.takeList(listed, angles_allowed, units::kDegree, job.tooth_angles);
+    return file.takeList(listed, otherJobKey("cutter.tooth_angles").allowed, units::kDegree, job.tooth_angles);
   }
   if (!file.take(counted, teeth_allowed, teeth)) return;
   if (teeth < 1 || teeth > kMaxTeeth) {
@@ -35,7 +34,7 @@ void takeSpirals(FlatFile& file, GrindJob& job) {
   const std::string listed = "cutter.spiral_angles_deg";
   if (!file.hasAny(listed)) return;
   if (file.refuseBoth(listed, "cutter.spiral_angle_deg")) return file.drop(listed);
-  file.takeList(listed, "angles in deg, one per tooth", units::kDegree, job.spiral_angles);
+  file.takeList(listed, otherJobKey("cutter.spiral_angles").allowed, units::kDegree, job.spiral_angles);
   if (!job.spiral_angles.empty()) job.cutter.spiral_angle = job.spiral_angles.front();
 }
 
@@ -100,7 +99,7 @@ bool refuseWheelPath(FlatFile& file, const ProcessKeys& keys) {
 void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& path_of_job, OperationFiles& files,
                    GrindJob& job) {
   const std::string key = keys("process.wheel.file");
-  const std::string allowed = "the path of a wheel file";
+  const std::string& allowed = otherJobKey("process.wheel_file").allowed;
   std::string name;
   const bool named = file.has(key) && file.take(key, allowed, name);
   if (!named) {
@@ -148,7 +147,7 @@ std::string figureKeys(OperationKind kind, const ProcessKeys& keys) {
 /// Whether a file omits a number that is optional. The elements of a pair are omitted together.
 bool omits(const FlatFile& file, const std::string& key, const JobField& field) {
   if (key == "cutter.spiral_angle_deg" && file.mentions("cutter.spiral_angles_deg")) return !file.has(key);
-  return field.optional && !file.mentionsPart(key);
+  return field.omitted != nullptr && !file.mentionsPart(key);
 }
 
 /// Reads one operation, and the rest of the file except the other operations.
@@ -185,7 +184,7 @@ class OperationReader {
     const std::string key = keys_(kSetupFile);
     std::string file;
     files_.line = file_.line(key);
-    if (file_.mayHave(key) && file_.take(key, "the path of a set-up file", file))
+    if (file_.mayHave(key) && file_.take(key, otherJobKey("process.setup_file").allowed, file))
       files_.setup_path = besideJob(name, file);
   }
 
@@ -252,12 +251,13 @@ class OperationReader {
     takeOrInherit("process.order", &GrindProcess::order, choice);
     takeOrInherit("process.direction", &GrindProcess::direction, choice);
     takeOrInherit("process.spark_out", &GrindProcess::spark_out, [&](const std::string& key, int& value) {
-      file_.take(key, "0 to " + std::to_string(kMaxSparkOut), value);
+      file_.take(key, otherJobKey("process.spark_out").allowed, value);
     });
     if (isRelief(p.kind)) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
     const std::string incomplete_ok = keys_("process.incomplete_ok");
-    if (file_.mayHave(incomplete_ok)) file_.take(incomplete_ok, "true, false", p.incomplete_ok);
+    if (file_.mayHave(incomplete_ok))
+      file_.take(incomplete_ok, otherJobKey("process.incomplete_ok").allowed, p.incomplete_ok);
   }
 
   template <typename Value, typename Take>

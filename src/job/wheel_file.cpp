@@ -20,14 +20,21 @@ constexpr const char* kDiameter = "measured.diameter_mm";
 constexpr const char* kWidth = "measured.width_mm";
 constexpr const char* kBy = "measured.by";
 constexpr const char* kDressed = "dressed";
+constexpr const char* kDates = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
+constexpr const char* kText = "a text";
+constexpr JobField kFlange{
+    "flange",     "flange_mm",
+    Unit::kMetre, -100,
+    100,          "from the face of the flange along the spindle down to the wheel's upper face, for `grind zeros`",
+    "not known"};
 
-/// The key of a job's number in a wheel file; empty if it is not a number of the wheel, or is the wear, which is
-/// derived.
-std::string wheelKey(const JobField& field) {
-  const std::string_view key = field.file_key;
-  const std::string_view prefix = "process.wheel.";
-  const bool wears = std::string_view(field.path).find("process.wheel_wear") == 0;
-  return key.substr(0, prefix.size()) == prefix && !wears ? std::string(key.substr(prefix.size())) : "";
+/// The key in a wheel file of what a job says of its wheel; empty for all else, and for the wear, which is derived.
+template <typename Field>
+const char* wheelKey(const Field& field) {
+  const std::string_view prefix = "process.wheel.", path = field.path;
+  const bool here = std::string_view(field.file_key).substr(0, prefix.size()) == prefix &&
+                    path != "process.wheel_file" && path.find("process.wheel_wear") != 0;
+  return here ? field.file_key + prefix.size() : "";
 }
 
 /// The field of a wheel's number.
@@ -39,8 +46,16 @@ JobField fieldOf(std::string_view path) {
   return found;
 }
 
+JobField measuredWidth() {
+  JobField width = fieldOf("process.wheel_width");
+  width.file_key = kWidth;
+  width.meaning = "width as measured; of the profile `points` that of its points";
+  width.omitted = "`width_mm`";
+  return width;
+}
+
 void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
-  const std::string allowed = "[w, radius] in mm, w ascending from the lower face to the upper, 0 in the middle";
+  const std::string& allowed = otherJobKey("process.wheel_points").allowed;
   if (!file.mentions(key)) return file.fail(1, key + " is missing; allowed: " + allowed);
   for (std::size_t i = 0; i == 0 || file.hasAny(element(key, i)); ++i) {
     std::vector<double> point;
@@ -51,8 +66,8 @@ void takeWheelPoints(FlatFile& file, const std::string& key, GrindJob& job) {
 }
 
 void takeFlange(FlatFile& file, WheelFile& wheel) {
-  const std::string key = "flange_mm";
-  const Quantity low{-0.1, Unit::kMetre}, high{0.1, Unit::kMetre};
+  const std::string key = kFlange.file_key;
+  const Quantity low = kFlange.low(), high = kFlange.high();
   const std::string allowed = text(low, high);
   double value = 0;
   if (!file.mayHave(key) || !file.take(key, allowed, value)) return;
@@ -90,9 +105,8 @@ void takeMeasuredDiameter(FlatFile& file, GrindProcess& process) {
 }
 
 void takeDate(FlatFile& file, const std::string& key, std::string& date) {
-  const std::string forms = "YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ";
-  if (!file.take(key, forms, date) || hasForm(date, "0000-00-00") || hasForm(date, "0000-00-00T00:00:00Z")) return;
-  file.fail(file.line(key), key + " = " + date + "; allowed: " + forms);
+  if (!file.take(key, kDates, date) || hasForm(date, "0000-00-00") || hasForm(date, "0000-00-00T00:00:00Z")) return;
+  file.fail(file.line(key), key + " = " + date + "; allowed: " + kDates);
 }
 
 /// @param process receives the wear and the width.
@@ -105,11 +119,11 @@ void takeMeasurement(FlatFile& file, WheelFile& wheel, GrindProcess& process) {
   takeDate(file, kDate, wheel.date);
   takeMeasuredDiameter(file, process);
   double width = 0;
-  const JobField field = fieldOf("process.wheel_width");
+  const JobField field = measuredWidth();
   if (file.mayHave(kWidth) && file.take(kWidth, text(field.low(), field.high()), width)) {
     process.wheel_width = width * kMillimetre;
   }
-  if (file.mayHave(kBy)) file.take(kBy, "a text", wheel.by);
+  if (file.mayHave(kBy)) file.take(kBy, kText, wheel.by);
 }
 
 /// The key of a wrong number of the wheel, new or as measured.
@@ -134,6 +148,37 @@ void check(FlatFile& file, const GrindJob& job, bool measured) {
 
 }  // namespace
 
+std::vector<JobField> wheelFields() {
+  std::vector<JobField> fields;
+  visitJobFields([&](JobField field, auto) {
+    field.file_key = wheelKey(field);
+    if (*field.file_key != '\0') fields.push_back(field);
+  });
+  fields.push_back(kFlange);
+  fields.push_back(measuredWidth());
+  return fields;
+}
+
+std::vector<OtherKey> otherWheelKeys() {
+  std::vector<OtherKey> keys;
+  for (OtherKey key : otherJobKeys()) {
+    key.file_key = wheelKey(key);
+    if (*key.file_key != '\0') keys.push_back(key);
+  }
+  const double farthest = 2 * fieldOf("process.wheel_wear").max;
+  const std::string diameters = text(fieldOf("process.wheel_diameter").low()) + " to `diameter_mm`, and at most " +
+                                text(Quantity{farthest * kMillimetre, Unit::kMetre}) + " less than it";
+  keys.push_back(
+      {kDate, kDate, kDates,
+       "when the wheel was measured or dressed, in UTC; the four keys of `measured` may be left out together"});
+  keys.push_back({kDiameter, kDiameter, diameters,
+                  "maximum diameter as measured; half of what it is below `diameter_mm` is the wear"});
+  keys.push_back({kBy, kBy, kText, "who measured", "nothing"});
+  keys.push_back({kDressed, kDressed, kDates, "when the wheel was dressed last, in UTC; for the records of its jobs",
+                  "not known"});
+  return keys;
+}
+
 void takeWheelShape(FlatFile& file, const std::string& prefix, GrindJob& job) {
   // An unknown profile may have a side.
   if (!file.takeChoice(prefix + "profile", job.process().wheel_profile)) return file.drop(prefix + "side");
@@ -149,7 +194,7 @@ WheelFile parseWheel(const std::string& text, const std::string& name) {
     const std::string key = wheelKey(field);
     double value = 0;
     if (key.empty()) return;
-    if (field.optional && !file.mentionsPart(key)) return file.know(key);
+    if (field.omitted != nullptr && !file.mentionsPart(key)) return file.know(key);
     file.take(key, grinder::text(field.low(), field.high()), value);
     of(job) = value * shopScale(field.unit);
   });
@@ -173,7 +218,7 @@ void mountWheel(const WheelFile& wheel, GrindJob& job) {
   GrindJob from;
   from.process() = wheel.process;
   visitJobFields([&](const JobField& field, auto of) {
-    if (!wheelKey(field).empty()) of(job) = of(from);
+    if (*wheelKey(field) != '\0') of(job) = of(from);
   });
   job.process().wheel_wear = wheel.process.wheel_wear;
   job.process().wheel_profile = wheel.process.wheel_profile;

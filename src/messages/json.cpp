@@ -23,13 +23,6 @@ Json::json_pointer pointerTo(const std::string& key) {
   return Json::json_pointer(pointer);
 }
 
-/// The key of a job's choice, see visitJobChoices().
-std::string choiceKey(const std::string& path) {
-  const std::string wheel = "process.wheel_";
-  const bool of_wheel = path.compare(0, wheel.size(), wheel) == 0;
-  return of_wheel ? "process.wheel." + path.substr(wheel.size()) : path;
-}
-
 std::vector<double> degrees(const std::vector<double>& angles) {
   std::vector<double> list(angles.size());
   std::transform(angles.begin(), angles.end(), list.begin(),
@@ -71,7 +64,7 @@ Json fieldsOf(const GrindJob& job) {
     if (field.isOf(job.process().kind)) file[pointerTo(field.file_key)] = shopNumber(of(job), field.unit);
   });
   visitJobChoices(
-      [&](const std::string& path, int, auto of) { file[pointerTo(choiceKey(path))] = choiceJson(of(job)); });
+      [&](const std::string& path, int, auto of) { file[pointerTo(fieldName(path))] = choiceJson(of(job)); });
   Json& process = file["process"];
   process.erase("kind");
   if (!isTapered(job.process().wheel_profile)) process["wheel"].erase("side");

@@ -1,8 +1,6 @@
 #include "drive/hal_parameters.h"
 #include "drive/simulated_drive.h"
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/wheel_file.h"
 #include "node/node_files.h"
 
 #include "yaml_parameters.h"
@@ -20,7 +18,7 @@
 #include <vector>
 
 /// @file
-/// Holds docs/schema.yaml against what reads job files, wheel files and parameters: each key is refused where it is
+/// Holds docs/schema.yaml against what reads parameters: each is refused where it is
 /// missing, of the wrong type or beyond its range, in the very words that the schema's figures make; each end of a
 /// range is taken; and there is no key that the schema does not know.
 
@@ -95,160 +93,6 @@ Range rangeOf(const YAML::Node& entry, const YAML::Node& tree, const std::string
     return at(tree, std::regex_replace(node.as<std::string>(), std::regex("<joint>"), joint)).as<double>();
   };
   return {end(entry["range"][0]), end(entry["range"][1])};
-}
-
-// ---------------------------------------------------------------------------------------------------------------------
-// Files
-
-struct File {
-  const char* section;
-  YAML::Node (*good)();  ///< with every key but the lists
-  void (*parse)(const std::string& text);
-};
-
-YAML::Node goodJob() {
-  YAML::Node job = YAML::LoadFile("test/jobs/paper.yaml");
-  YAML::Node process = job["process"], wheel = process["wheel"];
-  process["depth_end_mm"] = 1.6;
-  process["incomplete_ok"] = false;
-  wheel["profile"] = "angled";
-  wheel["angle_deg"] = 20;
-  wheel["side"] = "upper";
-  wheel["wear_per_pass_mm"] = 0;
-  return job;
-}
-
-YAML::Node goodWheel() {
-  YAML::Node wheel = YAML::LoadFile("wheels/angled_d100_w10.yaml");
-  wheel["measured"] = YAML::Load("{date: 2026-11-20, diameter_mm: 99, width_mm: 9, by: anna}");
-  return wheel;
-}
-
-const File kJobFile{"job", goodJob, [](const std::string& text) { parseJob(text, "file"); }};
-const File kWheelFile{"wheel", goodWheel, [](const std::string& text) { parseWheel(text, "file"); }};
-
-using Lines = std::vector<std::string>;
-
-/// What is said of a file, without its name and line.
-Lines refusalOf(const File& file, const YAML::Node& tree) {
-  Lines all;
-  try {
-    file.parse(YAML::Dump(tree));
-  } catch (const JobFileError& error) {
-    std::istringstream lines(error.what());
-    for (std::string line; std::getline(lines, line);) all.push_back(line.substr(line.find(": ") + 2));
-  }
-  return all;
-}
-
-class SchemaOfFile : public ::testing::TestWithParam<const File*> {
- protected:
-  Lines refusal(const YAML::Node& tree) const { return refusalOf(*GetParam(), tree); }
-
-  std::string number(double value, const YAML::Node& entry) const {
-    return text(value, 10) + (entry["unit"] ? " " + entry["unit"].as<std::string>() : "");
-  }
-
-  std::string allowed(const std::string& key, const YAML::Node& entry) const {
-    if (key == "measured.diameter_mm") return "1 to 100 mm, the diameter to which Y = 0 is set";
-    if (entry["range"]) {
-      const Range range = rangeOf(entry, good_);
-      return text(range.low, 10) + " to " + number(range.high, entry);
-    }
-    std::string choices;
-    for (const auto& choice : entry["choices"]) choices += (choices.empty() ? "" : ", ") + choice.as<std::string>();
-    return choices.empty() ? entry["allowed"].as<std::string>() : choices;
-  }
-
-  /// What is said of a word in the place of a value; nothing where it might be a choice or a date.
-  static std::string wrong(const YAML::Node& entry) {
-    if (entry["range"]) return entry["integer"] ? " is not a whole number" : " is not a number";
-    return entry["choices"] && entry["choices"][0].as<std::string>() == "true" ? " is neither true nor false" : "";
-  }
-
-  static bool isList(const YAML::Node& entry) { return entry["type"] && entry["type"].as<std::string>() == "list"; }
-
-  template <typename Use>
-  void forEach(const Use& use) const {
-    for (const auto& item : schema(GetParam()->section)) {
-      SCOPED_TRACE(item.first);
-      if (!isList(item.second)) use(item.first.as<std::string>(), item.second);
-    }
-  }
-
-  const YAML::Node good_ = GetParam()->good();
-};
-
-INSTANTIATE_TEST_SUITE_P(, SchemaOfFile, ::testing::Values(&kJobFile, &kWheelFile),
-                         [](const auto& info) { return std::string(info.param->section); });
-
-TEST_P(SchemaOfFile, TheGoodOneIsTaken) { EXPECT_EQ(refusal(good_), Lines{}); }
-
-TEST_P(SchemaOfFile, EveryKeyButTheOptionalIsMissed) {
-  forEach([&](std::string key, const YAML::Node& entry) {
-    if (entry["default"]) return;
-    // A list is shorter then, so that of its keys the last is missed.
-    key = std::regex_replace(key, std::regex(R"(\[0\])"), "[1]");
-    const bool is_of_setup = std::regex_search(key, std::regex("process.(setup|depth_mm|overtravel)"));
-    const std::string remedy = is_of_setup ? "; or process.setup.file, a file that 'grind setup --write' writes" : "";
-    EXPECT_EQ(refusal(without(good_, key)), Lines{key + " is missing; allowed: " + allowed(key, entry) + remedy});
-  });
-}
-
-TEST_P(SchemaOfFile, NoWordIsTakenForANumberOrAChoice) {
-  forEach([&](const std::string& key, const YAML::Node& entry) {
-    if (entry["type"] && entry["default"]) return;
-    EXPECT_EQ(refusal(with(good_, key, "fast")),
-              Lines{key + " = fast" + wrong(entry) + "; allowed: " + allowed(key, entry)});
-  });
-}
-
-TEST_P(SchemaOfFile, NumbersAreTakenUpToTheEndsOfTheRange) {
-  forEach([&](const std::string& key, const YAML::Node& entry) {
-    if (!entry["range"]) return;
-    const Range range = rangeOf(entry, good_);
-    for (const double value : {range.low, range.high}) {
-      // It may contradict other figures.
-      for (const std::string& line : refusal(with(good_, key, value))) {
-        EXPECT_FALSE(begins(line, key + " = ") && ends(line, "; allowed: " + allowed(key, entry))) << line;
-      }
-    }
-    for (double value : range.beyond()) {
-      if (entry["integer"]) value = std::trunc(value);
-      const std::string expected = key + " = " + number(value, entry) + "; allowed: " + allowed(key, entry);
-      const Lines lines = refusal(with(good_, key, value));
-      EXPECT_EQ(std::count(lines.begin(), lines.end(), expected), 1) << expected;
-    }
-  });
-}
-
-TEST_P(SchemaOfFile, ChoicesAreTaken) {
-  forEach([&](const std::string& key, const YAML::Node& entry) {
-    for (const auto& choice : entry["choices"]) {
-      for (const std::string& line : refusal(with(good_, key, choice.Scalar())))
-        EXPECT_FALSE(begins(line, key + " = ")) << line;
-    }
-  });
-}
-
-TEST(Schema, SaysWhichToothAnglesAreAllowed) {
-  const YAML::Node entry = schema("job")["cutter.tooth_angles_deg"];
-  const YAML::Node job =
-      with(without(goodJob(), "cutter.teeth"), "cutter.tooth_angles_deg", std::vector<int>{0, 90, 90});
-  const std::string allowed = entry["allowed"].as<std::string>() + " " + entry["unit"].as<std::string>();
-  EXPECT_EQ(refusalOf(kJobFile, job), Lines{"cutter.tooth_angles_deg = 90 deg; allowed: " + allowed});
-}
-
-TEST_P(SchemaOfFile, ThereAreNoOtherKeys) {
-  const Lines lines = refusal(with(good_, "strange", 1));
-  ASSERT_EQ(lines.size(), 1U);
-  const std::string refused = std::string("strange is not a key of a ") + GetParam()->section + " file; allowed: ";
-  ASSERT_TRUE(begins(lines[0], refused)) << lines[0];
-  std::istringstream words(std::regex_replace(lines[0].substr(refused.size()), std::regex(","), ""));
-  Names allowed, known;
-  for (std::string word; words >> word;) allowed.insert(word);
-  forEach([&](const std::string& key, const YAML::Node&) { known.insert(key); });
-  EXPECT_EQ(allowed, known);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

@@ -4,17 +4,21 @@
 #include "flute_grinder/job/quantity.h"
 
 #include <string>
+#include <vector>
 
 namespace grinder {
 
-/// One number of a job: its names, its unit and its range. The job file, the checks and the conversion to a goal all
-/// use the table of these fields.
+/// One number of a job: its names, its unit, its range and its meaning. The job file, the checks, the conversion to a
+/// goal and docs/reference.md all use the table of these fields.
 struct JobField {
   const char* path;      ///< name in messages, e.g. "process.wheel_diameter"
   const char* file_key;  ///< key in a job file, e.g. "process.wheel.diameter_mm"
   Unit unit;
-  double min, max;        ///< allowed range in shop units, inclusive
-  bool optional = false;  ///< whether a job file may omit it, together with the other element of a pair; it is then 0
+  double min, max;      ///< allowed range in shop units, inclusive
+  const char* meaning;  ///< for people, in Markdown
+  /// What it means if a file omits the key, together with the other element of a pair; the number is then 0. Null if
+  /// the key is required.
+  const char* omitted = nullptr;
   /// The operations that have the field; it is 0 in the others.
   enum class Of { kAll, kFlute, kRelief } of = Of::kAll;
 
@@ -33,45 +37,84 @@ void visitJobFields(const Visit& visit) {
   constexpr Unit um = Unit::kDeviationMetre, mm_rad = Unit::kRotaryMetrePerRadian;
   const double min_feed = kMinFeed / shopScale(mm_min);
   // clang-format off
-  visit(F{"cutter.end_diameter", "cutter.end_diameter_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.cutter.end_diameter; });
-  visit(F{"cutter.cone_angle", "cutter.cone_angle_deg", deg, -3, 30}, [](auto& j) -> auto& { return j.cutter.cone_angle; });
-  visit(F{"cutter.spiral_angle", "cutter.spiral_angle_deg", deg, -60, 60}, [](auto& j) -> auto& { return j.cutter.spiral_angle; });
-  visit(F{"cutter.rake_angle", "cutter.rake_angle_deg", deg, -45, 45}, [](auto& j) -> auto& { return j.cutter.rake_angle; });
-  visit(F{"cutter.flute_length", "cutter.flute_length_mm", mm, 0.1, 500}, [](auto& j) -> auto& { return j.cutter.flute_length; });
-  visit(F{"cutter.rake_tolerance", "cutter.rake_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.rake_tolerance; });
-  visit(F{"cutter.shank_diameter", "cutter.shank_diameter_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return j.cutter.shank_diameter; });
-  visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0.001, 100}, [](auto& j) -> auto& { return j.cutter.core_diameter; });
-  visit(F{"cutter.neck_length", "cutter.neck_length_mm", mm, 0, 500, true}, [](auto& j) -> auto& { return j.cutter.neck_length; });
-  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0.001, 100}, [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
-  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0.0001, 100}, [](auto& j) -> auto& { return j.cutter.core_tolerance; });
-  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
-  visit(F{"cutter.chordal_rake_tolerance", "cutter.chordal_rake_tolerance_deg", deg, 0.001, 180}, [](auto& j) -> auto& { return j.cutter.chordal_rake_tolerance; });
-  visit(F{"cutter.chordal_rake_depth", "cutter.chordal_rake_depth_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.chordal_rake_depth; });
-  visit(F{"cutter.clearance", "cutter.clearance_deg", deg, 0, 45, true}, [](auto& j) -> auto& { return j.cutter.clearance; });
-  visit(F{"cutter.clearance_tolerance", "cutter.clearance_tolerance_deg", deg, 0, 45, true}, [](auto& j) -> auto& { return j.cutter.clearance_tolerance; });
-  visit(F{"cutter.land", "cutter.land_mm", mm, 0, 50, true}, [](auto& j) -> auto& { return j.cutter.land; });
-  visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, true}, [](auto& j) -> auto& { return j.cutter.second_clearance; });
-  visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000}, [](auto& j) -> auto& { return processOf(j).feed; });
-  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).depth; });
-  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, true, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).depth_end; });
-  visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50}, [](auto& j) -> auto& { return processOf(j).infeed; });
-  visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10}, [](auto& j) -> auto& { return processOf(j).finish_infeed; });
-  visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return processOf(j).clearance; });
-  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).overtravel_end; });
-  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, false, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).overtravel_shank; });
-  visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500}, [](auto& j) -> auto& { return processOf(j).wheel_diameter; });
-  visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100}, [](auto& j) -> auto& { return processOf(j).wheel_width; });
-  visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, true}, [](auto& j) -> auto& { return processOf(j).wheel_angle; });
-  visit(F{"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", mm, 0, 50, true}, [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_lower; });
-  visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, true}, [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_upper; });
-  visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100}, [](auto& j) -> auto& { return processOf(j).wheel_wear; });
-  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, true}, [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
-  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80}, [](auto& j) -> auto& { return processOf(j).setup_swivel; });
-  visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100}, [](auto& j) -> auto& { return processOf(j).setup_height; });
-  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, true, F::Of::kFlute}, [](auto& j) -> auto& { return processOf(j).setup_x_shift; });
-  visit(F{"process.behind", "process.behind_mm", mm, 0, 50, true, F::Of::kRelief}, [](auto& j) -> auto& { return processOf(j).behind; });
-  visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000}, [](auto& j) -> auto& { return j.interpolation.tolerance; });
-  visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000}, [](auto& j) -> auto& { return j.interpolation.rotary_scale; });
+  visit(F{"cutter.end_diameter", "cutter.end_diameter_mm", mm, 0.1, 100, "diameter at the small end, X = 0"},
+        [](auto& j) -> auto& { return j.cutter.end_diameter; });
+  visit(F{"cutter.cone_angle", "cutter.cone_angle_deg", deg, -3, 30, "half angle from the axis to the generatrix; 0 is a cylinder, negative a back taper"},
+        [](auto& j) -> auto& { return j.cutter.cone_angle; });
+  visit(F{"cutter.spiral_angle", "cutter.spiral_angle_deg", deg, -60, 60, "against axial travel, tan S = R dA/dX; negative is a left-hand helix"},
+        [](auto& j) -> auto& { return j.cutter.spiral_angle; });
+  visit(F{"cutter.rake_angle", "cutter.rake_angle_deg", deg, -45, 45, "rake angle"},
+        [](auto& j) -> auto& { return j.cutter.rake_angle; });
+  visit(F{"cutter.flute_length", "cutter.flute_length_mm", mm, 0.1, 500, "along the axis; the cone must stay open"},
+        [](auto& j) -> auto& { return j.cutter.flute_length; });
+  visit(F{"cutter.rake_tolerance", "cutter.rake_tolerance_deg", deg, 0.001, 180, "maximum difference of the ground rake angle from `cutter.rake_angle_deg`"},
+        [](auto& j) -> auto& { return j.cutter.rake_tolerance; });
+  visit(F{"cutter.shank_diameter", "cutter.shank_diameter_mm", mm, 0.1, 100, "diameter of the shank"},
+        [](auto& j) -> auto& { return j.cutter.shank_diameter; });
+  visit(F{"cutter.core_diameter", "cutter.core_diameter_mm", mm, 0.001, 100, "diameter of the core at the small end; less than `cutter.end_diameter_mm`"},
+        [](auto& j) -> auto& { return j.cutter.core_diameter; });
+  visit(F{"cutter.neck_length", "cutter.neck_length_mm", mm, 0, 500, "from the flute's end to the shank; 0: not known, and the shank may then stand out from the cutter by the flute's depth", "0"},
+        [](auto& j) -> auto& { return j.cutter.neck_length; });
+  visit(F{"cutter.core_diameter_end", "cutter.core_diameter_end_mm", mm, 0.001, 100, "diameter of the core at the flute's end; less than the cutter's diameter there"},
+        [](auto& j) -> auto& { return j.cutter.core_diameter_end; });
+  visit(F{"cutter.core_tolerance", "cutter.core_tolerance_mm", mm, 0.0001, 100, "maximum allowed difference of the ground core from the asked one, at the flute's ends and from the straight line between; a plan refuses more"},
+        [](auto& j) -> auto& { return j.cutter.core_tolerance; });
+  visit(F{"cutter.spiral_tolerance", "cutter.spiral_tolerance_deg", deg, 0.001, 180, "maximum allowed difference of the edge's spiral angle from the asked one; a plan refuses more"},
+        [](auto& j) -> auto& { return j.cutter.spiral_tolerance; });
+  visit(F{"cutter.chordal_rake_tolerance", "cutter.chordal_rake_tolerance_deg", deg, 0.001, 180, "maximum difference of the ground chordal rake, of the chord from the edge into the rake face, from `cutter.rake_angle_deg`; a plan refuses more"},
+        [](auto& j) -> auto& { return j.cutter.chordal_rake_tolerance; });
+  visit(F{"cutter.chordal_rake_depth", "cutter.chordal_rake_depth_mm", mm, 0, 50, "depth below the edge at which the chord ends on the rake face", "0, a tenth of the flute's depth"},
+        [](auto& j) -> auto& { return j.cutter.chordal_rake_depth; });
+  visit(F{"cutter.clearance", "cutter.clearance_deg", deg, 0, 45, "radial clearance of the primary relief at the edge; more than 0 with a [relief](write-a-job.md#reliefs)", "0, without reliefs"},
+        [](auto& j) -> auto& { return j.cutter.clearance; });
+  visit(F{"cutter.clearance_tolerance", "cutter.clearance_tolerance_deg", deg, 0, 45, "maximum difference of the ground clearance from `cutter.clearance_deg`; a plan refuses more", "0, without reliefs"},
+        [](auto& j) -> auto& { return j.cutter.clearance_tolerance; });
+  visit(F{"cutter.land", "cutter.land_mm", mm, 0, 50, "width of the primary relief at the small end; more than 0 with a secondary relief, which begins there", "0, up to the heel"},
+        [](auto& j) -> auto& { return j.cutter.land; });
+  visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, "radial clearance of the secondary relief where it begins", "0, without a secondary relief"},
+        [](auto& j) -> auto& { return j.cutter.second_clearance; });
+  visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000, "along the cutting edge; also of the infeed"},
+        [](auto& j) -> auto& { return processOf(j).feed; });
+  visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, "radial depth of the flute at the small end; less than the cutter's radius there", nullptr, F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).depth; });
+  visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, "radial depth at the flute's end, linear in between: a core taper; less than the cutter's radius there", "0, as `process.depth_mm`", F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).depth_end; });
+  visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50, "radial infeed per pass where the flute is deepest; the last may be smaller"},
+        [](auto& j) -> auto& { return processOf(j).infeed; });
+  visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10, "infeed of a final finishing pass; 0 for none"},
+        [](auto& j) -> auto& { return processOf(j).finish_infeed; });
+  visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100, "between wheel and work outside the cut"},
+        [](auto& j) -> auto& { return processOf(j).clearance; });
+  visit(F{"process.overtravel_end", "process.overtravel_mm[0]", mm, 0, 100, "extension of the stroke beyond the small end", nullptr, F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).overtravel_end; });
+  visit(F{"process.overtravel_shank", "process.overtravel_mm[1]", mm, 0, 100, "extension of the stroke beyond the shank end of the flute", nullptr, F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).overtravel_shank; });
+  visit(F{"process.wheel_diameter", "process.wheel.diameter_mm", mm, 1, 500, "maximum diameter, with its corners rounded, to which Y = 0 is set"},
+        [](auto& j) -> auto& { return processOf(j).wheel_diameter; });
+  visit(F{"process.wheel_width", "process.wheel.width_mm", mm, 0.1, 100, "width of the wheel"},
+        [](auto& j) -> auto& { return processOf(j).wheel_width; });
+  visit(F{"process.wheel_angle", "process.wheel.angle_deg", deg, 0, 80, "of the surface of an angled wheel or a cup against the wheel's axis", "0"},
+        [](auto& j) -> auto& { return processOf(j).wheel_angle; });
+  visit(F{"process.wheel_corner_radius_lower", "process.wheel.corner_radius_mm[0]", mm, 0, 50, "between surface and lower face", "0, sharp"},
+        [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_lower; });
+  visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, "between surface and upper face", "0, sharp"},
+        [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_upper; });
+  visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100, "by which the radius is below half of `process.wheel.diameter_mm`; compensated by Y"},
+        [](auto& j) -> auto& { return processOf(j).wheel_wear; });
+  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed", "0"},
+        [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
+  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
+        [](auto& j) -> auto& { return processOf(j).setup_swivel; });
+  visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100, "of the wheel's centre above the cutter's axis at Z = 0"},
+        [](auto& j) -> auto& { return processOf(j).setup_height; });
+  visit(F{"process.setup_x_shift", "process.setup.x_shift_mm", mm, -100, 100, "shift of A's curve along X: A follows the curve at X - shift. On a cone it makes the ground edge the asked helix; it is not simply the distance from the wheel's centre to the edge.", "0, the paper's motion", F::Of::kFlute},
+        [](auto& j) -> auto& { return processOf(j).setup_x_shift; });
+  visit(F{"process.behind", "process.behind_mm", mm, 0, 50, "of a primary relief: width of the round margin between edge and relief, at the small end, along the circle", "0", F::Of::kRelief},
+        [](auto& j) -> auto& { return processOf(j).behind; });
+  visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000, "maximum deviation at the cutter's surface; the feed is reduced to keep it"},
+        [](auto& j) -> auto& { return j.interpolation.tolerance; });
+  visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000, "weight of A in the step length; 1 in the paper"},
+        [](auto& j) -> auto& { return j.interpolation.rotary_scale; });
   // clang-format on
 }
 
@@ -92,6 +135,21 @@ void visitJobChoices(const Visit& visit) {
   visit("interpolation.even_step", countOf<EvenStepRule>() - 1, [](auto& j) -> auto& { return j.interpolation.even_step; });
   // clang-format on
 }
+
+/// A key of a job file or a wheel file that is no number of one field: a choice, a count, a list or a text.
+struct OtherKey {
+  const char* path;  ///< name in messages; as in visitJobChoices()
+  const char* file_key;
+  std::string allowed;  ///< choices separated by commas, or a description
+  const char* meaning;
+  const char* omitted = nullptr;  ///< as in JobField
+};
+
+/// The keys of a job file that are not in visitJobFields().
+const std::vector<OtherKey>& otherJobKeys();
+
+/// The one of these with a path. @throw std::out_of_range
+const OtherKey& otherJobKey(const std::string& path);
 
 /// The name of a field in texts: its key in a job file.
 /// @param path its name in messages; returned if a job file has no other.

@@ -10,6 +10,8 @@
 namespace grinder {
 
 class FlatFile;
+struct JobField;
+struct OtherKey;
 
 /// A grinding wheel as described in its file, with its last measurement.
 struct WheelFile {
@@ -33,6 +35,11 @@ WheelFile readWheelFile(const std::string& path);
 
 /// Reads and checks a wheel from text; `name` is the file in messages.
 WheelFile parseWheel(const std::string& text, const std::string& name);
+
+/// The numbers of a wheel file, with its own keys: those of a job's wheel but the wear, the flange, the measured width.
+std::vector<JobField> wheelFields();
+/// The other keys of a wheel file.
+std::vector<OtherKey> otherWheelKeys();
 
 /// Puts the wheel into a job. The wear per pass belongs to the process and stays.
 void mountWheel(const WheelFile& wheel, GrindJob& job);

@@ -1,0 +1,64 @@
+// Prints the tables of the keys in job files and wheel files as JSON, for docs/make_reference.py.
+
+#include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/job/wheel_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <iostream>
+#include <string>
+#include <vector>
+
+using namespace grinder;
+using Json = nlohmann::json;
+
+namespace {
+
+Json row(const std::string& key, const std::string& unit, const std::string& allowed, const char* meaning,
+         const char* omitted) {
+  return {{"key", key},
+          {"unit", unit},
+          {"allowed", allowed},
+          {"meaning", meaning},
+          {"omitted", omitted ? Json(omitted) : Json(nullptr)}};
+}
+
+/// The symbol of a unit, without the blank before it.
+std::string symbolOf(Unit unit) {
+  const std::string nothing = text(Quantity{0, unit});
+  return nothing.substr(std::min<std::size_t>(nothing.size(), 2));
+}
+
+Json rowOf(const JobField& field) {
+  const std::string range = text(Quantity{field.min, Unit::kNone}, Quantity{field.max, Unit::kNone}, 10);
+  return row(field.file_key, symbolOf(field.unit), range, field.meaning, field.omitted);
+}
+
+Json rowOf(const OtherKey& key) { return row(key.file_key, "", key.allowed, key.meaning, key.omitted); }
+
+/// The rows of a file, section by section.
+Json tableOf(const std::vector<JobField>& fields, const std::vector<OtherKey>& others) {
+  std::vector<Json> rows;
+  for (const JobField& field : fields) rows.push_back(rowOf(field));
+  for (const OtherKey& key : others) rows.push_back(rowOf(key));
+  const auto section = [](const Json& row) {
+    const std::string key = row["key"];
+    return key.find('.') == std::string::npos ? 0
+           : key.rfind("cutter.", 0) == 0     ? 1
+           : key.rfind("process.", 0) == 0    ? 2
+                                              : 3;
+  };
+  std::stable_sort(rows.begin(), rows.end(), [&](const Json& a, const Json& b) { return section(a) < section(b); });
+  return rows;
+}
+
+}  // namespace
+
+int main() {
+  std::vector<JobField> fields;
+  visitJobFields([&](const JobField& field, auto) { fields.push_back(field); });
+  std::cout << Json{{"job", tableOf(fields, otherJobKeys())}, {"wheel", tableOf(wheelFields(), otherWheelKeys())}}.dump(
+                   1)
+            << '\n';
+}

@@ -1,6 +1,7 @@
 #include "drive/hal_parameters.h"
 #include "drive/simulated_drive.h"
 #include "flute_grinder/control/machine_config.h"
+#include "flute_grinder/job/yaml_text.h"
 #include "node/node_files.h"
 
 #include "yaml_parameters.h"
@@ -18,9 +19,9 @@
 #include <vector>
 
 /// @file
-/// Holds docs/schema.yaml against what reads parameters: each is refused where it is
-/// missing, of the wrong type or beyond its range, in the very words that the schema's figures make; each end of a
-/// range is taken; and there is no key that the schema does not know.
+/// Holds docs/schema.yaml against what reads parameters: each is refused where it is missing, of the wrong type or beyond
+/// its range, in the very words that the schema's figures make; each end of a range is taken; and there is no parameter
+/// that the schema does not know.
 
 namespace grinder {
 namespace test_schema {

@@ -112,7 +112,7 @@ TEST(Operations, AreRefusedWhereTheyDoNotFollowOneAnother) {
       {"flute", [](GrindJob& j) { j.process().behind = 1e-4; },
        "process.behind_mm = 0.1 mm; allowed: 0 for this operation"},
       {"primary", [](GrindJob& j) { j.process().wheel_profile = WheelShape::kFullRadius; },
-       "process.wheel_profile = 2; allowed: 0, straight, for a relief: its cylinder is what grinds it"},
+       "process.wheel.profile = 2; allowed: 0, straight, for a relief: its cylinder is what grinds it"},
   };
   for (const auto& row : rows) {
     GrindJob job = reamer(row.operation);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -39,7 +40,7 @@ ParameterReader::ParameterReader(const XmlRpc::XmlRpcValue& parameters, std::str
 ParameterReader::ParameterReader(const ros::NodeHandle& nh) : ns_(nh.getNamespace()) { nh.getParam("", parameters_); }
 
 XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
-  asked_->insert(path);
+  asked_->paths.insert(path);
   const XmlRpc::XmlRpcValue* at = &parameters_;
   std::istringstream names(path);
   for (std::string name; std::getline(names, name, '/');) {
@@ -47,6 +48,15 @@ XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
     at = &(*at)[name];
   }
   return *at;
+}
+
+void ParameterReader::note(const std::string& path, const std::string& allowed, const About& about) const {
+  if (!about.meaning) return;
+  AskedParameter asked{std::regex_replace(path, std::regex("axis_[xyza]"), "<joint>"),
+                       about.allowed ? about.allowed : allowed, about};
+  const auto same = [&](const AskedParameter& other) { return other.name == asked.name; };
+  auto& list = asked_->reference;
+  if (std::none_of(list.begin(), list.end(), same)) list.push_back(std::move(asked));
 }
 
 bool ParameterReader::has(const std::string& path) const { return find(path).valid(); }
@@ -58,7 +68,7 @@ XmlRpc::XmlRpcValue ParameterReader::require(const std::string& path, const std:
 }
 
 void ParameterReader::refuseUnknown(const std::vector<std::string>& others) const {
-  asked_->insert(others.begin(), others.end());
+  asked_->paths.insert(others.begin(), others.end());
   refuseUnknown(parameters_, "", others);
 }
 
@@ -71,7 +81,7 @@ void ParameterReader::refuseUnknown(const XmlRpc::XmlRpcValue& group, const std:
     const bool is_group = value.getType() == XmlRpc::XmlRpcValue::TypeStruct && !asked(path + "/").empty();
     if (is_group) {
       refuseUnknown(value, path + "/", others);
-    } else if (asked_->count(path) == 0) {
+    } else if (asked_->paths.count(path) == 0) {
       const std::vector<std::string> known = asked(begin);
       std::string text = "parameter " + name(path) + " is not known";
       const std::string near = didYouMean(word, known);
@@ -82,14 +92,18 @@ void ParameterReader::refuseUnknown(const XmlRpc::XmlRpcValue& group, const std:
 
 std::vector<std::string> ParameterReader::asked(const std::string& begin) const {
   std::vector<std::string> words;
-  for (auto at = asked_->lower_bound(begin); at != asked_->end() && at->compare(0, begin.size(), begin) == 0; ++at) {
+  for (auto at = asked_->paths.lower_bound(begin);
+       at != asked_->paths.end() && at->compare(0, begin.size(), begin) == 0; ++at) {
     const std::string word = at->substr(begin.size(), at->find('/', begin.size()) - begin.size());
     if (words.empty() || words.back() != word) words.push_back(word);
   }
   return words;
 }
 
-double ParameterReader::number(const std::string& path, double min, double max) const {
+double ParameterReader::number(const std::string& path, double min, double max, const About& about) const {
+  std::ostringstream range;
+  range << min << " to " << max;
+  note(path, range.str(), about);
   const XmlRpc::XmlRpcValue value = require(path, "a number");
   const std::optional<double> result = numberOf(value);
   std::ostringstream text;
@@ -99,13 +113,14 @@ double ParameterReader::number(const std::string& path, double min, double max) 
     throw ParameterError(text.str());
   }
   if (!(*result >= min && *result <= max)) {
-    text << *result << "; allowed: " << min << " to " << max;
+    text << *result << "; allowed: " << range.str();
     throw ParameterError(text.str());
   }
   return *result;
 }
 
-int ParameterReader::whole(const std::string& path, int min, int max) const {
+int ParameterReader::whole(const std::string& path, int min, int max, const About& about) const {
+  note(path, std::to_string(min) + " to " + std::to_string(max) + ", whole", about);
   const double value = number(path, min, max);
   if (value == std::floor(value)) return static_cast<int>(value);
   std::ostringstream text;
@@ -113,7 +128,8 @@ int ParameterReader::whole(const std::string& path, int min, int max) const {
   throw ParameterError(text.str());
 }
 
-bool ParameterReader::flag(const std::string& path) const {
+bool ParameterReader::flag(const std::string& path, const About& about) const {
+  note(path, "true or false", about);
   XmlRpc::XmlRpcValue value = require(path, "true or false");
   if (value.getType() != XmlRpc::XmlRpcValue::TypeBoolean) {
     throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: true or false");
@@ -121,9 +137,8 @@ bool ParameterReader::flag(const std::string& path) const {
   return static_cast<bool>(value);
 }
 
-std::string ParameterReader::text(const std::string& path) const { return text(path, "a text"); }
-
-std::string ParameterReader::text(const std::string& path, const std::string& what) const {
+std::string ParameterReader::text(const std::string& path, const std::string& what, const About& about) const {
+  note(path, what, about);
   XmlRpc::XmlRpcValue value = require(path, what);
   if (value.getType() != XmlRpc::XmlRpcValue::TypeString || static_cast<std::string>(value).empty()) {
     throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: " + what);
@@ -131,8 +146,8 @@ std::string ParameterReader::text(const std::string& path, const std::string& wh
   return static_cast<std::string>(value);
 }
 
-std::string ParameterReader::path(const std::string& path) const {
-  const std::string what = "an absolute path, or one that begins with ~/", given = text(path, what);
+std::string ParameterReader::path(const std::string& path, const About& about) const {
+  const std::string what = "an absolute path, or one that begins with ~/", given = text(path, what, about);
   if (given[0] == '/') return given;
   const char* home = std::getenv("HOME");
   if ((given == "~" || given.compare(0, 2, "~/") == 0) && home && *home == '/') return home + given.substr(1);

@@ -36,13 +36,24 @@ std::int64_t processorTime() {
 /// @param root parameters of the node. @param p parameters of the drive.
 SimulatedDrive::Blank readBlank(const ParameterReader& root, const ParameterReader& p) {
   constexpr double max = 10;
-  const auto figure = [](const ParameterReader& from, const std::string& name) { return from.number(name, -max, max); };
+  const auto figure = [](const ParameterReader& from, const std::string& name, const About& about = {}) {
+    return from.number(name, -max, max, about);
+  };
+  const char *nothing = "nothing to touch", *no_flutes = "no flutes";
   SimulatedDrive::Blank blank;
-  blank.end_face = figure(p, "blank/end_face");
-  blank.diameter = p.number("blank/diameter", 0, max);
-  blank.run_out = p.number("blank/run_out", 0, max);
+  blank.end_face =
+      figure(p, "blank/end_face",
+             {"X of the end face of what the measuring probe touches, in machine coordinates", "m", nothing});
+  blank.diameter = p.number("blank/diameter", 0, max, {"diameter of the blank", "m", nothing});
+  blank.run_out =
+      p.number("blank/run_out", 0, max,
+               {"total run-out of the blank; at A = 0 the axis is displaced toward the wheel", "m", nothing});
   if (p.has("blank/rake_face")) {
-    blank.rake_face = {figure(p, "blank/rake_face/height"), p.number("blank/rake_face/angle", -units::kPi, units::kPi)};
+    blank.rake_face = {figure(p, "blank/rake_face/height",
+                              {"height above the work spindle's axis of a plane below which the blank is ground away",
+                               "m", no_flutes}),
+                       p.number("blank/rake_face/angle", -units::kPi, units::kPi,
+                                {"A at which that plane is horizontal", "rad", no_flutes})};
   }
   blank.ball_diameter = root.number("geometry/probe/diameter", 0, max);
   blank.ball_centre = {figure(root, "geometry/probe/x"),
@@ -58,17 +69,21 @@ SimulatedDrive::Simulation SimulatedDrive::readSimulation(const ParameterReader&
   Model& model = simulation.model;
   for (std::size_t i = 0; i < model.size(); ++i) {
     const std::string joint = std::string(kJointNames[i]) + "/";
-    model[i].time_constant = p.number(joint + "time_constant", 0, 10);
-    model[i].counts_per_unit = p.number(joint + "counts_per_unit", 1, 1e12);
-    model[i].start_position = p.number(joint + "start_position", -1e6, 1e6);
-    model[i].home_position = p.number(joint + "home_position", -1e6, 1e6);
-    model[i].homing_velocity = p.number(joint + "homing_velocity", 1e-6, 1e3);
+    model[i].time_constant = p.number(joint + "time_constant", 0, 10, {"servo lag", "s"});
+    model[i].counts_per_unit = p.number(joint + "counts_per_unit", 1, 1e12, {"encoder resolution", "1/m, 1/rad"});
+    model[i].start_position = p.number(joint + "start_position", -1e6, 1e6, {"position at power-up", "m, rad"});
+    model[i].home_position = p.number(joint + "home_position", -1e6, 1e6, {"position of the reference", "m, rad"});
+    model[i].homing_velocity =
+        p.number(joint + "homing_velocity", 1e-6, 1e3, {"speed toward the reference", "m/s, rad/s"});
   }
   Equipment& equipment = simulation.equipment;
-  equipment.absolute_encoders = p.flag("absolute_encoders");
-  equipment.spindle_run_up_time = p.number("spindle_run_up_time", 0, 600);
-  if (p.has("pace")) equipment.pace = p.number("pace", 1, 100);
-  if (p.has("swivel")) equipment.swivel = p.number("swivel", -units::kPi / 2, units::kPi / 2);
+  equipment.absolute_encoders = p.flag("absolute_encoders", {"if true, homed from the start"});
+  equipment.spindle_run_up_time = p.number("spindle_run_up_time", 0, 600, {"time until the spindle is at speed", "s"});
+  if (p.has("pace"))
+    equipment.pace = p.number("pace", 1, 100, {"simulated time over the clock's, for trials", "", "1"});
+  if (p.has("swivel"))
+    equipment.swivel =
+        p.number("swivel", -1.57, 1.57, {"angle that the swivel's encoder reads", "rad", "the swivel has no encoder"});
   if (p.has("blank")) simulation.blank = readBlank(root, p);
   p.refuseUnknown({"type"});
   return simulation;

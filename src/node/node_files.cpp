@@ -11,10 +11,28 @@ std::string filePath(const std::string& parameter, const std::string& node, cons
 
 }  // namespace
 
-NodeFiles readNodeFiles(const ParameterReader& parameters, const std::string& node) {
-  return {filePath(parameters.path("journal"), node, ".journal"),
-          filePath(parameters.path("offsets"), node, ".offsets"), filePath(parameters.path("history"), node, "/"),
-          parameters.path("tolerances")};
+NodeFiles readNodeFiles(const ParameterReader& p, const std::string& node) {
+  NodeFiles files;
+  files.journal = filePath(
+      p.path("journal",
+             {"file that records the progress of the job, for one node only; or, ending in `/`, a folder in which "
+              "the file is named after the node. Set by the launch file"}),
+      node, ".journal");
+  files.offsets = filePath(
+      p.path("offsets",
+             {"file that keeps the work offsets, for one node only; or, ending in `/`, a folder in which the file "
+              "is named after the node. Set by the launch file: beside the journal"}),
+      node, ".offsets");
+  files.history = filePath(
+      p.path("history",
+             {"folder that keeps the records of the last jobs, for one node only; or, ending in `/`, a folder in "
+              "which that folder is named after the node. Set by the launch file: beside the journal"}),
+      node, "/");
+  files.tolerances =
+      p.path("tolerances", {"YAML file of the tolerances by which each job is passed or failed when it ends, "
+                            "beside those of the job itself. Set by the launch file: "
+                            "`config/tolerances.yaml`"});
+  return files;
 }
 
 }  // namespace grinder

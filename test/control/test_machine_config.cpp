@@ -163,7 +163,7 @@ TEST(MachineConfig, AMachineNeedsNoProbe) {
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
-// What is refused and the schema does not say of each parameter by itself
+// What is refused beside what test_parameters.cpp shows of each parameter by itself
 
 TEST(MachineConfig, RefusesALimitWithoutItsFlag) {
   for (const std::string limit : {"velocity", "position"}) {

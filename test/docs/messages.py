@@ -148,7 +148,7 @@ def codes(text):
 
 
 def missing_messages(quoted):
-    page = '\n'.join(quoted)
+    page = '\n'.join(quoted) + read('docs/reference.md')  # which has what parameters mean
     for path, silent in MESSAGES.items():
         said = texts(path)
         for text in said:

@@ -1,12 +1,16 @@
-// Prints the tables of the keys in job files and wheel files as JSON, for docs/make_reference.py.
+// Prints the keys of job files and wheel files, and the parameters for which the node and the drives ask, as JSON for
+// docs/make_reference.py.
 
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/wheel_file.h"
+
+#include "node/parameter_sections.h"
 
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +41,20 @@ Json rowOf(const JobField& field) {
 
 Json rowOf(const OtherKey& key) { return row(key.file_key, "", key.allowed, key.meaning, key.omitted); }
 
+Json rowOf(const AskedParameter& p) { return row(p.name, p.about.unit, p.allowed, p.about.meaning, p.about.omitted); }
+
+/// The parameters of each section that none before it has.
+Json parameters() {
+  Json sections;
+  std::set<std::string> known;
+  for (const test_support::ParameterSection& section : test_support::kParameterSections) {
+    for (const AskedParameter& asked : section.askedIn(test_support::allParameters(section.isHal()))) {
+      if (known.insert(asked.name).second) sections[section.name].push_back(rowOf(asked));
+    }
+  }
+  return sections;
+}
+
 /// The rows of a file, section by section.
 Json tableOf(const std::vector<JobField>& fields, const std::vector<OtherKey>& others) {
   std::vector<Json> rows;
@@ -58,7 +76,8 @@ Json tableOf(const std::vector<JobField>& fields, const std::vector<OtherKey>& o
 int main() {
   std::vector<JobField> fields;
   visitJobFields([&](const JobField& field, auto) { fields.push_back(field); });
-  std::cout << Json{{"job", tableOf(fields, otherJobKeys())}, {"wheel", tableOf(wheelFields(), otherWheelKeys())}}.dump(
-                   1)
-            << '\n';
+  Json all = parameters();
+  all["job"] = tableOf(fields, otherJobKeys());
+  all["wheel"] = tableOf(wheelFields(), otherWheelKeys());
+  std::cout << all.dump(1) << '\n';
 }

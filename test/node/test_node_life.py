@@ -68,7 +68,7 @@ class TestLoopback(unittest.TestCase):
 
 
 # Parameter and its value (None: taken away), what the message must say beside the parameter's full name. One for each that reads
-# parameters; test_schema.cpp has them all.
+# parameters; test_parameters.cpp has them all.
 BAD_PARAMETERS = [
     ('control_rate', math.nan, 'nan; allowed: 10 to 20000'),
     ('jog_timeot', 0.2, " is not known; did you mean 'jog_timeout'?"),

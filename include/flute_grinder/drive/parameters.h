@@ -24,6 +24,21 @@ class ParameterError : public std::runtime_error {
 /// The value of a numeric parameter; nothing for any other type. YAML reads `0` and `0.0` as different types of number.
 std::optional<double> numberOf(XmlRpc::XmlRpcValue value);
 
+/// What docs/reference.md says of a parameter beside the range that its reader states.
+struct About {
+  const char* meaning = nullptr;  ///< in Markdown; null to leave the parameter out
+  const char* unit = "";          ///< the second for A, if there are two
+  const char* omitted = nullptr;  ///< what it means if the parameter is omitted; null if it is required
+  const char* allowed = nullptr;  ///< in place of a range that depends on other parameters
+};
+
+/// A parameter for which a reader has asked.
+struct AskedParameter {
+  std::string name;     ///< below the node's namespace, with `<joint>` for the name of an axis' joint
+  std::string allowed;  ///< range or type
+  About about;
+};
+
 /// Reads parameters of one namespace; rejects any that are missing, of the wrong type or out of range.
 class ParameterReader {
  public:
@@ -34,28 +49,35 @@ class ParameterReader {
   explicit ParameterReader(const ros::NodeHandle& nh);
 
   bool has(const std::string& path) const;
+  /// The parameters asked for so far that have a meaning, in order.
+  const std::vector<AskedParameter>& reference() const { return asked_->reference; }
   /// @throw ParameterError unless the parameter is a finite number from `min` to `max`.
-  double number(const std::string& path, double min, double max) const;
+  double number(const std::string& path, double min, double max, const About& about = {}) const;
   /// @throw ParameterError unless the parameter is a whole number from `min` to `max`.
-  int whole(const std::string& path, int min, int max) const;
+  int whole(const std::string& path, int min, int max, const About& about = {}) const;
   /// @throw ParameterError unless the parameter is a bool.
-  bool flag(const std::string& path) const;
+  bool flag(const std::string& path, const About& about = {}) const;
   /// @throw ParameterError unless the parameter is a non-empty string.
-  std::string text(const std::string& path) const;
-  /// As text(path). @param what the allowed texts, for the message.
-  std::string text(const std::string& path, const std::string& what) const;
+  /// @param what the allowed texts, for the message.
+  std::string text(const std::string& path, const std::string& what = "a text", const About& about = {}) const;
   /// To be called when all parameters have been read: any other parameter must be misspelled.
   /// @param others parameters and groups that other programs read.
   /// @throw ParameterError naming the first unknown parameter and the most similar known one.
   void refuseUnknown(const std::vector<std::string>& others = {}) const;
   /// The path of a file or folder, with a leading `~` replaced by HOME. @throw ParameterError unless the path is then
   /// absolute: a relative path would depend on where the program was started.
-  std::string path(const std::string& path) const;
+  std::string path(const std::string& path, const About& about = {}) const;
   /// The parameter's full name.
   std::string name(const std::string& path) const { return ns_ + "/" + path; }
 
  private:
+  struct Asked {
+    std::set<std::string> paths;
+    std::vector<AskedParameter> reference;
+  };
+
   XmlRpc::XmlRpcValue find(const std::string& path) const;
+  void note(const std::string& path, const std::string& allowed, const About& about) const;
   XmlRpc::XmlRpcValue require(const std::string& path, const std::string& what) const;
   void refuseUnknown(const XmlRpc::XmlRpcValue& group, const std::string& begin,
                      const std::vector<std::string>& others) const;
@@ -64,7 +86,7 @@ class ParameterReader {
 
   XmlRpc::XmlRpcValue parameters_;
   std::string ns_;
-  std::shared_ptr<std::set<std::string>> asked_ = std::make_shared<std::set<std::string>>();  ///< asked paths
+  std::shared_ptr<Asked> asked_ = std::make_shared<Asked>();
 };
 
 }  // namespace grinder

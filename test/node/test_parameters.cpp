@@ -1,0 +1,173 @@
+// Every parameter that the readers of the node and of the drives ask for: missed and refused by its name, and never
+// overlooked where it is misspelled.
+
+#include "parameter_sections.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace grinder {
+namespace test_parameters {
+
+using test_support::allParameters;
+using test_support::kParameterSections;
+using test_support::ParameterSection;
+
+/// The group of a parameter, and its last word, e.g. "joint_limits/axis_x" and "max_jerk".
+YAML::Node groupOf(YAML::Node tree, const std::string& path, std::string& word) {
+  std::istringstream words(path);
+  std::getline(words, word, '/');
+  for (std::string next; std::getline(words, next, '/'); word = next) tree.reset(tree[word]);
+  return tree;
+}
+
+class Parameters : public ::testing::TestWithParam<ParameterSection> {
+ protected:
+  std::string refusal(const YAML::Node& tree) const {
+    try {
+      GetParam().askedIn(tree);
+    } catch (const ParameterError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  /// What is said without a parameter, and with another name and value for it.
+  std::string refusalWithout(const std::string& path) const {
+    YAML::Node tree = YAML::Clone(good_);
+    std::string word;
+    groupOf(tree, path, word).remove(word);
+    return refusal(tree);
+  }
+  std::string refusalWith(const std::string& path, const std::string& value, const std::string& suffix = "") const {
+    YAML::Node tree = YAML::Clone(good_);
+    std::string word;
+    YAML::Node group = groupOf(tree, path, word);
+    group[word + suffix] = value;
+    return refusal(tree);
+  }
+
+  /// @param use called with each parameter of the first axis, and with its full name.
+  template <typename Use>
+  void forEach(const Use& use) const {
+    for (const AskedParameter& asked : GetParam().askedIn(good_)) {
+      const std::string path = std::regex_replace(asked.name, std::regex("<joint>"), kJointNames[0]);
+      SCOPED_TRACE(path);
+      use(asked, path, "parameter /grinder/" + path);
+    }
+  }
+
+  static bool isPath(const AskedParameter& asked) { return asked.allowed.find("~/") != std::string::npos; }
+  static bool isNumber(const AskedParameter& asked) { return asked.allowed.find(" to ") != std::string::npos; }
+
+  const YAML::Node good_ = allParameters(GetParam().isHal());
+};
+
+INSTANTIATE_TEST_SUITE_P(, Parameters, ::testing::ValuesIn(kParameterSections),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_P(Parameters, ThatAreGoodAreTaken) {
+  EXPECT_EQ(refusal(good_), "");
+  EXPECT_GE(GetParam().askedIn(good_).size(), 3u);
+}
+
+TEST_P(Parameters, EachIsMissed) {
+  forEach([&](const AskedParameter&, const std::string& path, const std::string& full) {
+    // These may be left out alone.
+    if (path == "hardware/swivel" || path == "hardware/pace") return;
+    const std::string said = refusalWithout(path);
+    EXPECT_EQ(said.find(full + " is missing"), 0u) << said;
+  });
+}
+
+TEST_P(Parameters, TheWrongTypeIsRefused) {
+  forEach([&](const AskedParameter& asked, const std::string& path, const std::string& full) {
+    const bool number = isNumber(asked);
+    const std::string said = refusalWith(path, number ? "fast" : "7");
+    EXPECT_EQ(said.find(full + (number ? " = \"fast\"; allowed: " : " = 7; allowed: ")), 0u) << said;
+  });
+}
+
+TEST_P(Parameters, NumbersAreRefusedBeyondTheirRangeInTheWordsOfTheReference) {
+  forEach([&](const AskedParameter& asked, const std::string& path, const std::string& full) {
+    if (!isNumber(asked) || asked.about.allowed) return;
+    std::smatch ends;
+    ASSERT_TRUE(std::regex_match(asked.allowed, ends, std::regex("(\\S+) to (\\S+?)(, whole)?"))) << asked.allowed;
+    for (const char* beyond : {"-1.5e+13", "1.5e+13"}) {
+      const std::string said = refusalWith(path, beyond);
+      EXPECT_EQ(said, full + " = " + beyond + "; allowed: " + ends[1].str() + " to " + ends[2].str());
+    }
+    for (const std::string& end : {ends[1].str(), ends[2].str()}) {
+      const std::string said = refusalWith(path, end);
+      EXPECT_NE(said.find(full + " = " + end + "; allowed: " + ends[1].str()), 0u) << said;
+    }
+  });
+}
+
+TEST_P(Parameters, AMisspelledOneIsNamedWithTheRightOne) {
+  // A file of HAL lies over one with another drive's parameters; the machine's reader leaves those of the node to
+  // others.
+  if (GetParam().isHal() || GetParam().name == std::string("machine")) return;
+  forEach([&](const AskedParameter&, const std::string& path, const std::string& full) {
+    if (path == "hardware/type") return;
+    const std::string word = path.substr(path.rfind('/') + 1);
+    EXPECT_EQ(refusalWith(path, "1", "s"), full + "s is not known; did you mean '" + word + "'?");
+  });
+}
+
+TEST_P(Parameters, APathDoesNotDependOnWhereTheNodeWasStarted) {
+  forEach([&](const AskedParameter& asked, const std::string& path, const std::string& full) {
+    if (!isPath(asked)) return;
+    for (const char* relative : {"fg/", "./fg/", "../fg", "~other/fg/", "$HOME/fg"}) {
+      EXPECT_EQ(refusalWith(path, relative),
+                full + " = \"" + relative + "\"; allowed: an absolute path, or one that begins with ~/");
+    }
+    EXPECT_EQ(refusalWith(path, "~/fg/"), "");
+  });
+}
+
+TEST(NodeFilesOfPaths, AreBelowTheHomeFolder) {
+  YAML::Node good = allParameters(false);
+  good["journal"] = "~/fg/";
+  good["offsets"] = "~/offsets";
+  const std::string home = std::getenv("HOME");
+  const NodeFiles own = readNodeFiles(ParameterReader(test_support::toXmlRpc(good), "/a"), "/a/b");
+  EXPECT_EQ(own.journal, home + "/fg/a/b.journal");
+  EXPECT_EQ(own.offsets, home + "/offsets");
+}
+
+/// The parameters of a file, with <joint> for each axis.
+void addLeaves(const YAML::Node& tree, const std::string& path, std::set<std::string>& names) {
+  for (const auto& item : tree) {
+    const std::string name = path + item.first.as<std::string>();
+    if (item.second.IsMap()) {
+      addLeaves(item.second, name + "/", names);
+    } else {
+      names.insert(std::regex_replace(name, std::regex("/axis_[xyza](?=/|$)"), "/<joint>"));
+    }
+  }
+}
+
+TEST(ShippedParameters, AreInTheReferenceAndLackNone) {
+  std::set<std::string> shipped, known, needed;
+  for (const char* file : {"config/grinder.yaml", "config/hal.yaml"}) addLeaves(YAML::LoadFile(file), "", shipped);
+  for (const ParameterSection& section : kParameterSections) {
+    for (const AskedParameter& asked : section.askedIn(allParameters(section.isHal()))) {
+      known.insert(asked.name);
+      if (!asked.about.omitted) needed.insert(asked.name);
+    }
+  }
+  for (const std::string& name : shipped) EXPECT_TRUE(known.count(name)) << name;
+  // The launch file sets these.
+  for (const char* name : {"journal", "offsets", "history", "tolerances"}) EXPECT_EQ(needed.erase(name), 1U) << name;
+  for (const std::string& name : needed) EXPECT_TRUE(shipped.count(name)) << name;
+}
+
+}  // namespace test_parameters
+}  // namespace grinder

@@ -165,9 +165,9 @@ MachineGeometry readMachineGeometry(const ParameterReader& p) {
   geometry.work_axis_z = place("work_axis/z", "Z of the work spindle's axis in machine coordinates");
   geometry.collet_face = place("collet_face/x", "X of the collet's face in machine coordinates, axis X at zero");
   geometry.swivel_centre = {
-      place("swivel_centre/x",
-            "X of the point where the swivel's axis crosses that of the wheel's spindle, in machine "
-            "coordinates, all axes at zero"),
+      place(
+          "swivel_centre/x",
+          "X of the point where the axes of swivel and wheel spindle cross, in machine coordinates, all axes at zero"),
       place("swivel_centre/y", "Y of that point"), place("swivel_centre/z", "Z of that point")};
   geometry.flange =
       place("flange",

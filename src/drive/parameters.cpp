@@ -1,15 +1,16 @@
 #include "flute_grinder/drive/parameters.h"
 
+#include "flute_grinder/job/axes.h"
 #include "flute_grinder/job/did_you_mean.h"
 
 #include <ros/node_handle.h>
 
 #include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -52,8 +53,8 @@ XmlRpc::XmlRpcValue ParameterReader::find(const std::string& path) const {
 
 void ParameterReader::note(const std::string& path, const std::string& allowed, const About& about) const {
   if (!about.meaning) return;
-  AskedParameter asked{std::regex_replace(path, std::regex("axis_[xyza]"), "<joint>"),
-                       about.allowed ? about.allowed : allowed, about};
+  AskedParameter asked{path, about.allowed ? about.allowed : allowed, about};
+  for (const char* joint : kJointNames) boost::algorithm::replace_first(asked.name, joint, "<joint>");
   const auto same = [&](const AskedParameter& other) { return other.name == asked.name; };
   auto& list = asked_->reference;
   if (std::none_of(list.begin(), list.end(), same)) list.push_back(std::move(asked));

@@ -49,7 +49,7 @@ JobField fieldOf(std::string_view path) {
 JobField measuredWidth() {
   JobField width = fieldOf("process.wheel_width");
   width.file_key = kWidth;
-  width.meaning = "width as measured; of the profile `points` that of its points";
+  width.meaning = "width as measured; with the profile `points`, the width of its points";
   width.omitted = "`width_mm`";
   return width;
 }

@@ -30,7 +30,7 @@ NodeFiles readNodeFiles(const ParameterReader& p, const std::string& node) {
       node, "/");
   files.tolerances =
       p.path("tolerances", {"YAML file of the tolerances by which each job is passed or failed when it ends, "
-                            "beside those of the job itself. Set by the launch file: "
+                            "beside the job's own. Set by the launch file: "
                             "`config/tolerances.yaml`"});
   return files;
 }

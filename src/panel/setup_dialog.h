@@ -20,7 +20,7 @@
 namespace grinder {
 
 /// Solves and shows the set-up sheet of a job file beside the set-up that the job has. Writes the set-up file if the
-/// operator confirms it twice, but never that of the running job. Solving and writing have a thread of their own, which
+/// operator confirms it twice, but not while the job runs. Solving and writing have a thread of their own, which
 /// waits for a hanging master for a second at most.
 class SetupDialog : public QDialog {
   Q_OBJECT

@@ -35,8 +35,8 @@ struct JobFile {
 /// Reads a job as readJobFile(), once for everything that its files say.
 JobFile openJobFile(const std::string& path, const std::string& operation = "");
 
-/// A job whose set-up is to be solved: with the set-up that its file states, or else that of clearSetup() with the
-/// wanted figure.
+/// A job whose set-up is to be solved. It has the set-up that the job file states, or else starts from clearSetup()
+/// with the wanted figure.
 struct JobToSetUp : JobFile {
   std::optional<GrindProcess>
       before;                         ///< its operation with the set-up that it has; nothing if there is none that fits

@@ -36,7 +36,8 @@ WheelFile readWheelFile(const std::string& path);
 /// Reads and checks a wheel from text; `name` is the file in messages.
 WheelFile parseWheel(const std::string& text, const std::string& name);
 
-/// The numbers of a wheel file, with its own keys: those of a job's wheel but the wear, the flange, the measured width.
+/// The numbers of a wheel file, with its own keys: what a job says of its wheel but the wear, the flange, and the
+/// measured width.
 std::vector<JobField> wheelFields();
 /// The other keys of a wheel file.
 std::vector<OtherKey> otherWheelKeys();

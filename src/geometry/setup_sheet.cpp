@@ -32,8 +32,8 @@ std::string wheelText(const GrindProcess& p) {
 std::string overtravelText(const JobSetup& setup) {
   const auto& [end, shank] = setup.overtravel;
   const GrindProcess& p = setup.job.process();
-  return format("%g mm beyond the small end, %g mm toward the shank; the flutes need %.2f and %.2f mm",
-                mm(p.overtravel_end), mm(p.overtravel_shank), mm(end), mm(shank));
+  return format("%g mm beyond the small end, %g mm toward the shank; needed: %.2f and %.2f mm", mm(p.overtravel_end),
+                mm(p.overtravel_shank), mm(end), mm(shank));
 }
 
 std::string shiftText(const GrindProcess& p) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 namespace grinder {
 
@@ -100,7 +101,12 @@ void clearSetup(GrindJob& job) {
     if (isOfSetup(field)) of(job) = 0;
   });
   if (isRelief(job.process().kind)) return;
-  job.process().depth = (job.cutter.end_diameter - job.cutter.core_diameter) / 2;
+  const CutterGeometry& c = job.cutter;
+  job.process().depth = (c.end_diameter - c.core_diameter) / 2;
+  constexpr double run_in = 1e-3;
+  const double growth = std::tan(c.cone_angle);
+  // Not far toward the apex of a cone that closes soon.
+  job.process().overtravel_end = growth > 0 ? std::min(run_in, c.end_diameter / 2 / growth / 10) : run_in;
 }
 
 void takeSetup(const std::string& content, const std::string& name, GrindJob& job) {

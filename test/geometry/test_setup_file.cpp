@@ -187,6 +187,7 @@ TEST_F(WrittenSetup, IsRefusedWithAnotherFigureThanTheWantedOne) {
   EXPECT_EQ(asked.wanted, SetupFigure::kSwivel);
   EXPECT_DOUBLE_EQ(asked.job.process().setup_swivel, 42 * units::kDegree);
   EXPECT_EQ(asked.job.process().setup_height, 0);
+  EXPECT_EQ(asked.job.process().overtravel_end, 1e-3) << "to reach the feed in the air";
   ask(", swivel_deg: 43.32");
   EXPECT_EQ(readJobToSetUp(job_, "flute").before.value().setup_height,
             readJobFile("jobs/end_mill_d10_t4.yaml", "1").process().setup_height);

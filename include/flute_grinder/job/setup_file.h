@@ -26,8 +26,9 @@ constexpr const auto& rowsOf(SetupFigure) noexcept { return kSetupFigures; }
 /// Whether the solver finds the number: swivel, height, shift in X, the depths and the overtravels.
 bool isOfSetup(const JobField& field);
 
-/// Sets the figures of a set-up to what the solver starts with: 0, and a depth that leaves the asked core under an
-/// upright wheel.
+/// Sets the figures of a set-up to what the solver starts with: 0, but for flutes a depth that leaves the asked core
+/// under an upright wheel, and an overtravel of a millimetre beyond the small end, so that the wheel reaches its feed
+/// there.
 void clearSetup(GrindJob& job);
 
 /// Reads the set-up of the job's operation into `job`.

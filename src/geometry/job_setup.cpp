@@ -7,7 +7,6 @@
 #include "flute_grinder/job/rounded_job.h"
 #include "geometry/relief_setup.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string_view>

@@ -5,7 +5,6 @@
 #include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <vector>

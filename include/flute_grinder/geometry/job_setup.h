@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <variant>
-#include <vector>
 
 /// @file
 /// The set-up for a job: what `grind setup` and the panel show, and write into its set-up file.

@@ -31,10 +31,11 @@ void requireMaster(int argc, char** argv) {
 
 std::vector<char*> initRos(int argc, char** argv, const std::string& name, std::uint32_t options) {
   requireMaster(argc, argv);
-  // With a named log file, which is never opened, roscpp makes no folder. First, so that a name on the command line
-  // wins.
+  // With a named log file, which is never opened, roscpp makes no folder. Under another name, the parameter that makes
+  // it use the clock of a simulation is not there. First, so that what the command line says wins.
   static char no_log[] = "__log:=/dev/null";
-  std::vector<char*> arguments{no_log};
+  static char no_simulation[] = "/use_sim_time:=/flute_grinder/use_sim_time";
+  std::vector<char*> arguments{no_log, no_simulation};
   arguments.insert(arguments.end(), argv, argv + argc);
   auto count = static_cast<int>(arguments.size());
   ros::init(count, arguments.data(), name, options);

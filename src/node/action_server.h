@@ -12,9 +12,14 @@
 
 namespace grinder {
 
-/// An action server like actionlib::ActionServer, with two differences. Its owner subscribes to the cancels, which may
-/// need another thread: with two subscribers to a topic, roscpp reads an empty message twice, from freed memory. And
-/// the result says why a goal was canceled by the stamp of an earlier cancel.
+/// An action server like actionlib::ActionServer, with these differences:
+/// - Its owner subscribes to the cancels, which may need another thread: with two subscribers to a topic, roscpp reads
+///   an empty message twice, from freed memory.
+/// - The result says why a goal was canceled by the stamp of an earlier cancel.
+/// - A stamp more than a minute ahead of the system clock counts as the present time: actionlib adds a timeout to it,
+///   which throws near the end of ros::Time's range, and a cancel of the future cancels all goals until then.
+/// - Ids of more than 1000 bytes, which would be in every status, are ignored, and the status of a cancel that names no
+///   known goal ends.
 template <typename ActionSpec>
 class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
  public:
@@ -29,13 +34,16 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
                std::function<void(GoalHandle)> on_cancel, std::function<void(Result&, const std::string&)> recalled)
       : Base(on_goal, on_cancel), nh_(nh, name), recalled_(std::move(recalled)) {}
 
-  /// Publishes the result of a goal that this server has not seen.
-  void publish(const ActionResult& result) const { results_.publish(result); }
+  /// Takes a message that asks for cancels.
+  void cancel(const boost::shared_ptr<actionlib_msgs::GoalID>& id) {
+    if (isUsable(*id)) Base::cancelCallback(id);
+  }
 
  private:
   using Lock = boost::recursive_mutex::scoped_lock;
   using Feedback = typename Base::Feedback;
   using ActionFeedback = typename Base::ActionFeedback;
+  using ActionGoalPtr = boost::shared_ptr<typename Base::ActionGoal>;
 
   static constexpr int kQueue = 50;
 
@@ -45,7 +53,22 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
     statuses_ = nh_.advertise<actionlib_msgs::GoalStatusArray>("status", kQueue, true);
     this->status_list_timeout_ = ros::Duration(5);
     timer_ = nh_.createTimer(ros::Duration(0.2), [this](const ros::TimerEvent&) { publishStatus(); });
-    goals_ = nh_.subscribe("goal", kQueue, &Base::goalCallback, static_cast<Base*>(this));
+    goals_ = nh_.subscribe("goal", kQueue, &ActionServer::onGoal, this);
+  }
+
+  void onGoal(const ActionGoalPtr& goal) {
+    if (isUsable(goal->goal_id)) Base::goalCallback(goal);
+  }
+
+  /// Whether actionlib may have this id, with a stamp that it can use.
+  static bool isUsable(actionlib_msgs::GoalID& id) {
+    constexpr std::size_t longest = 1000;  // [bytes]
+    constexpr double ahead = 60;           // longest time ahead of the clock [s]
+    const ros::Time now = ros::Time::now();
+    if (!(id.stamp.toSec() <= now.toSec() + ahead)) id.stamp = now;
+    if (id.id.size() <= longest) return true;
+    ROS_WARN_STREAM("a goal's id of " << id.id.size() << " bytes is ignored; allowed: " << longest);
+    return false;
   }
 
   template <typename Message>
@@ -78,7 +101,9 @@ class ActionServer : public actionlib::ActionServerBase<ActionSpec> {
     message.header.stamp = ros::Time::now();
     for (auto at = this->status_list_.begin(); at != this->status_list_.end();) {
       message.status_list.push_back(at->status_);
-      const ros::Time dropped = at->handle_destruction_time_;
+      ros::Time& dropped = at->handle_destruction_time_;
+      // Of a cancel that names no known goal and has no stamp, as clients send it.
+      if (dropped.isZero() && at->handle_tracker_.expired()) dropped = message.header.stamp;
       const bool is_over = !dropped.isZero() && dropped + this->status_list_timeout_ < message.header.stamp;
       at = is_over ? this->status_list_.erase(at) : std::next(at);
     }

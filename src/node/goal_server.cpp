@@ -5,8 +5,6 @@
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/reasons.h"
-#include "flute_grinder/network/dropped_messages.h"
-#include "flute_grinder/network/peer_limits.h"
 #include "node/plain_name.h"
 
 #include <utility>
@@ -83,38 +81,14 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
         if (recalled.error_string.empty()) recalled = result(flute_grinder::GrindResult::CANCELED, why);
       });
   server_->start();
-  cancels_ = stops.subscribeToCancels([this](const actionlib_msgs::GoalID::ConstPtr& what) {
-    thread_.post([this, what] { server_->cancelCallback(what); });
-  });
-  dropped_topic_ = nh.resolveName("grind/goal");
-  setOnDropped(dropped_topic_, [this](std::uint32_t length, std::vector<std::uint8_t> head) {
-    rejectDropped(length, std::move(head));
-  });
+  cancels_ = stops.subscribeToCancels(
+      [this](const actionlib_msgs::GoalID::Ptr& what) { thread_.post([this, what] { server_->cancel(what); }); });
   thread_.start();
 }
 
 GoalServer::~GoalServer() {
   cancels_.shutdown();
-  setOnDropped(dropped_topic_, {});
   thread_.stop();
-}
-
-void GoalServer::rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const {
-  flute_grinder::GrindActionResult answer;
-  ros::serialization::IStream stream(head.data(), static_cast<std::uint32_t>(head.size()));
-  try {
-    std_msgs::Header header;
-    stream.next(header);
-    stream.next(answer.status.goal_id);
-  } catch (const ros::serialization::StreamOverrunException&) {
-    return;  // no client has an id of this length; the message's length is in the log
-  }
-  answer.header.stamp = ros::Time::now();
-  answer.status.status = actionlib_msgs::GoalStatus::REJECTED;
-  answer.status.text = "a goal of " + std::to_string(length) + " bytes; allowed: " + std::to_string(kMaxPeerMessage) +
-                       "; give fewer teeth";
-  answer.result = result(flute_grinder::GrindResult::INVALID_GOAL, answer.status.text);
-  server_->publish(answer);
 }
 
 void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }

@@ -54,8 +54,6 @@ class GoalServer {
     ros::SteadyTime last_feedback{};           ///< time of the last feedback while planning
   };
 
-  /// Answers a goal that was dropped because of its length. Called in roscpp's network thread.
-  void rejectDropped(std::uint32_t length, std::vector<std::uint8_t> head) const;
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
@@ -92,7 +90,6 @@ class GoalServer {
   ros::SteadyTime last_cycle_;  ///< time at which `cycles_` was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
-  std::string dropped_topic_;  ///< topic of the goals
   ServedQueue thread_;         ///< its queue serves the callbacks of the members below
   ros::Publisher job_;         ///< the goal about to start, because a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;

@@ -6,6 +6,7 @@
 #include "flute_grinder/network/master_watch.h"
 #include "flute_grinder/network/own_address.h"
 #include "flute_grinder/network/ros_api.h"
+#include "flute_grinder/network/start_ros.h"
 #include "node/drive_plugin.h"
 #include "node/end_signals.h"
 #include "node/grinder_node.h"
@@ -127,9 +128,8 @@ int main(int argc, char** argv) {
                                << "; allowed: one by each name");
     return 1;
   }
-  // Keeps ROS running to the end, so that errors are still logged.
-  const ros::NodeHandle nh;
-  const int status = run(nh, signals);
+  const ros::ServiceServer loggers = grinder::startRos();
+  const int status = run(ros::NodeHandle(), signals);
   ros::shutdown();
   return status;
 }

@@ -19,7 +19,7 @@ ProbeServer::ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, J
         if (recalled.message.empty()) recalled.message = why;
       });
   server_->start();
-  cancels_ = nh.subscribe("probe/cancel", 50, &Server::Base::cancelCallback, static_cast<Server::Base*>(server_.get()));
+  cancels_ = nh.subscribe("probe/cancel", 50, &Server::cancel, server_.get());
   motion_.start();
   messages_.start();
 }

@@ -53,8 +53,8 @@ bool StopServer::onFeedOverride(flute_grinder::SetFeedOverride::Request& request
   return true;
 }
 
-ros::Subscriber StopServer::subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::ConstPtr&)> pass_on) {
-  const auto cancel = [this, pass_on = std::move(pass_on)](const actionlib_msgs::GoalID::ConstPtr& what) {
+ros::Subscriber StopServer::subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::Ptr&)> pass_on) {
+  const boost::function<void(const actionlib_msgs::GoalID::Ptr&)> cancel = [this, pass_on](const auto& what) {
     if (gate_.cancel(*what)) loop_.postStop(MachineEvent::kCancel);
     pass_on(what);
   };

@@ -25,7 +25,7 @@ class StopServer {
   /// Serves the topic `~grind/cancel` for as long as the returned subscriber lives.
   /// @param pass_on called in this object's thread with each cancel, once the loop has it. It informs actionlib, which
   ///        may block on publishing, and which forwards only the first cancel of a goal.
-  ros::Subscriber subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::ConstPtr&)> pass_on);
+  ros::Subscriber subscribeToCancels(std::function<void(const actionlib_msgs::GoalID::Ptr&)> pass_on);
 
  private:
   bool onHold(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);

@@ -61,13 +61,17 @@ class TestPeers(unittest.TestCase):
         cancels = gc.publisher(cls.addClassCleanup, '/attacked/grind/cancel', GoalID)
         stops = gc.publisher(cls.addClassCleanup, '/attacked/stop', Stop)
         cls.stops = {'~hold': cls.grinder.hold, '~grind/cancel': lambda: cancels.publish(GoalID()),
-                     '~stop': lambda: stops.publish(Stop(request=Stop.CANCEL))}
+                     '~stop': lambda: stops.publish(Stop(request=Stop.HOLD))}
 
     @classmethod
     def into_stroke(cls):
         """Unless it is in one; the stroke takes eight minutes."""
-        if cls.run_ and not cls.run_.done and cls.grinder.fresh_state().state == GrinderState.RUNNING:
-            return
+        if cls.run_ and not cls.run_.done:
+            if cls.grinder.fresh_state().state == GrinderState.HELD:
+                assert cls.grinder.resume().success
+                cls.grinder.wait_state(GrinderState.RUNNING)
+            if cls.grinder.fresh_state().state == GrinderState.RUNNING:
+                return
         cls.grinder.make_ready()
         cls.run_ = cls.grinder.send(gc.paper(feed=4 * MM_MIN, clearance=0.2 * MM, depth=0.1 * MM, infeed=0.1 * MM))
         cls.run_.wait_in_stroke(-0.99 * MM)

@@ -14,12 +14,10 @@ import unittest
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
-from rosgraph_msgs.msg import Clock
 
 import grinder_client as gc
 import path_checks as checks
 from grinder_client import A, LIFT, MM, MM_MIN, STROKE, X, Y, Z
-from test_diagnostics import Reports
 
 SEED = 20
 
@@ -264,22 +262,3 @@ class TestCancelOfTheFuture(NodeTest):
         self.assertEqual(runs[-1].code, GrindResult.CANCELED)
         self.assertRegex(runs[-1].text, r'^a cancel was stamped [1-5]\d?(\.\d+)? s in the future, and cancels every goal until then; '
                          'allowed: clients whose clocks agree$')
-
-
-class TestClock(NodeTest):
-    """The computer's clock, and that of a simulation, are for stamps alone."""
-
-    def setUp(self):
-        rospy.set_param('/use_sim_time', True)
-        self.addCleanup(rospy.delete_param, '/use_sim_time')
-        self.start(machine())
-
-    def test_stamps_and_diagnostics(self):
-        now = time.time()
-        self.assertAlmostEqual(self.client.fresh_state().header.stamp.to_sec(), now, delta=gc.PATIENCE)
-        reports = Reports(self.addCleanup, self.node.name)
-        clock = gc.publisher(self.addCleanup, '/clock', Clock)
-        for set_to in (now + 3600, now):
-            for _ in range(2):
-                clock.publish(Clock(clock=rospy.Time.from_sec(set_to)))
-                reports.mark()

@@ -90,8 +90,8 @@ class GoalServer {
   ros::SteadyTime last_cycle_;  ///< time at which `cycles_` was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
-  ServedQueue thread_;         ///< its queue serves the callbacks of the members below
-  ros::Publisher job_;         ///< the goal about to start, because a recorder may connect to its sender too late
+  ServedQueue thread_;  ///< its queue serves the callbacks of the members below
+  ros::Publisher job_;  ///< the goal about to start, because a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;
   ros::Subscriber cancels_;
 };

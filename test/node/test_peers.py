@@ -15,7 +15,7 @@ import rosgraph
 import roslib.message
 import rospy
 from actionlib_msgs.msg import GoalID
-from flute_grinder.msg import GrindActionGoal, GrinderState, Stop
+from flute_grinder.msg import GrindActionGoal, GrinderState, GrindResult, Stop
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
 import grinder_client as gc
@@ -137,9 +137,6 @@ class TestPeers(unittest.TestCase):
 
         return send
 
-    def test_nothing(self):
-        self.check(lambda: None, 'nothing')
-
     def test_messages_with_fields_at_their_extremes(self):
         """Among them are stops."""
         self.check(self.send_to_all(test_fuzz.Fuzzer(9)), '20,000 messages with fields at random', goes_on=False)
@@ -152,35 +149,32 @@ class TestPeers(unittest.TestCase):
         """roscpp reads one from freed memory for the second subscription to a topic in a process."""
         self.check(self.send_to_all(Noise(9, 0)), '20,000 empty messages')
 
-    def test_long_cancels(self):
+    def test_long_cancel(self):
         cancels = gc.publisher(self.addCleanup, '/attacked/grind/cancel', GoalID)
-        for size in (300000, 64 << 20):
-            self.check(lambda size=size: cancels.publish(GoalID(id='x' * size)), 'a cancel of %d kB' % (size / 1000))
+        self.check(lambda: cancels.publish(GoalID(id='x' * (64 << 20))), 'a cancel of 64 MiB')
 
-    def test_goals_of_too_many_teeth(self):
+    def test_goal_of_too_many_teeth(self):
         goals = gc.publisher(self.addCleanup, '/attacked/grind/goal', GrindActionGoal)
-        for teeth in (40000, 8000000):
-            goal = gc.goal_of(gc.paper(tooth_angles=[i * 1e-7 for i in range(teeth)]))
-            self.check(lambda goal=goal: goals.publish(GrindActionGoal(goal_id=GoalID(id='many'), goal=goal)),
-                       'a goal of %d teeth' % teeth)
+        goal = gc.goal_of(gc.paper(tooth_angles=[i * 1e-7 for i in range(8000000)]))
+        self.check(lambda: goals.publish(GrindActionGoal(goal_id=GoalID(id='many'), goal=goal)), 'a goal of 8 million teeth')
+        self.grinder.make_ready()
+        run = self.grinder.send(goal).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))
+        self.assertRegex(run.text, '^cutter.teeth = 8000000; allowed: ')
 
     def test_flood_of_goals(self):
         goals = gc.publisher(self.addCleanup, '/attacked/grind/goal', GrindActionGoal, queue_size=None)
         goal = gc.goal_of(gc.paper())
 
         def flood():
-            for i in range(2000):
-                goals.publish(GrindActionGoal(goal_id=GoalID(id=str(i), stamp=rospy.Time.now()), goal=goal))
+            for _ in range(2000):
+                goals.publish(GrindActionGoal(goal_id=GoalID(id=str(time.monotonic_ns()), stamp=rospy.Time.now()), goal=goal))
 
         self.check(flood, '2000 goals')
 
     def test_connections_left_open(self):
-        for count, port, of in ((300, self.tcpros_port, 'TCPROS'), (1100, self.tcpros_port, 'TCPROS'), (1100, self.api_port, 'XML-RPC')):
-            left = []
-            self.check(lambda: left or left.extend(self.connect(port) for _ in range(count)), '%d connections of %s' % (count, of))
-            for connection in left:
-                connection.close()
-            gc.poll(lambda: len(os.listdir('/proc/%d/fd' % self.node.process.pid)) < 100, 'the end of the connections', interval=0.1)
+        left = []
+        self.check(lambda: left or left.extend(self.connect(self.tcpros_port) for _ in range(1100)), '1100 connections left open')
         for consequence in ('Too many open files', 'no ROS master answers'):
             self.assertNotIn(consequence, self.node.output)
 

@@ -12,7 +12,7 @@ import time
 import unittest
 
 import rospy
-from actionlib_msgs.msg import GoalID, GoalStatus
+from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from flute_grinder.msg import GrindActionResult, GrinderState, GrindResult, Stop
 
 import grinder_client as gc
@@ -250,7 +250,15 @@ class TestTheEnd(NodeTest):
         self.assertEqual(reported, {run.id})
 
 
-class TestCancelOfTheFuture(NodeTest):
+class TestOddCancels(NodeTest):
+    def test_cancel_of_an_unknown_goal_does_not_stay_for_ever(self):
+        """actionlib's clients send it without a stamp."""
+        statuses = gc.received(self.addCleanup, self.node.name + '/grind/status', GoalStatusArray)
+        gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID).publish(GoalID(id='gone'))
+        has = lambda: 'gone' in {status.goal_id.id for status in statuses[-1].status_list}
+        gc.poll(lambda: statuses and has(), 'its status')
+        gc.poll(lambda: not has(), 'the end of its status')
+
     def test_goals_that_it_cancels_are_told_so(self):
         self.start(machine())
         cancels = gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID)

@@ -26,6 +26,8 @@ CALLER = '/peer'
 MESSAGES = 20000
 # The soft limit of a process that nobody has given another.
 DESCRIPTORS = 1024
+# What a mistake may cost: some copies of a message of 64 MB [MB].
+MOST_MEMORY = 256
 
 
 class Noise:
@@ -113,6 +115,7 @@ class TestPeers(unittest.TestCase):
                 self.into_stroke()
             took.append('%s %.2f s' % (name, self.time_to(stop)))
         self.assertEqual(self.api.getPid(CALLER)[2], self.node.process.pid)
+        self.assertLess(self.memory() - before, MOST_MEMORY)
         print('%-44s | %3.0f MB, from %3.0f | %s' % (what, self.memory(), before, ', '.join(took)))
 
     def topics(self, maker):

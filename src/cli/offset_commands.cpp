@@ -3,7 +3,7 @@
 #include "cli/completion.h"
 #include "cli/offsets.h"
 #include "cli/probe.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
 
 #include <algorithm>
 #include <memory>

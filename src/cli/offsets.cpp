@@ -8,14 +8,14 @@
 #include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/network/user_at_host.h"
+#include "flute_grinder/setup/touch_off.h"
 
 #include <unistd.h>
 
@@ -45,7 +45,7 @@ void requireJob(int axis, const std::string& job, const std::string& command) {
 }
 
 /// The basis of an offset. @param options options with a job file, or without one for no particular job.
-/// @throw JobFileError
+/// @throw FileError
 template <typename Options>
 OffsetBasis basisFor(const Options& options, OffsetMethod method) {
   if (!options.job.empty()) return basisOf(goalFromFile(options.job, options.operation), method);

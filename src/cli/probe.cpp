@@ -6,10 +6,10 @@
 #include "cli/state_watch.h"
 #include "cli/zeros.h"
 #include "flute_grinder/ProbeAction.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/network/user_at_host.h"
 
@@ -35,7 +35,7 @@ std::string shown(double si, bool angle) {
   return format("%.4f %s", si / scale, angle ? "deg" : "mm");
 }
 
-/// @throw std::invalid_argument for contradictory arguments. @throw JobFileError
+/// @throw std::invalid_argument for contradictory arguments. @throw FileError
 flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
   flute_grinder::ProbeGoal goal;
   goal.cycle = static_cast<std::uint8_t>(row.value);

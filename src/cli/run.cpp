@@ -7,8 +7,9 @@
 #include "cli/stop_keys.h"
 #include "cli/stream_watch.h"
 #include "flute_grinder/GrindAction.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
@@ -163,9 +164,9 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
   flute_grinder::GrindGoal goal;
   try {
     goal = goalFromFile(options.job, options.operation);
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     const std::string done = options.operation.empty() ? doneOperations(node, options.job) : "";
-    throw JobFileError(error.what() + (done.empty() ? "" : "; " + done));
+    throw FileError(error.what() + (done.empty() ? "" : "; " + done));
   }
   goal.dry_run = options.dry_run;
   goal.discard = options.discard;

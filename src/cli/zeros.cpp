@@ -5,8 +5,8 @@
 #include "cli/offsets.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 
 #include <cstdio>

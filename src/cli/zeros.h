@@ -25,7 +25,7 @@ struct ZerosOptions {
 
 /// The length from the flange's face to the wheel's upper face [m], as given or from the wheel file of a job's
 /// operation.
-/// @param operation number from 0. @throw std::invalid_argument if neither has it; JobFileError
+/// @param operation number from 0. @throw std::invalid_argument if neither has it; FileError
 double flangeOf(const JobFile& job, const std::optional<double>& flange_mm);
 
 /// Prints the zero points of a job's X, Y and Z in machine coordinates, by the geometry of options.parameters. @return

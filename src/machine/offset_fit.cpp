@@ -1,7 +1,7 @@
 #include "flute_grinder/machine/offset_fit.h"
 
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/swivel.h"
 
 #include <array>

@@ -1,7 +1,7 @@
 #include "flute_grinder/machine/offset_limits.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 
 #include <cmath>
 

@@ -1,10 +1,10 @@
 #include "flute_grinder/messages/offset_basis.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 #include "node/offset_server.h"
 
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "node/plain_name.h"
 

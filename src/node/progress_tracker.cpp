@@ -1,8 +1,9 @@
 #include "node/progress_tracker.h"
 
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>

@@ -7,7 +7,7 @@
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/network/service_call.h"

@@ -1,8 +1,9 @@
 #include "panel/plain_words.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/wheel_known.h"

@@ -1,13 +1,14 @@
 #include "panel/setup_dialog.h"
 
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/drive/parameters.h"
-#include "flute_grinder/geometry/job_setup.h"
-#include "flute_grinder/geometry/setup_sheet.h"
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/geometry/write_setup.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
+#include "flute_grinder/setup/job_setup.h"
+#include "flute_grinder/setup/setup_sheet.h"
+#include "flute_grinder/setup/touch_off.h"
+#include "flute_grinder/setup/write_setup.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -38,7 +39,7 @@ std::vector<std::string> digestsOf(const std::string& file) {
   std::vector<std::string> digests;
   try {
     for (const GrindJob& job : readJobFile(file, "1").ofAllOperations()) digests.push_back(jobDigest(job));
-  } catch (const JobFileError&) {
+  } catch (const FileError&) {
     // Such a file is no job's that was ever started.
   }
   return digests;

@@ -1,6 +1,6 @@
 #include "panel/touch_off_box.h"
 
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel/panel_button.h"

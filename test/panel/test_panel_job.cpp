@@ -1,7 +1,7 @@
 // The panel against the grinder's node with the simulated drive: a job, and the set-up sheet, which is solved for this
 // machine, and written into the job file.
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "german.h"
 #include "panel_fixture.h"

@@ -1,6 +1,6 @@
 // The jog buttons of the panel, against a grinder of the test's own.
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "stage.h"
 
 #include <QAbstractScrollArea>

@@ -16,7 +16,7 @@ namespace grinder {
 struct JobFile;
 
 /// The goal of a job file, with the names of the file and of its wheel file.
-/// @throw JobFileError if a file cannot be read.
+/// @throw FileError if a file cannot be read.
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation = "");
 flute_grinder::GrindGoal goalFromFile(const JobFile& file);
 

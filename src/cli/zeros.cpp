@@ -65,7 +65,7 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!zero) return 1;
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
-    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.yes)) return status;
+    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.answers)) return status;
   }
   printZero(*zero, options.json);
   return 0;

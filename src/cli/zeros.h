@@ -18,8 +18,8 @@ struct ZerosOptions {
   std::optional<double> flange_mm;  ///< flange length instead of the wheel file's
   std::string parameters;           ///< YAML of the machine
   std::string urdf;
-  bool set = false;  ///< sets them as work offsets, by the grinder's own geometry
-  bool yes = false;  ///< large changes are made without a question
+  bool set = false;                  ///< sets them as work offsets, by the grinder's own geometry
+  std::vector<std::string> answers;  ///< answers given beforehand
   bool json = false;
 };
 

@@ -62,8 +62,6 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
-  question_->addDanger("write_over", "Write it", "Replace the set-up of this operation", 0, 0,
-                       [this] { beginToWrite(); });
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
   layout->addWidget(buttons_);
@@ -116,7 +114,8 @@ void SetupDialog::ask() {
   if (isOfLastJob() && !last_.finished) {
     text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
   }
-  question_->ask(text);
+  question_->ask(
+      text, {}, {{"write_over", "Write it", "Replace the set-up of this operation", true, [this] { beginToWrite(); }}});
   showQuestion(true);
 }
 

@@ -36,13 +36,4 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets);
 /// The work offsets that do not fit a goal.
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
 
-/// The warnings of a dry run or a plan about such offsets: none, or one text.
-std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
-
-/// Why offsets do not fit, and the remedy, for the operator; empty if all fit.
-std::string text(const std::vector<OffsetMismatch>& mismatches);
-
-/// The axes in a list of mismatches whose offset can be computed, e.g. "Y and Z".
-std::string computable(const std::vector<OffsetMismatch>& mismatches);
-
 }  // namespace grinder

@@ -3,11 +3,11 @@
 /// Figures per setpoint or per cycle are the item rates: 10M items/s are 100 ns each.
 
 #include "drive/simulated_drive.h"
-#include "flute_grinder/collision/job_collision.h"
+#include "flute_grinder/check/job_collision.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/z_law.h"
 #include "jobs.h"
 
 #include <benchmark/benchmark.h>

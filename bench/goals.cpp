@@ -9,8 +9,8 @@ namespace {
 
 flute_grinder::GrindGoal goalOf(const GrindJob& job) {
   flute_grinder::GrindGoal goal = goalFromJob(job);
-  goal.discard = true;              // whatever the job before has left in the journal
-  goal.ignore_offset_check = true;  // nobody has set them
+  // Whatever the job before has left in the journal, and though nobody has set the offsets.
+  goal.answers = {"discard", "ignore-offsets"};
   return goal;
 }
 

@@ -1,7 +1,7 @@
 // Prints the paper's Table 1: the curve of its cutter, interpolated in odd-even steps of 0.2.
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/step_table.h"
-#include "flute_grinder/curve/units.h"
 
 #include <cstdio>
 

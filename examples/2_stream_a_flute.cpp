@@ -1,9 +1,9 @@
 // Streams one flute as CSV: a setpoint for each cycle of 1 ms, from rest to rest, at a constant feed along the cutting
 // edge.
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
 #include "flute_grinder/curve/s_curve_profile.h"
-#include "flute_grinder/curve/units.h"
 
 #include <cstdio>
 

@@ -1,8 +1,8 @@
 // Holds a flute in the middle, and continues it: the axes come to rest on the curve, and nothing of the path is lost.
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
 #include "flute_grinder/curve/s_curve_profile.h"
-#include "flute_grinder/curve/units.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Plans a job and streams it: held in the middle of the stroke, then continued at half the feed.
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"

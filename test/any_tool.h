@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
-#include "flute_grinder/curve/units.h"
 
 namespace grinder::test_support {
 

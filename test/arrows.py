@@ -11,17 +11,18 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 FOLDERS = (ROOT / 'src', ROOT / 'include/flute_grinder')
 ROW = re.compile(r'(?m)^\| `(\w+)` \|.*\| ?([^|]*?) ?\|$')
-INSTALLED = ('curve', 'drive')
+INSTALLED = ('base', 'curve', 'drive')
 # `module`, or of a module only `some.h`, `headers.h`
 ARROW = re.compile(r'`(\w+)`(?: \(([^)]+)\))?')
 INCLUDE = re.compile(r'(?m)^#include [<"](.+?)[>"]')
-CORE = ('curve', 'job', 'motion', 'machine')
+CORE = ('base', 'curve', 'job', 'motion', 'machine')
 # Not what is for a terminal: programs of our own keep the locale C.
 LOCALE = re.compile(r'\b(?:ato[fl]|sto(?:f|d|ld)|strto(?:f|d|ld)|v?sn?printf|v?asprintf|vf?printf|fprintf|v?[fs]?scanf|setlocale|'
                     r'locale::global)\((?!stderr)')
-KNOWS = '#include "flute_grinder/job/c_locale.h"'
+KNOWS = '#include "flute_grinder/base/c_locale.h"'
 LIBRARIES = {'the standard library': '[a-z_]+', 'Eigen': r'Eigen/\w+', 'yaml-cpp': r'yaml-cpp/\w+\.h', 'OpenSSL': r'openssl/\w+\.h',
-             'urdfdom': r'urdf_\w+/\w+\.h', 'tinyxml2': r'tinyxml2\.h'}
+             'urdfdom': r'urdf_\w+/\w+\.h', 'tinyxml2': r'tinyxml2\.h',
+             'POSIX': r'(?:sys/\w+|fcntl|unistd)\.h'}
 
 
 def read_modules():

@@ -45,7 +45,7 @@ await_grinder env
 rosrun flute_grinder grind enable
 rosrun flute_grinder grind run "$job" --dry-run
 rosrun flute_grinder grind confirm-swivel 32.34
-rosrun flute_grinder grind run "$job" --ignore-offset-check
+rosrun flute_grinder grind run "$job" --answer ignore-offsets
 rosrun flute_grinder grind report --last --from "$folder/journal.history/grinder" -o "$folder/report.html"
 grep -q 'own measurement decides' "$folder/report.html"
 # It does not start without parameters.

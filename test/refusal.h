@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/yaml_text.h"
+#include "flute_grinder/base/file_error.h"
 
 #include <string>
 
@@ -11,7 +11,7 @@ template <typename Call>
 std::string refusalOf(const Call& call) {
   try {
     call();
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     return error.what();
   }
   return "";

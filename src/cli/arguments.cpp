@@ -25,8 +25,18 @@ void addCsv(CLI::App& command, std::string& csv, const char* description) {
 
 void addJson(CLI::App& command, bool& json) { command.add_flag("--json", json, "print only JSON"); }
 
-CLI::Option* addYes(CLI::App& command, bool& yes) {
-  return command.add_flag("--yes", yes, "do not ask before a change by more than the parameter offset_change_limit");
+CLI::Option* addAnswer(CLI::App& command, std::vector<std::string>& answers, const std::vector<NeedAnswer>& possible) {
+  std::vector<std::string> names;
+  std::string listed;
+  for (const NeedAnswer answer : possible) {
+    names.emplace_back(toString(answer));
+    listed += (listed.empty() ? "" : "|") + names.back();
+  }
+  return command
+      .add_option("--answer", answers, "answer beforehand what the grinder would ask; may be given several times")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("{" + listed + "}");
 }
 
 void addCountedJob(CLI::App& command, const char* name, int& number) {

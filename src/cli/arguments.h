@@ -1,7 +1,8 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/machine/need.h"
 
 #include <CLI/CLI.hpp>
 
@@ -9,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -34,8 +36,9 @@ void addCsv(CLI::App& command, std::string& csv, const char* description);
 /// Adds `--json`.
 void addJson(CLI::App& command, bool& json);
 
-/// Adds `--yes`, which skips the question before a large change of a work offset.
-CLI::Option* addYes(CLI::App& command, bool& yes);
+/// Adds `--answer`, which answers beforehand what the grinder needs to be told.
+/// @param possible the answers that this command may give.
+CLI::Option* addAnswer(CLI::App& command, std::vector<std::string>& answers, const std::vector<NeedAnswer>& possible);
 
 /// Adds the choice of one of a bag's jobs, from 1. @param name name of the option.
 void addCountedJob(CLI::App& command, const char* name, int& number);

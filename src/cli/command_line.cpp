@@ -2,7 +2,7 @@
 
 #include "cli/completion.h"
 #include "cli/usage.h"
-#include "flute_grinder/job/escaped.h"
+#include "flute_grinder/base/escaped.h"
 
 #include <cstdio>
 #include <memory>

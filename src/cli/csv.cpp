@@ -1,7 +1,7 @@
 #include "cli/csv.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/c_locale.h"
+#include "flute_grinder/base/c_locale.h"
+#include "flute_grinder/base/units.h"
 
 #include <cerrno>
 #include <cstdarg>

@@ -2,7 +2,8 @@
 #include "cli/csv.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
-#include "flute_grinder/job/escaped.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/network/init_ros.h"
 
 #include <ros/ros.h>

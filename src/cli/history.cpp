@@ -3,17 +3,17 @@
 #include "cli/csv.h"
 #include "cli/machine_file.h"
 #include "cli/time_text.h"
-#include "flute_grinder/geometry/on_all_cores.h"
-#include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/job/file_error.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/on_all_cores.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/regular_file.h"
 #include "flute_grinder/record/record_file.h"
+#include "flute_grinder/record/tool_records.h"
 #include "flute_grinder/record/verdict.h"
-#include "flute_grinder/report/tool_records.h"
 
 #include <ros/names.h>
 
@@ -374,7 +374,7 @@ std::string doneOperations(const std::string& node, const std::string& job) {
   GrindJob tool;
   try {
     tool = readJobFile(job, "1");
-  } catch (const JobFileError&) {
+  } catch (const FileError&) {
     return "";
   }
   if (tool.operations.size() < 2) return "";

@@ -40,8 +40,8 @@ std::string tolerancesFile(const std::string& path);
 /// Lists the records of one or many grinders with the verdict on each, the newest last. Folders and records that cannot
 /// be read are named, and the rest is listed. @param node see historyFolder().
 /// @return the exit status: 2 if a folder or a record could not be read, or a new verdict could not be kept.
-/// @throw std::invalid_argument if no record can match, JobFileError if the tolerances cannot be read, FileError if
-/// the CSV file cannot be written.
+/// @throw std::invalid_argument if no record can match, FileError if the tolerances cannot be read or the
+/// CSV file cannot be written.
 int printHistory(const std::string& node, const HistoryOptions& options);
 
 }  // namespace grinder

@@ -94,14 +94,10 @@ void addRun(Commands& commands) {
   addJob(command, options->job);
   addOperation(command, options->operation);
   command.add_flag("--dry-run", options->dry_run, "plan, check and show the path, but move nothing");
-  auto* go_on =
-      command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
-  command
-      .add_flag("--discard", options->discard,
-                "start even if the grinder's journal is damaged or holds another, unfinished job, and discard that job")
-      ->excludes(go_on);
-  command.add_flag("--ignore-offset-check", options->ignore_offset_check,
-                   "start even if a work offset was never set, or was set for another tool, wheel or set-up");
+  command.add_flag("--continue", options->go_on, "continue at the first unfinished pass in the grinder's journal");
+  addAnswer(command, options->answers,
+            {NeedAnswer::kDiscard, NeedAnswer::kConfirmWheel, NeedAnswer::kFitOffsets, NeedAnswer::kIgnoreOffsets,
+             NeedAnswer::kConfirmSwivel});
   addCsv(command, options->csv, "write the streamed setpoints to this file");
 }
 

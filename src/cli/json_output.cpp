@@ -1,7 +1,7 @@
 #include "cli/json_output.h"
 
 #include "cli/state_watch.h"
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/offset_basis.h"
 

@@ -2,8 +2,8 @@
 
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/WorkOffsets.h"
+#include "flute_grinder/check/planned_job.h"
 #include "flute_grinder/messages/json.h"
-#include "flute_grinder/plan/planned_job.h"
 
 namespace grinder {
 

@@ -1,6 +1,7 @@
 #include "cli/machine_file.h"
 
-#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/read_file.h"
 #include "flute_grinder/job/yaml_text.h"
 
 #include <ros/package.h>
@@ -74,7 +75,7 @@ class Parameters {
   }
 
   [[noreturn]] void refuse(const YAML::Node& node, const std::string& what) const {
-    throw JobFileError(name_ + ":" + std::to_string(node.Mark().line + 1) + ": " + what);
+    throw FileError(name_ + ":" + std::to_string(node.Mark().line + 1) + ": " + what);
   }
 
   std::string name_;
@@ -102,7 +103,7 @@ MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const 
   std::string name;
   for (const std::string& file : parameters) {
     const YAML::Node root = parseYaml(readTextFile(file), file);
-    if (!root.IsMap()) throw JobFileError(file + ":1: not a map of parameters");
+    if (!root.IsMap()) throw FileError(file + ":1: not a map of parameters");
     Parameters(file).addTo(values, root, "");
     name += (name.empty() ? "" : ", ") + file;
   }
@@ -123,8 +124,8 @@ int runMachine(const MachineOptions& options) {
 std::string packageFile(const std::string& path) {
   const std::string package = ros::package::getPath("flute_grinder");
   if (package.empty()) {
-    throw JobFileError("the package flute_grinder is not found, nor its " + path +
-                       "; source build/devel/setup.bash of the clone in this shell");
+    throw FileError("the package flute_grinder is not found, nor its " + path +
+                    "; source build/devel/setup.bash of the clone in this shell");
   }
   return package + "/" + path;
 }

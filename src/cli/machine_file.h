@@ -15,7 +15,7 @@ struct MachineFiles {
 /// Reads the machine from the files that roslaunch loads, without ROS running.
 /// @param parameters YAML, the node's parameters; each file overrides the files before it.
 /// @param urdf the robot description.
-/// @throw JobFileError if a file cannot be read, has a key twice, or a number that roslaunch would read differently;
+/// @throw FileError if a file cannot be read, has a key twice, or a number that roslaunch would read differently;
 ///        ParameterError or std::invalid_argument if the machine cannot be used.
 MachineFiles readMachineFiles(const std::vector<std::string>& parameters, const std::string& urdf);
 
@@ -30,7 +30,7 @@ struct MachineOptions {
 /// bag cannot be written, or would replace another.
 int runMachine(const MachineOptions& options);
 
-/// The path of a file of this package, e.g. `config/grinder.yaml`. @throw JobFileError if the shell does not know the
+/// The path of a file of this package, e.g. `config/grinder.yaml`. @throw FileError if the shell does not know the
 /// package.
 std::string packageFile(const std::string& path);
 

@@ -3,7 +3,7 @@
 #include "cli/completion.h"
 #include "cli/offsets.h"
 #include "cli/probe.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
 
 #include <algorithm>
 #include <memory>
@@ -23,12 +23,8 @@ void addOffsets(Commands& commands) {
       ->check(offsetRefusal);
   command.add_option("--job", options->job, "with --set: job for which it is set; y and z need it")
       ->type_name(kYamlFile);
-  command
-      .add_option("--fit", options->fit,
-                  "fit Y and Z to this job, of the same wheel and swivel as the job for which they were set")
-      ->type_name(kYamlFile);
   addOperation(command, options->operation);
-  addYes(command, options->yes);
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset});
   addJson(command, options->json);
 }
 
@@ -47,7 +43,7 @@ void addTouchOff(Commands& commands) {
       });
   command.add_option("--job", options->job, "job to be ground; y and z need it")->type_name(kYamlFile);
   addOperation(command, options->operation);
-  addYes(command, options->yes);
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset});
 }
 
 void addConfirmWheel(Commands& commands) {
@@ -89,7 +85,7 @@ void addCycle(Commands& commands, CLI::App& probe, const ProbingCycleRow& row) {
     command.add_option("--job", options->job, "with --at: job to be ground")->type_name(kYamlFile);
   }
   addOperation(command, options->operation);
-  addYes(command, options->yes);
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset});
 }
 
 void addProbe(Commands& commands) {

@@ -1,6 +1,6 @@
 #include "cli/offsets.h"
 
-#include "cli/call.h"
+#include "cli/answers.h"
 #include "cli/json_output.h"
 #include "cli/offset_watch.h"
 #include "cli/time_text.h"
@@ -8,20 +8,17 @@
 #include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetOffset.h"
 #include "flute_grinder/TouchOff.h"
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/network/user_at_host.h"
-
-#include <unistd.h>
+#include "flute_grinder/setup/touch_off.h"
 
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <stdexcept>
 
 namespace grinder {
@@ -45,35 +42,13 @@ void requireJob(int axis, const std::string& job, const std::string& command) {
 }
 
 /// The basis of an offset. @param options options with a job file, or without one for no particular job.
-/// @throw JobFileError
+/// @throw FileError
 template <typename Options>
 OffsetBasis basisFor(const Options& options, OffsetMethod method) {
   if (!options.job.empty()) return basisOf(goalFromFile(options.job, options.operation), method);
   OffsetBasis basis;
   basis.method = method;
   return basis;
-}
-
-/// Asks at the terminal whether to make a large change; false without a terminal.
-bool confirmed() {
-  if (isatty(STDIN_FILENO) == 0) {
-    std::fprintf(stderr, "--yes sets it all the same\n");
-    return false;
-  }
-  std::fprintf(stderr, "Set it? [y/N] ");
-  std::string answer;
-  std::getline(std::cin, answer);
-  return answer == "y" || answer == "Y";
-}
-
-/// Prints why an offset was not set. @param set_it_all_the_same carried out if the change was refused only because
-/// it was large, and is confirmed. @return the exit status.
-template <typename Response, typename Set>
-int settle(const std::optional<Response>& response, const Set& set_it_all_the_same) {
-  if (!response) return 1;
-  if (response->success) return 0;
-  const int status = fail(response->message);
-  return response->large_change && confirmed() ? set_it_all_the_same() : status;
 }
 
 /// @param node resolved name.
@@ -154,36 +129,6 @@ int show(ros::NodeHandle& nh, bool json) {
   return 0;
 }
 
-/// Computes, from their bases, the offsets of Y and Z that do not fit a job, and sets either all of them or none.
-/// @return the exit status; 1 if an offset must be set anew.
-int fit(ros::NodeHandle& nh, const flute_grinder::GrindGoal& goal, bool large_change_ok) {
-  const std::optional<flute_grinder::WorkOffsets> message = workOffsets(nh);
-  if (!message) return noGrinder(nh);
-  const WorkOffsets offsets = fromMessage(*message);
-  const auto was = [&](int axis) -> const WorkOffset& { return offsets.axes[static_cast<std::size_t>(axis)]; };
-  int status = 0;
-  bool all = true;
-  const std::vector<OffsetMismatch> found = mismatches(offsets, goal);
-  for (const OffsetMismatch& mismatch : found) {
-    const bool is_zero_point = mismatch.what != "wheel" && mismatch.what != "A";
-    if (mismatch.change || !is_zero_point) continue;
-    status = fail(mismatch.reason + "; set it anew");
-    all = all && mismatch.axis == kX;
-  }
-  std::vector<int> set;
-  for (const OffsetMismatch& mismatch : found) {
-    if (!all || !mismatch.change) continue;
-    const OffsetBasis basis = basisOf(goal, OffsetMethod::kComputed);
-    if (const int refused =
-            setWorkOffset(nh, mismatch.axis, was(mismatch.axis).value + *mismatch.change, basis, large_change_ok)) {
-      for (const int axis : set) setWorkOffset(nh, axis, was(axis).value, was(axis).basis, true);
-      return refused;
-    }
-    set.push_back(mismatch.axis);
-  }
-  return status;
-}
-
 }  // namespace
 
 int confirmWheel(const std::string& node, const ConfirmWheelOptions& options) {
@@ -205,15 +150,15 @@ int sayReclamped(const std::string& node) {
   return status != 0 ? status : succeed("a tool was clamped; where its teeth are is not known");
 }
 
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok) {
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
+                  const std::vector<std::string>& answers) {
   flute_grinder::SetOffset::Request request;
   request.axis = static_cast<std::uint8_t>(axis);
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
-  request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
-  return settle(ask<flute_grinder::SetOffset>(nh, "set_offset", request),
-                [&] { return setWorkOffset(nh, axis, value, basis, true); });
+  request.answers = answers;
+  return callAnswering<flute_grinder::SetOffset>(nh, "set_offset", request) ? 0 : 1;
 }
 
 std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh) {
@@ -237,11 +182,9 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
     const double value = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
-    if (const int status = setWorkOffset(nh, axis, value, basis, options.yes)) return status;
+    if (const int status = setWorkOffset(nh, axis, value, basis, options.answers)) return status;
   }
-  const int fitted = options.fit.empty() ? 0 : fit(nh, goalFromFile(options.fit, options.operation), options.yes);
-  const int shown = show(nh, options.json);
-  return fitted != 0 ? fitted : shown;
+  return show(nh, options.json);
 }
 
 int runTouchOff(const std::string& node, const TouchOffOptions& options) {
@@ -256,7 +199,7 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   request.set_by = userAtHost();
   const OffsetBasis basis = basisFor(options, OffsetMethod::kTouchOff);
   request.basis = toMessage(basis);
-  request.large_change_ok = static_cast<std::uint8_t>(options.yes);
+  request.answers = options.answers;
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job, options.operation);
@@ -267,12 +210,8 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
     if (!refused.empty()) return fail(refused);
     request.position = touchY(job, request.position);
   }
-  const std::optional<flute_grinder::TouchOff::Response> response =
-      ask<flute_grinder::TouchOff>(nh, "touch_off", request);
-  // Sets the value that was confirmed, because the axis may have moved since.
-  if (const int status = settle(response, [&] { return setWorkOffset(nh, axis, response->value, basis, true); })) {
-    return status;
-  }
+  const auto response = callAnswering<flute_grinder::TouchOff>(nh, "touch_off", request);
+  if (!response) return 1;
   const auto shown = [&](double si) { return text(Quantity{si, unitOf(axis, 0)}, 9); };
   std::printf("%s: work offset %s; it is at %s of the work\n", axisName(axis).c_str(), shown(response->value).c_str(),
               shown(request.position).c_str());

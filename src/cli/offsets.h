@@ -16,21 +16,20 @@ constexpr const char* kAxisLetters = "xyza";
 
 /// Arguments of `grind offsets`.
 struct OffsetsOptions {
-  std::vector<std::string> set;  ///< AXIS=VALUE, in mm or deg
-  std::string job;               ///< job file for which the offsets are set
-  std::string fit;               ///< job file to which the computable offsets are fitted
-  std::string operation;         ///< operation of that job file; empty for the only one
-  bool yes = false;              ///< large changes are made without a question
+  std::vector<std::string> set;      ///< AXIS=VALUE, in mm or deg
+  std::string job;                   ///< job file for which the offsets are set
+  std::string operation;             ///< operation of that job file; empty for the only one
+  std::vector<std::string> answers;  ///< answers given beforehand
   bool json = false;
 };
 
 /// Arguments of `grind touch-off`.
 struct TouchOffOptions {
-  std::string axis;          ///< a letter of kAxisLetters
-  std::optional<double> at;  ///< for Y, diameter of the blank touched; else the work position [mm or deg]
-  std::string job;           ///< job file for which the offset is set
-  std::string operation;     ///< operation of the job file; empty for the only one
-  bool yes = false;          ///< a large change is made without a question
+  std::string axis;                  ///< a letter of kAxisLetters
+  std::optional<double> at;          ///< for Y, diameter of the blank touched; else the work position [mm or deg]
+  std::string job;                   ///< job file for which the offset is set
+  std::string operation;             ///< operation of the job file; empty for the only one
+  std::vector<std::string> answers;  ///< answers given beforehand
 };
 
 /// Arguments of `grind confirm-wheel`.
@@ -47,12 +46,12 @@ int confirmWheel(const std::string& node, const ConfirmWheelOptions& options);
 /// Reports that a tool was clamped. @param node name of the grinder's node. @return the exit status.
 int sayReclamped(const std::string& node);
 
-/// Sets a work offset in the name of this command's user. A change beyond the parameter offset_change_limit is
-/// confirmed at the terminal; without a terminal it is refused.
+/// Sets a work offset in the name of this command's user, and asks for the answers that it needs.
 /// @param nh the grinder's namespace.
-/// @param value [m], A [rad]. @param basis job and wheel for which it is set.
-/// @param large_change_ok whether it may change by any amount without a question. @return the exit status.
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis, bool large_change_ok);
+/// @param value [m], A [rad]. @param basis job and wheel for which it is set. @param answers answers given beforehand.
+/// @return the exit status.
+int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
+                  const std::vector<std::string>& answers);
 
 /// The work offsets; nothing if the grinder does not publish them in time.
 std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh);
@@ -60,9 +59,8 @@ std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh);
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);
 
-/// Sets work offsets as asked, and prints all. @param node name of the grinder's node. @return the exit status; 1 if
-/// some do not fit the job of options.fit, with the reason printed. @throw std::invalid_argument for contradictory
-/// arguments. @throw JobError if a job file is refused.
+/// Sets work offsets as asked, and prints all. @param node name of the grinder's node. @return the exit status. @throw
+/// std::invalid_argument for contradictory arguments. @throw JobError if a job file is refused.
 int runOffsets(const std::string& node, const OffsetsOptions& options);
 
 /// Sets the work offset of an axis from its present position. @param node name of the grinder's node. @return the exit

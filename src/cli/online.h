@@ -5,6 +5,7 @@
 #include <ros/node_handle.h>
 
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -14,8 +15,7 @@ struct RunOptions {
   std::string operation;  ///< one of several operations; empty for the only one
   bool dry_run = false;
   bool go_on = false;                ///< continues from the first unfinished pass
-  bool discard = false;              ///< starts even if the journal holds another, unfinished job
-  bool ignore_offset_check = false;  ///< starts whatever job the work offsets were set for
+  std::vector<std::string> answers;  ///< answers given beforehand
   std::string csv;                   ///< file for the streamed setpoints, or empty
 };
 

@@ -1,6 +1,7 @@
 #include "cli/output_file.h"
 
-#include "flute_grinder/job/regular_file.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/read_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/replace_file.h"
 
 #include <cstdio>
 #include <memory>

@@ -1,15 +1,16 @@
 #include "cli/probe.h"
 
+#include "cli/answers.h"
 #include "cli/interrupt.h"
 #include "cli/offsets.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
 #include "cli/zeros.h"
 #include "flute_grinder/ProbeAction.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/network/user_at_host.h"
 
@@ -35,7 +36,7 @@ std::string shown(double si, bool angle) {
   return format("%.4f %s", si / scale, angle ? "deg" : "mm");
 }
 
-/// @throw std::invalid_argument for contradictory arguments. @throw JobFileError
+/// @throw std::invalid_argument for contradictory arguments. @throw FileError
 flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& options) {
   flute_grinder::ProbeGoal goal;
   goal.cycle = static_cast<std::uint8_t>(row.value);
@@ -45,7 +46,7 @@ flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& 
   }
   if (options.job.empty()) return goal;
   goal.set_offset = 1;
-  goal.large_change_ok = static_cast<std::uint8_t>(options.yes);
+  goal.answers = options.answers;
   goal.set_by = userAtHost();
   const JobFile job = openJobFile(options.job, options.operation);
   goal.job = goalFromFile(job);
@@ -80,13 +81,14 @@ void printFigures(const flute_grinder::ProbeResult& result) {
   }
 }
 
-/// Prints the offset that the grinder has set, or sets it now if a large change is confirmed. @return the exit status.
-int settleOffset(ros::NodeHandle& nh, int axis, const flute_grinder::ProbeGoal& goal,
+/// Prints the offset that the grinder has set, or sets it now if what it needs is answered. @return the exit status.
+int settleOffset(ros::NodeHandle& nh, int axis, flute_grinder::ProbeGoal goal,
                  const flute_grinder::ProbeResult& result) {
-  const int status = result.large_change
-                         ? setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), false)
-                     : result.message.empty() ? 0
-                                              : fail(result.message);
+  int status = result.message.empty() ? 0 : fail(result.message);
+  // Not by another cycle: what was probed counts.
+  if (addAnswers(result.needs, goal.answers)) {
+    status = setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
+  }
   if (status == 0 && goal.set_offset)
     std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis], shown(result.offset, axis == kA).c_str());
   return status;

@@ -4,17 +4,18 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
 /// Arguments of `grind probe`.
 struct ProbeOptions {
   std::string job;
-  std::string operation;            ///< operation of the job file; empty for the only one
-  double within = 0;                ///< longest way to a touch [mm], A [deg]
-  std::optional<double> at_mm;      ///< diameter of the blank, if known
-  std::optional<double> flange_mm;  ///< flange length instead of the wheel file's
-  bool yes = false;                 ///< a large change of an offset is made without a question
+  std::string operation;             ///< operation of the job file; empty for the only one
+  double within = 0;                 ///< longest way to a touch [mm], A [deg]
+  std::optional<double> at_mm;       ///< diameter of the blank, if known
+  std::optional<double> flange_mm;   ///< flange length instead of the wheel file's
+  std::vector<std::string> answers;  ///< answers given beforehand
 };
 
 /// Has the grinder run a probing cycle, and prints what it measured and the work offset that it set.

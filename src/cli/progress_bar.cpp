@@ -1,8 +1,8 @@
 #include "cli/progress_bar.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 
 #include <sys/ioctl.h>
 #include <unistd.h>

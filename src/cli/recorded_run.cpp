@@ -1,6 +1,6 @@
 #include "cli/recorded_run.h"
 
-#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include <utility>
 

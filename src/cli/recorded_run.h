@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/report/bag_run.h"
+#include "flute_grinder/tool/run_strokes.h"
 
 #include <optional>
 #include <string>

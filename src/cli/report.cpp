@@ -4,9 +4,9 @@
 #include "cli/json_output.h"
 #include "cli/recorded_run.h"
 #include "cli/tool_output.h"
-#include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/report/findings.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include <spawn.h>
 #include <sys/wait.h>

@@ -23,7 +23,7 @@ struct ReportOptions {
 
 /// Writes a report: computes its contents, and has a Python program draw it if a file is asked for.
 /// @param node name of the grinder, see historyFolder().
-/// @throw JobFileError if the tolerances cannot be read, FileError if the file cannot be read, there is no record, or
+/// @throw FileError if the tolerances cannot be read, if the file cannot be read, there is no record, or
 /// the program is missing, std::invalid_argument if no output is asked for.
 /// @return the exit status.
 int writeReport(const std::string& node, const ReportOptions& options);

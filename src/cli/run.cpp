@@ -1,3 +1,4 @@
+#include "cli/answers.h"
 #include "cli/history.h"
 #include "cli/interrupt.h"
 #include "cli/offline.h"
@@ -7,12 +8,14 @@
 #include "cli/stop_keys.h"
 #include "cli/stream_watch.h"
 #include "flute_grinder/GrindAction.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/network/user_at_host.h"
 
 #include <actionlib/client/action_client.h>
 
@@ -136,8 +139,10 @@ int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& strea
   const flute_grinder::GrindResultConstPtr result = goal.result();
   if (result) {
     printPlan(result->plan);
-    for (const std::string& warning : result->plan.warnings) {
-      std::fprintf(stderr, "warning: %s\n", escaped(warning).c_str());
+    if (goal.succeeded()) {
+      for (const flute_grinder::Need& need : result->plan.needs) {
+        std::fprintf(stderr, "to start it: %s\n", escaped(need.text).c_str());
+      }
     }
   }
   printStream(stream, result ? result->setpoints_written : 0);
@@ -163,14 +168,27 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
   flute_grinder::GrindGoal goal;
   try {
     goal = goalFromFile(options.job, options.operation);
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     const std::string done = options.operation.empty() ? doneOperations(node, options.job) : "";
-    throw JobFileError(error.what() + (done.empty() ? "" : "; " + done));
+    throw FileError(error.what() + (done.empty() ? "" : "; " + done));
   }
   goal.dry_run = options.dry_run;
-  goal.discard = options.discard;
-  goal.ignore_offset_check = options.ignore_offset_check;
+  goal.answers = options.answers;
+  goal.sent_by = userAtHost();
   return goal;
+}
+
+/// Sends a goal. @param watched must outlive the goal's handle.
+Client::GoalHandle send(Client& client, const flute_grinder::GrindGoal& goal, GoalWatch& watched) {
+  return client.sendGoal(
+      goal,
+      [&watched](Client::GoalHandle handle) {
+        if (handle.getCommState() != actionlib::CommState::DONE) return;
+        watched.onDone(handle.getTerminalState() == actionlib::TerminalState::SUCCEEDED, handle.getResult());
+      },
+      [&watched](const Client::GoalHandle&, const flute_grinder::GrindFeedbackConstPtr& feedback) {
+        watched.onFeedback(feedback);
+      });
 }
 
 }  // namespace
@@ -181,7 +199,6 @@ int runJob(const std::string& node, const RunOptions& options) {
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
   const StateWatch watch(nh);
-  GoalWatch watched;
   Client client(nh, "grind");
   StopKeys keys(nh, watch);
   if (!await(kPatience,
@@ -193,22 +210,27 @@ int runJob(const std::string& node, const RunOptions& options) {
     if (!refusal.empty()) return fail(refusal);
   }
 
-  ProgressBar bar(job.teeth(), static_cast<int>(job.depths().size()));
   catchInterrupts();
   catchHolds();
-  Client::GoalHandle running = client.sendGoal(
-      goal,
-      [&](Client::GoalHandle handle) {
-        if (handle.getCommState() != actionlib::CommState::DONE) return;
-        watched.onDone(handle.getTerminalState() == actionlib::TerminalState::SUCCEEDED, handle.getResult());
-      },
-      [&](const Client::GoalHandle&, const flute_grinder::GrindFeedbackConstPtr& feedback) {
-        watched.onFeedback(feedback);
-      });
-  keys.start([&] { running.cancel(); });
-  const bool connected = showProgress(watched, watch, bar);
-  bar.end();
-  return closeStream(stream, options.csv, printOutcome(watched, connected, stream));
+  std::mutex mutex;  // guards `running`
+  Client::GoalHandle running;
+  keys.start([&] {
+    const std::lock_guard<std::mutex> lock(mutex);
+    running.cancel();
+  });
+  for (;;) {
+    GoalWatch watched;
+    ProgressBar bar(job.teeth(), static_cast<int>(job.depths().size()));
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      running = send(client, goal, watched);
+    }
+    const bool connected = showProgress(watched, watch, bar);
+    bar.end();
+    const flute_grinder::GrindResultConstPtr result = watched.result();
+    if (result && !goal.dry_run && addAnswers(result->plan.needs, goal.answers)) continue;
+    return closeStream(stream, options.csv, printOutcome(watched, connected, stream));
+  }
 }
 
 }  // namespace grinder

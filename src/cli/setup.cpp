@@ -2,11 +2,11 @@
 
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/setup_sheet.h"
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/geometry/write_setup.h"
-#include "flute_grinder/plan/planned_job.h"
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/check/planned_job.h"
+#include "flute_grinder/setup/setup_sheet.h"
+#include "flute_grinder/setup/touch_off.h"
+#include "flute_grinder/setup/write_setup.h"
 
 #include <cstdio>
 

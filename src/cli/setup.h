@@ -15,7 +15,7 @@ struct SetupOptions {
 };
 
 /// Solves the set-up of a job, prints the sheet, and writes the set-up file. @return the exit status.
-/// @throw FileError, JobFileError, ParameterError if a file cannot be read or written.
+/// @throw FileError, ParameterError if a file cannot be read or written.
 int runSetup(const SetupOptions& options);
 
 }  // namespace grinder

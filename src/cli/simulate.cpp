@@ -5,15 +5,16 @@
 #include "cli/recorded_run.h"
 #include "cli/report.h"
 #include "cli/tool_output.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/cutter_solid.h"
-#include "flute_grinder/geometry/run_strokes.h"
-#include "flute_grinder/geometry/stl.h"
-#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/record_file.h"
+#include "flute_grinder/record/tool_records.h"
 #include "flute_grinder/report/bag_run.h"
-#include "flute_grinder/report/tool_records.h"
+#include "flute_grinder/tool/cutter_solid.h"
+#include "flute_grinder/tool/run_strokes.h"
+#include "flute_grinder/tool/stl.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include <cerrno>
 #include <cmath>
@@ -79,7 +80,7 @@ struct Source {
   std::optional<ToolRecords> records;
 };
 
-/// @throw FileError, JobFileError
+/// @throw FileError
 Source sourceOfBag(const SimulateOptions& options, const std::string& name) {
   BagRun run(options.file, options.run);
   if (!run.job() && options.job.empty()) {
@@ -91,7 +92,7 @@ Source sourceOfBag(const SimulateOptions& options, const std::string& name) {
   return {job, place, options.file, std::move(run), {}};
 }
 
-/// @throw FileError, JobFileError
+/// @throw FileError
 Source sourceOf(const std::string& node, const SimulateOptions& options) {
   const std::string file = options.last ? lastRecord(node, options.folder) : options.file;
   const std::string name = std::filesystem::path(file).filename();

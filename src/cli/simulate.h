@@ -23,7 +23,7 @@ constexpr int kMaxSections = 1000;
 
 /// Computes and measures the cutter that a job, or a recorded run, grinds.
 /// @param node name of the grinder, see historyFolder(). @return the exit status.
-/// @throw FileError, JobFileError if a file cannot be read or written; std::out_of_range for an X that is not on the
+/// @throw FileError if a file cannot be read or written; std::out_of_range for an X that is not on the
 ///        cutter.
 int runSimulate(const std::string& node, const SimulateOptions& options);
 

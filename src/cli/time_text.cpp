@@ -1,6 +1,6 @@
 #include "cli/time_text.h"
 
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/record/record_file.h"
 
 #include <algorithm>

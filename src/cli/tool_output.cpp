@@ -1,9 +1,10 @@
 #include "cli/tool_output.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/section_outline.h"
-#include "flute_grinder/geometry/tool_figure.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/tool_text.h"
+#include "flute_grinder/tool/section_outline.h"
+#include "flute_grinder/tool/tool_figure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "cli/csv.h"
 #include "cli/json_output.h"
-#include "flute_grinder/geometry/ground_tool.h"
+#include "flute_grinder/tool/ground_tool.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "cli/usage.h"
 
-#include "flute_grinder/job/did_you_mean.h"
+#include "flute_grinder/base/did_you_mean.h"
 
 #include <algorithm>
 #include <vector>

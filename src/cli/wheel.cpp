@@ -3,9 +3,11 @@
 #include "cli/csv.h"
 #include "cli/json_output.h"
 #include "cli/time_text.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/replace_file.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/wheel_file.h"
 #include "flute_grinder/network/user_at_host.h"
 
@@ -119,7 +121,7 @@ int update(const std::string& path, const std::string& old, const WheelFile& bef
     const WheelFile after = parseWheel(text, path);
     replaceFile(path, text);
     printWheel(after);
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 1;
   } catch (const std::system_error& error) {

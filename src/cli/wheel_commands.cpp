@@ -48,7 +48,7 @@ void addZeros(Commands& commands) {
   addMachine(command, options->parameters, options->urdf);
   // --set uses the geometry of the running machine.
   for (const char* file : {"--machine", "--urdf"}) set_flag->excludes(command.get_option(file));
-  addYes(command, options->yes)->needs(set_flag);
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset})->needs(set_flag);
   addJson(command, options->json);
 }
 

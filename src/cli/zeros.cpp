@@ -5,8 +5,8 @@
 #include "cli/offsets.h"
 #include "cli/online.h"
 #include "cli/state_watch.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 
 #include <cstdio>
@@ -65,7 +65,7 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   if (!zero) return 1;
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kComputed);
   for (const int axis : {kX, kY, kZ}) {
-    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.yes)) return status;
+    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.answers)) return status;
   }
   printZero(*zero, options.json);
   return 0;

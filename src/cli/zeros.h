@@ -18,14 +18,14 @@ struct ZerosOptions {
   std::optional<double> flange_mm;  ///< flange length instead of the wheel file's
   std::string parameters;           ///< YAML of the machine
   std::string urdf;
-  bool set = false;  ///< sets them as work offsets, by the grinder's own geometry
-  bool yes = false;  ///< large changes are made without a question
+  bool set = false;                  ///< sets them as work offsets, by the grinder's own geometry
+  std::vector<std::string> answers;  ///< answers given beforehand
   bool json = false;
 };
 
 /// The length from the flange's face to the wheel's upper face [m], as given or from the wheel file of a job's
 /// operation.
-/// @param operation number from 0. @throw std::invalid_argument if neither has it; JobFileError
+/// @param operation number from 0. @throw std::invalid_argument if neither has it; FileError
 double flangeOf(const JobFile& job, const std::optional<double>& flange_mm);
 
 /// Prints the zero points of a job's X, Y and Z in machine coordinates, by the geometry of options.parameters. @return

@@ -205,10 +205,12 @@ Refusal ControlLoop::beginJob(const JobStart& job) {
   if (const Refusal refusal = refusalOfWheel(); refusal != Refusal::kNone) return refusal;
   if (!sample_.drive.homed) return Refusal::kInterlock;
   const GrindProgram& program = job.stream->program();
-  if (!sample_.swivel.isAt(program.swivel())) return Refusal::kSwivel;
+  const bool confirmed = job.swivel_confirmed && !sample_.swivel.measured;
+  if (!confirmed && !sample_.swivel.isAt(program.swivel())) return Refusal::kSwivel;
   if (!(program.run().at == command_).all()) return Refusal::kMoved;
   stream_ = job.stream;
   job_swivel_ = program.swivel();
+  if (confirmed) sample_.swivel = next_status_.swivel = {job_swivel_, false};
   job_offset_ = program.run().offset;
   in_journal_ = job.in_journal;
   wheel_.startJob(job.wheel);

@@ -1,6 +1,6 @@
 #include "flute_grinder/curve/conical_cutter.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 #include "flute_grinder/drive/parameters.h"
 
-#include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/did_you_mean.h"
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/did_you_mean.h"
 
 #include <ros/node_handle.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/drive/parameters.h"
-#include "flute_grinder/job/axes.h"
 
 #include <array>
 #include <string>

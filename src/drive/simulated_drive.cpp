@@ -1,6 +1,6 @@
 #include "drive/simulated_drive.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/drive/export_drive.h"
 
 #include <algorithm>

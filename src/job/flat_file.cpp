@@ -1,7 +1,9 @@
 #include "flute_grinder/job/flat_file.h"
 
-#include "flute_grinder/job/did_you_mean.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/did_you_mean.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/job/yaml_text.h"
 
 #include <set>
 #include <utility>
@@ -78,7 +80,7 @@ void FlatFile::add(const std::string& errors) {
 void FlatFile::throwErrors() const {
   if (error_count_ == 0) return;
   const int unreported = error_count_ - kMaxReported;
-  throw JobFileError(errors_ + (unreported > 0 ? "\n" + name_ + ": and " + std::to_string(unreported) + " more" : ""));
+  throw FileError(errors_ + (unreported > 0 ? "\n" + name_ + ": and " + std::to_string(unreported) + " more" : ""));
 }
 
 void FlatFile::drop(const std::string& key) {

@@ -1,7 +1,7 @@
 #include "flute_grinder/job/grind_job.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>

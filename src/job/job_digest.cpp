@@ -1,6 +1,6 @@
 #include "flute_grinder/job/job_digest.h"
 
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/sha256.h"
 

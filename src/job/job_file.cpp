@@ -1,8 +1,10 @@
 #include "flute_grinder/job/job_file.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/flat_file.h"
-#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <filesystem>
@@ -111,7 +113,7 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   std::string text;
   try {
     text = readTextFile(files.wheel_path);
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     const std::filesystem::path folder = std::filesystem::absolute(path_of_job).parent_path();
     return file.fail(file.line(key), key + " = " + name + ": " + error.what() +
                                          "; allowed: a path from the job file's folder, " +
@@ -120,7 +122,7 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
   try {
     files.wheel = parseWheel(text, files.wheel_path);
     mountWheel(*files.wheel, job);
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     file.add(error.what());
   }
 }
@@ -300,7 +302,7 @@ std::size_t operationNamed(const std::string& named, const std::vector<GrindProc
     if (named == kind || named == std::to_string(i + 1) || (named.empty() && operations.size() == 1)) return i;
     all += (all.empty() ? "" : ", ") + std::to_string(i + 1) + " or " + kind;
   }
-  throw JobFileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
+  throw FileError(name + ": operation " + (named.empty() ? "is missing" : "= " + named) + "; allowed: " + all);
 }
 
 bool isWanted(const JobField& field, const OperationFiles& files) {
@@ -326,10 +328,10 @@ void takeSolved(OperationFiles& files, GrindJob& job) {
       constexpr int digits = 9;
       const std::string is = text({of(job), field.unit}, digits), wanted = text({of(asked), field.unit}, digits);
       if (!isWanted(field, files) || is == wanted) return;
-      throw JobFileError(files.setup_path + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
-                         wanted);
+      throw FileError(files.setup_path + ": solved with " + field.file_key + " = " + is + "; the job now asks for " +
+                      wanted);
     });
-  } catch (const JobFileError& error) {
+  } catch (const FileError& error) {
     job = asked;
     files.unsolved = error.what();
   }
@@ -361,7 +363,7 @@ struct ParsedJob {
   std::vector<ProcessKeys> keys{};      ///< of each operation
   std::vector<OperationFiles> files{};  ///< of each operation
 
-  /// @throw JobFileError unless the first operations are set up.
+  /// @throw FileError unless the first operations are set up.
   void requireSetups(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       if (files[i].unsolved.empty()) continue;

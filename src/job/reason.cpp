@@ -1,6 +1,6 @@
 #include "flute_grinder/job/reason.h"
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>

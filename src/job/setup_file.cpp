@@ -1,7 +1,9 @@
 #include "flute_grinder/job/setup_file.h"
 
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/flat_file.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/job/yaml_text.h"
 
 #include <algorithm>
 #include <array>
@@ -136,8 +138,8 @@ std::string withSetup(const std::string& before, const std::string& name, const 
   if (before.empty()) root[kJob] = job_name;
   const std::string of = root.IsMap() && root[kJob] && root[kJob].IsScalar() ? root[kJob].Scalar() : "";
   if (of != job_name) {
-    throw JobFileError(name + ": " + (of.empty() ? "not a set-up file" : "the set-up file of " + of) +
-                       ", and not written over; name a file of its own in " + job_name);
+    throw FileError(name + ": " + (of.empty() ? "not a set-up file" : "the set-up file of " + of) +
+                    ", and not written over; name a file of its own in " + job_name);
   }
   YAML::Node setup;
   visitJobFields([&](const JobField& field, auto value) {

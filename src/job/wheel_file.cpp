@@ -1,8 +1,9 @@
 #include "flute_grinder/job/wheel_file.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/flat_file.h"
-#include "flute_grinder/job/format.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>

@@ -1,13 +1,9 @@
 #include "flute_grinder/job/yaml_text.h"
 
-#include "flute_grinder/job/regular_file.h"
+#include "flute_grinder/base/file_error.h"
 
 #include <yaml-cpp/eventhandler.h>
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
 #include <sstream>
 #include <utility>
 
@@ -16,7 +12,7 @@ namespace grinder {
 namespace {
 
 [[noreturn]] void refuse(const std::string& name, const YAML::Mark& mark, const std::string& why) {
-  throw JobFileError(name + ":" + std::to_string(mark.line + 1) + ": " + why);
+  throw FileError(name + ":" + std::to_string(mark.line + 1) + ": " + why);
 }
 
 /// Checks the parser's events before any node is built.
@@ -54,17 +50,6 @@ class YamlCheck : public YAML::EventHandler {
 };
 
 }  // namespace
-
-std::string readTextFile(const std::string& path, std::size_t most) {
-  requireRegularFile(path);
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-  std::string text(most + 1, '\0');
-  if (file) text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (!file || std::ferror(file.get()) != 0) throw JobFileError(path + ": cannot be read: " + std::strerror(errno));
-  if (text.empty()) throw JobFileError(path + ": is empty");
-  if (text.size() > most) throw JobFileError(path + ": is too long; allowed: " + std::to_string(most) + " bytes");
-  return text;
-}
 
 void checkYaml(const std::string& text, const std::string& name) {
   YamlCheck check(name);

@@ -1,7 +1,7 @@
 #include "flute_grinder/machine/machine_model.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/units.h"
 #include "machine/strict_urdf.h"
 
 #include <algorithm>

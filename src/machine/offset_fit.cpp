@@ -1,7 +1,7 @@
 #include "flute_grinder/machine/offset_fit.h"
 
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/swivel.h"
 
 #include <array>
@@ -11,6 +11,7 @@ namespace grinder {
 
 namespace {
 
+constexpr const char* kWheel = "wheel";
 constexpr double kSameFigure = 1e-9;  ///< tolerance below any measurement and above any rounding [m]
 
 /// The values that a zero point depends on.
@@ -158,19 +159,31 @@ std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetB
   std::vector<OffsetMismatch> found;
   if (!isMounted(offsets.wheel, job)) {
     const std::string is = mountedText(offsets.wheel), asked = wheelText(job);
-    found.push_back({"wheel",
-                     is,
-                     asked,
-                     "the wheel on the spindle is " + is + "; this job has " + asked +
-                         "; once it is mounted, say so: grind confirm-wheel JOB",
-                     0,
-                     {}});
+    found.push_back({kWheel, is, asked, "the wheel on the spindle is " + is + "; this job has " + asked, 0, {}});
   }
   for (const int axis : {kX, kY, kZ}) {
     if (auto one = mismatch(axis, offsets, job)) found.push_back(std::move(*one));
   }
   if (auto teeth = mismatchOfTeeth(offsets, job)) found.push_back(std::move(*teeth));
   return found;
+}
+
+std::vector<Need> needsOf(const std::vector<OffsetMismatch>& mismatches) {
+  Need wheel{NeedKind::kWheel, "", {}, {NeedAnswer::kConfirmWheel}};
+  Need offsets{NeedKind::kOffsets, "", {}, {}};
+  for (const OffsetMismatch& mismatch : mismatches) {
+    Need& need = mismatch.what == kWheel ? wheel : offsets;
+    need.text += (need.text.empty() ? "" : "; ") + mismatch.reason;
+    const std::string difference = mismatch.change ? shown(*mismatch.change, Unit::kMetre) : "";
+    need.figures.push_back({mismatch.what, mismatch.asked, mismatch.set, difference});
+    if (mismatch.change) offsets.answers = {NeedAnswer::kFitOffsets};
+  }
+  offsets.answers.push_back(NeedAnswer::kIgnoreOffsets);
+  std::vector<Need> needs;
+  for (Need& need : std::vector{std::move(wheel), std::move(offsets)}) {
+    if (!need.figures.empty()) needs.push_back(std::move(need));
+  }
+  return needs;
 }
 
 std::string basisText(int axis, const WorkOffset& offset) {

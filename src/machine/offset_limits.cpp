@@ -1,7 +1,7 @@
 #include "flute_grinder/machine/offset_limits.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 
 #include <cmath>
 
@@ -35,11 +35,14 @@ std::string travelRefusal(const OffsetLimits& limits, int axis, double value) {
          ", the travel of the axis";
 }
 
-std::string changeRefusal(const OffsetLimits& limits, int axis, const WorkOffset& from, double to) {
+std::optional<Need> needOfChange(const OffsetLimits& limits, int axis, const WorkOffset& from, double to) {
   const double change = std::abs(to - from.value);
-  if (!from.wasSet() || std::isnan(from.value) || change <= limits.change[axis]) return "";
-  return offsetOf(axis) + " would change by " + shown(axis, change) + ", from " + shown(axis, from.value) + " to " +
-         shown(axis, to) + "; allowed without a confirmation: " + shown(axis, limits.change[axis]);
+  if (!from.wasSet() || std::isnan(from.value) || change <= limits.change[axis]) return std::nullopt;
+  return Need{NeedKind::kLargeChange,
+              offsetOf(axis) + " would change by " + shown(axis, change) + ", from " + shown(axis, from.value) +
+                  " to " + shown(axis, to) + "; allowed without an answer: " + shown(axis, limits.change[axis]),
+              {{axisName(axis), shown(axis, to), shown(axis, from.value), shown(axis, to - from.value)}},
+              {NeedAnswer::kSetOffset}};
 }
 
 }  // namespace grinder

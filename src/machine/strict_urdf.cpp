@@ -1,6 +1,6 @@
 #include "machine/strict_urdf.h"
 
-#include "flute_grinder/job/did_you_mean.h"
+#include "flute_grinder/base/did_you_mean.h"
 
 #include <tinyxml2.h>
 #include <urdf_parser/urdf_parser.h>

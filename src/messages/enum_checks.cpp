@@ -2,14 +2,14 @@
 // same in capitals, and there must be no further constants. All checks are made at compile time.
 
 #include "flute_grinder/PathStatistics.h"
-#include "flute_grinder/curve/enum_table.h"
-#include "flute_grinder/geometry/tool_figure.h"
+#include "flute_grinder/base/enum_table.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/machine/probing_cycle.h"
 #include "flute_grinder/motion/setpoint.h"
 #include "flute_grinder/motion/work_offsets.h"
+#include "flute_grinder/tool/tool_figure.h"
 #include "message_texts.h"
 
 #include <string_view>

@@ -1,7 +1,7 @@
 #include "flute_grinder/messages/json.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/escaped.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>

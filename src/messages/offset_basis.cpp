@@ -1,10 +1,10 @@
 #include "flute_grinder/messages/offset_basis.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <filesystem>
@@ -131,28 +131,6 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets) {
 
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal) {
   return mismatches(offsets, basisOf(goal, OffsetMethod::kUnknown));
-}
-
-std::string text(const std::vector<OffsetMismatch>& mismatches) {
-  if (mismatches.empty()) return "";
-  std::string all;
-  for (const OffsetMismatch& mismatch : mismatches) all += (all.empty() ? "" : "; ") + mismatch.reason;
-  const std::string axes = computable(mismatches);
-  if (!axes.empty()) all += "; 'grind offsets --fit JOB' computes " + axes;
-  return all;
-}
-
-std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal) {
-  std::string warning = text(mismatches(offsets, goal));
-  return warning.empty() ? std::vector<std::string>{} : std::vector<std::string>{std::move(warning)};
-}
-
-std::string computable(const std::vector<OffsetMismatch>& mismatches) {
-  std::string axes;
-  for (const OffsetMismatch& mismatch : mismatches) {
-    if (mismatch.change) axes += (axes.empty() ? "" : " and ") + mismatch.what;
-  }
-  return axes;
 }
 
 }  // namespace grinder

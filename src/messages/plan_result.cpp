@@ -1,7 +1,7 @@
 #include "flute_grinder/messages/plan_result.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
 #include "flute_grinder/messages/reasons.h"

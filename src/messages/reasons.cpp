@@ -1,6 +1,6 @@
 #include "flute_grinder/messages/reasons.h"
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 
 namespace grinder {
 

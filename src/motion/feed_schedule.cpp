@@ -1,8 +1,8 @@
 #include "flute_grinder/motion/feed_schedule.h"
 
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/curve/formed_edge.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/job/quantity.h"
 
 #include <algorithm>
 #include <cmath>

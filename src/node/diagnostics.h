@@ -1,8 +1,8 @@
 #pragma once
 
+#include "flute_grinder/base/durations.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/control/diagnostic_thresholds.h"
-#include "flute_grinder/control/durations.h"
 #include "flute_grinder/motion/limit_check.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>

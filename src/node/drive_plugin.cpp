@@ -1,7 +1,7 @@
 #include "node/drive_plugin.h"
 
+#include "flute_grinder/base/fault_text.h"
 #include "flute_grinder/drive/export_drive.h"
-#include "flute_grinder/job/fault_text.h"
 #include "node/plugin_abi.h"
 
 #include <boost/algorithm/string/join.hpp>

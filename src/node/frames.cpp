@@ -1,6 +1,6 @@
 #include "node/frames.h"
 
-#include "flute_grinder/collision/joint_pose.h"
+#include "flute_grinder/check/joint_pose.h"
 #include "flute_grinder/job/grind_job.h"
 
 #include <algorithm>

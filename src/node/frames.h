@@ -1,10 +1,10 @@
 #pragma once
 
-#include "flute_grinder/geometry/ground_edge.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/tool/ground_edge.h"
 
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>

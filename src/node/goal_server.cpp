@@ -2,11 +2,13 @@
 
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/error_codes.h"
+#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/reasons.h"
 #include "node/plain_name.h"
 
+#include <chrono>
 #include <utility>
 
 namespace grinder {
@@ -44,6 +46,8 @@ const char* outcomeOf(JobEnd end) {
   }
   return "done";
 }
+
+ToothPass firstOf(const flute_grinder::GrindGoal& goal) { return {goal.first_tooth, goal.first_pass}; }
 
 /// Why and where a job ended. A refused setpoint brings its own place.
 Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& program) {
@@ -105,25 +109,20 @@ void GoalServer::onGoal(GoalHandle handle) {
                   std::string("a goal is running; allowed: wait for its end, or cancel it") + beside);
   }
   const auto goal = handle.getGoal();
-  for (const auto& [key, name] : {std::pair("job_name", &goal->job_name), std::pair("wheel_name", &goal->wheel_name),
-                                  std::pair("wheel_dressed", &goal->wheel_dressed)}) {
+  for (const auto& [key, name] :
+       {std::pair("job_name", &goal->job_name), std::pair("wheel_name", &goal->wheel_name),
+        std::pair("wheel_dressed", &goal->wheel_dressed), std::pair("sent_by", &goal->sent_by)}) {
     if (!isPlainName(*name)) {
       return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, nameRefusal(key, *name));
     }
   }
+  const std::string wrong = answersRefusal(goal->answers);
+  if (!wrong.empty()) return reject(handle, flute_grinder::GrindResult::INVALID_GOAL, wrong);
   try {
     const ValidJob job(jobFromGoal(*goal));
-    if (!goal->dry_run) {
-      const std::string text = refusal(*goal, job.digest());
-      if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
-      // The loop checks the swivel once more when the job starts: it may be turned meanwhile.
-      const Swivel swivel = loop_.status().swivel;
-      if (!swivel.isAt(job->process().setup_swivel)) {
-        return reject(handle,
-                      result(flute_grinder::GrindResult::NOT_READY, {reasonOf(swivel, job->process().setup_swivel)}));
-      }
-    }
-    startPlanning(handle, job);
+    const std::string text = goal->dry_run ? "" : refusal(*goal, job.digest());
+    if (!text.empty()) return reject(handle, flute_grinder::GrindResult::NOT_READY, text);
+    begin(handle, job);
   } catch (const InvalidJob& invalid) {
     reject(handle, result(errorCode(PlanFault::kInvalidJob), invalid.reasons()));
   }
@@ -137,26 +136,31 @@ std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std:
   }
   if (!status.wheel.known) return "it is not known whether the wheel is in the work; lift it first";
   if (status.wheel.in_work) return "the wheel is in the work of the last job; lift it first";
-  return tracker_.refusal(digest, {goal.first_tooth, goal.first_pass}, goal.discard != 0);
+  return tracker_.refusal(digest, firstOf(goal));
 }
 
-std::string GoalServer::offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
-                                      const WorkOffsets& offsets) const {
-  std::string unknown = offsets_.unknown();
-  if (!unknown.empty() || goal.dry_run) return unknown;
-  if (!goal.discard) {
-    std::string changed = tracker_.offsetRefusal(digest, offsets);
-    // A job that is continued needs only the offsets with which it began; a relief also needs edges that are still
-    // where they were.
-    const bool placed = goal.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
-    if (!changed.empty() || (placed && tracker_.continues(digest, offsets))) return changed;
+/// What a start of the goal's job needs, answered or not.
+std::vector<Need> GoalServer::needsOf(const Goal& goal, const WorkOffsets& offsets) const {
+  const flute_grinder::GrindGoal& asked = *goal.handle.getGoal();
+  const std::string& digest = goal.job.digest();
+  std::vector<Need> needs;
+  const auto add = [&](std::optional<Need> need) {
+    if (need) needs.push_back(std::move(*need));
+  };
+  add(tracker_.need(digest, firstOf(asked)));
+  if (!gives(asked.answers, NeedAnswer::kDiscard)) add(tracker_.offsetNeed(digest, firstOf(asked), offsets));
+  // A job that is continued needs only the offsets with which it began; a relief also needs edges that are still where
+  // they were.
+  const bool placed = asked.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
+  if (!(placed && needs.empty() && tracker_.continues(digest, offsets))) {
+    for (Need& need : grinder::needsOf(mismatches(offsets, asked))) needs.push_back(std::move(need));
   }
-  if (goal.ignore_offset_check) return "";
-  const std::string mismatch = text(mismatches(offsets, goal));
-  return mismatch.empty() ? "" : mismatch + "; set them for this job, or start it with --ignore-offset-check";
+  // The loop checks the swivel once more when the job starts: it may be turned meanwhile.
+  add(needOf(loop_.status().swivel, goal.job->process().setup_swivel));
+  return needs;
 }
 
-void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job) {
+void GoalServer::begin(const GoalHandle& handle, const ValidJob& job) {
   GoalHandle goal = handle;
   const auto control = std::make_shared<PlanControl>();
   if (!gate_.open(handle.getGoalID(), [control] { control->give_up = true; })) {
@@ -165,29 +169,73 @@ void GoalServer::startPlanning(const GoalHandle& handle, const ValidJob& job) {
                       ? "the grinder is being shut down"
                       : "a work offset is being set, or the machine probes; allowed: wait for the end of that");
   }
-  // From here to the end of the goal the offsets cannot change.
-  Planner::Request request{job};
+  // From here to the end of the goal nobody else changes the offsets.
+  goal_ = Goal{handle, job, control};
+  busy_ = true;
+  thread_.setPeriod(kPollPeriod);
+  carryOutAnswers();
+}
+
+/// Carries out those answers on which the plan depends, one after the other; then plans.
+void GoalServer::carryOutAnswers() {
+  const flute_grinder::GrindGoal& asked = *goal_->handle.getGoal();
   const WorkOffsets offsets = offsets_.offsets();
-  const std::string refused = offsetRefusal(*handle.getGoal(), job.digest(), offsets);
-  if (!refused.empty()) {
-    gate_.close();
-    return reject(goal, flute_grinder::GrindResult::NOT_READY, refused);
+  const std::string unknown = offsets_.unknown();
+  if (!unknown.empty()) return refuse(result(flute_grinder::GrindResult::NOT_READY, unknown));
+  const std::vector<Need> needs = needsOf(*goal_, offsets);
+  for (const Need& need : needs) {
+    for (const NeedAnswer answer : need.answers) {
+      if (!rowOf(answer).changes_plan || !isAnswered(need, answer, asked.answers)) continue;
+      goal_->answered = offsets_.carryOut(answer, basisOf(asked, OffsetMethod::kUnknown), asked.sent_by);
+      return;
+    }
   }
-  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()),
-                 {handle.getGoal()->first_tooth, handle.getGoal()->first_pass},
-                 offsets.values()};
-  request.control = control;
+  goal_->needs = unanswered(needs, asked.answers);
+  if (!asked.dry_run && !goal_->needs.empty()) return refuse(resultOf(goal_->needs));
+  plan(offsets);
+}
+
+/// Once an answer has been carried out, looks for the next.
+void GoalServer::takeAnswered() {
+  if (goal_->answered.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  const std::string refused = goal_->answered.get();
+  if (gate_.canceled()) return cancelBeforeStart();
+  if (!refused.empty()) return refuse(result(flute_grinder::GrindResult::NOT_READY, refused));
+  carryOutAnswers();
+}
+
+void GoalServer::plan(const WorkOffsets& offsets) {
+  const flute_grinder::GrindGoal& asked = *goal_->handle.getGoal();
+  goal_->phase = Phase::kPlanning;
+  goal_->offsets = offsets;
+  Planner::Request request{goal_->job};
+  request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), firstOf(asked), offsets.values()};
+  request.control = goal_->control;
   request.done = [this](std::shared_ptr<const PlannedJob> planned) {
     thread_.post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
   if (!planner_.submit(std::move(request))) {
-    gate_.close();
-    return reject(goal, flute_grinder::GrindResult::NOT_READY, "the grinder is being shut down");
+    return refuse(result(flute_grinder::GrindResult::NOT_READY, "the grinder is being shut down"));
   }
-  goal_ = Goal{handle, offsets, control};
-  busy_ = true;
-  thread_.setPeriod(kPollPeriod);
   publishPlanningFeedback();
+}
+
+/// The result of a goal that does not answer its needs.
+flute_grinder::GrindResult GoalServer::resultOf(const std::vector<Need>& needs) const {
+  flute_grinder::GrindResult r = result(flute_grinder::GrindResult::NOT_READY, text(needs));
+  r.plan.needs = toMessage(needs);
+  for (const Need& need : needs) {
+    if (need.kind != NeedKind::kSwivel) continue;
+    r.reasons = {toMessage(reasonOf(loop_.status().swivel, goal_->job->process().setup_swivel))};
+  }
+  return r;
+}
+
+/// Ends the goal before it is planned.
+void GoalServer::refuse(const flute_grinder::GrindResult& result) {
+  GoalHandle handle = goal_->handle;
+  release();
+  reject(handle, result);
 }
 
 void GoalServer::onCancel(const GoalHandle& handle) {
@@ -226,8 +274,9 @@ void GoalServer::startJob() {
   telemetry_.announceJob(
       goal_->number, handle.getGoalID().id, asked.job_name, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
-                                  asked.ignore_offset_check != 0));
-  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false};
+                                  gives(asked.answers, NeedAnswer::kIgnoreOffsets)));
+  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false,
+                       gives(asked.answers, NeedAnswer::kConfirmSwivel)};
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
     posted = loop_.startJob(start);
@@ -251,6 +300,7 @@ void GoalServer::poll() {
   if (!goal_) return;
   publishFeedback();
   switch (goal_->phase) {
+    case Phase::kAnswering: return takeAnswered();
     case Phase::kPlanning: return;
     case Phase::kStarting: return checkStartReply();
     case Phase::kJournaling: return releaseWhenJournaled();
@@ -259,7 +309,7 @@ void GoalServer::poll() {
 }
 
 void GoalServer::publishFeedback() {
-  if (goal_->phase == Phase::kPlanning) return publishPlanningFeedback();
+  if (goal_->phase <= Phase::kPlanning) return publishPlanningFeedback();
   if (const auto feedback = telemetry_.takeFeedback(goal_->number)) goal_->handle.publishFeedback(*feedback);
 }
 
@@ -319,7 +369,7 @@ void GoalServer::abortGoal(const std::string& text) {
 }
 
 void GoalServer::rollBack() {
-  if (goal_->phase != Phase::kPlanning) {
+  if (goal_->phase > Phase::kPlanning) {
     telemetry_.withdrawJob(goal_->number);
     tracker_.revert();
   }
@@ -362,11 +412,10 @@ void GoalServer::endJob() {
 }
 
 flute_grinder::GrindResult GoalServer::resultOfPlan(const PlannedJob& plan) const {
-  flute_grinder::GrindResult r = resultOf(plan);
+  flute_grinder::GrindResult r = grinder::resultOf(plan);
   r.plan.offsets = toMessage(goal_->offsets);
   r.plan.offsets.header.stamp = ros::Time::now();
-  const auto goal = goal_->handle.getGoal();
-  if (goal->dry_run) r.plan.warnings = offsetWarnings(goal_->offsets, *goal);
+  r.plan.needs = toMessage(goal_->needs);
   return r;
 }
 

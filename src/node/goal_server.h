@@ -13,6 +13,7 @@
 
 #include <ros/ros.h>
 
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,14 +39,17 @@ class GoalServer {
   using Server = ActionServer<flute_grinder::GrindAction>;
   using GoalHandle = Server::GoalHandle;
 
-  enum class Phase { kPlanning, kStarting, kJournaling, kRunning };
+  enum class Phase { kAnswering, kPlanning, kStarting, kJournaling, kRunning };
 
   /// The goal being processed.
   struct Goal {
     GoalHandle handle;
-    WorkOffsets offsets;
+    ValidJob job;
     std::shared_ptr<PlanControl> control;
-    Phase phase = Phase::kPlanning;
+    Phase phase = Phase::kAnswering;
+    std::future<std::string> answered{};  ///< why an answer was not carried out, once it has been tried
+    WorkOffsets offsets{};                ///< those of the plan; from then to the end of the goal they cannot change
+    std::vector<Need> needs{};            ///< what a start needs and the goal does not answer
     std::shared_ptr<const PlannedJob> plan{};
     std::unique_ptr<SetpointStream> stream{};  ///< setpoints of the goal's job
     std::uint64_t number = 0;                  ///< the loop's number for the goal's job
@@ -57,9 +61,11 @@ class GoalServer {
   void onGoal(GoalHandle handle);
   void onCancel(const GoalHandle& handle);
   std::string refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const;
-  std::string offsetRefusal(const flute_grinder::GrindGoal& goal, const std::string& digest,
-                            const WorkOffsets& offsets) const;
-  void startPlanning(const GoalHandle& handle, const ValidJob& job);
+  std::vector<Need> needsOf(const Goal& goal, const WorkOffsets& offsets) const;
+  void begin(const GoalHandle& handle, const ValidJob& job);
+  void carryOutAnswers();
+  void takeAnswered();
+  void plan(const WorkOffsets& offsets);
   void onPlanned(std::shared_ptr<const PlannedJob> planned);
   void poll();
   void publishFeedback();
@@ -75,6 +81,8 @@ class GoalServer {
   void cancelBeforeStart();
   void abortGoal(const std::string& text);
   void rollBack();
+  flute_grinder::GrindResult resultOf(const std::vector<Need>& needs) const;
+  void refuse(const flute_grinder::GrindResult& result);
   void reject(GoalHandle& handle, int code, const std::string& text);
   void reject(GoalHandle& handle, const flute_grinder::GrindResult& result);
   void release();

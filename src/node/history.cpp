@@ -1,6 +1,6 @@
 #include "node/history.h"
 
-#include "flute_grinder/geometry/replace_file.h"
+#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/record/record_file.h"
 
 #include <ros/console.h>

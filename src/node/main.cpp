@@ -1,6 +1,6 @@
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/fault_text.h"
 #include "flute_grinder/control/realtime.h"
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/fault_text.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/network/init_ros.h"
 #include "flute_grinder/network/master_watch.h"

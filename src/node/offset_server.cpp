@@ -1,12 +1,12 @@
 #include "node/offset_server.h"
 
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "node/plain_name.h"
 
 #include <cmath>
-#include <future>
 #include <memory>
 #include <utility>
 
@@ -48,7 +48,8 @@ template <typename Request>
 std::string requestRefusal(const Request& request) {
   if (request.axis >= kAxisCount) return axisRefusal(request.axis);
   if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
-  return basisRefusal(request.basis);
+  const std::string refused = answersRefusal(request.answers);
+  return refused.empty() ? basisRefusal(request.basis) : refused;
 }
 
 /// Why the offsets must not change now; empty if they may.
@@ -85,6 +86,12 @@ void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
   offsets.axes[static_cast<std::size_t>(axis)] = std::move(offset);
 }
 
+/// The offset as set, for the log.
+std::string saidOf(int axis, const WorkOffset& offset) {
+  return std::string("work offset of ") + kJointNames[static_cast<std::size_t>(axis)] + " = " +
+         text(Quantity{offset.value, unitOf(axis, 0)}, 9) + ", " + basisText(axis, offset) + ", by " + offset.set_by;
+}
+
 }  // namespace
 
 OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate,
@@ -115,7 +122,7 @@ bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_g
 
 template <typename Request, typename Response>
 void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response) {
-  bool large_change = false;
+  std::vector<Need> needs;
   withoutJob(
       [&] {
         const std::string refused = requestRefusal(request);
@@ -124,10 +131,10 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
         offset.set_by = request.set_by;
         offset.basis = fromMessage(request.basis);
         offset.basis.method = method;
-        return setWithoutJob(request.axis, std::move(offset), offset_at, request.large_change_ok != 0, large_change);
+        return setWithoutJob(request.axis, std::move(offset), offset_at, request.answers, needs);
       },
       response);
-  response.large_change = static_cast<std::uint8_t>(large_change);
+  response.needs = toMessage(needs);
 }
 
 bool OffsetServer::onConfirmWheel(flute_grinder::ConfirmWheel::Request& request,
@@ -140,13 +147,7 @@ bool OffsetServer::onConfirmWheel(flute_grinder::ConfirmWheel::Request& request,
         const OffsetBasis job = fromMessage(request.job);
         if (!job.hasJob()) return "job.wheel_digest is empty; allowed: of the wheel of a job";
         if (isMounted(store_.offsets().wheel, job) && !request.again) return "";
-        const auto mount = [&job](WorkOffsets& offsets) {
-          MountedWheel& wheel = offsets.wheel;
-          // Offsets set before any wheel was confirmed carry their own wheel.
-          const std::uint32_t mounting = wheel.mounting + (wheel.isKnown() ? 1 : 0);
-          wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, mounting};
-        };
-        return changed(mount, "wheel on the spindle: " + wheelText(job) + ", by " + request.set_by);
+        return mount(job, request.set_by);
       },
       response);
   return true;
@@ -243,28 +244,68 @@ void OffsetServer::noteFinished(const Progress& last) {
   });
 }
 
+std::future<std::string> OffsetServer::carryOut(NeedAnswer answer, const OffsetBasis& job, const std::string& by) {
+  const auto done = std::make_shared<std::promise<std::string>>();
+  thread_.post([=] { done->set_value(answer == NeedAnswer::kConfirmWheel ? mount(job, by) : fit(job, by)); });
+  return done->get_future();
+}
+
+std::string OffsetServer::mount(const OffsetBasis& job, const std::string& by) {
+  return changed(
+      [&job](WorkOffsets& offsets) {
+        MountedWheel& wheel = offsets.wheel;
+        // Offsets set before any wheel was confirmed carry their own wheel.
+        const std::uint32_t mounting = wheel.mounting + (wheel.isKnown() ? 1 : 0);
+        wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, mounting};
+      },
+      "wheel on the spindle: " + wheelText(job) + ", by " + by);
+}
+
+/// Sets all offsets that can be computed for a job, or none.
+std::string OffsetServer::fit(const OffsetBasis& job, const std::string& by) {
+  const std::string refused = refusal(loop_.status());
+  if (!refused.empty()) return refused;
+  const WorkOffsets now = store_.offsets();
+  std::vector<std::pair<int, WorkOffset>> fitted;
+  std::string done;
+  for (const OffsetMismatch& mismatch : mismatches(now, job)) {
+    if (!mismatch.change) continue;
+    WorkOffset offset{now.axes[static_cast<std::size_t>(mismatch.axis)].value + *mismatch.change, by,
+                      ros::WallTime::now().toSec(), job};
+    offset.basis.method = OffsetMethod::kComputed;
+    const std::string beyond = travelRefusal(limits_, mismatch.axis, offset.value);
+    if (!beyond.empty()) return beyond;
+    done += (done.empty() ? "" : "; ") + saidOf(mismatch.axis, offset);
+    fitted.emplace_back(mismatch.axis, std::move(offset));
+  }
+  return changed(
+      [&fitted](WorkOffsets& offsets) {
+        for (const auto& [axis, offset] : fitted) setIn(offsets, axis, offset);
+      },
+      done);
+}
+
 std::string OffsetServer::setProbed(int axis, double value, const WorkOffsets& before,
-                                    const flute_grinder::ProbeGoal& goal, bool& large_change) {
+                                    const flute_grinder::ProbeGoal& goal, std::vector<Need>& needs) {
   WorkOffset offset;
   offset.set_by = goal.set_by;
   offset.basis = basisOf(goal.job, OffsetMethod::kProbe);
   const auto answer = std::make_shared<std::promise<std::string>>();
   std::future<std::string> answered = answer->get_future();
-  thread_.post([=, &large_change, large_change_ok = goal.large_change_ok != 0, x = before.axes[kX].value] {
+  thread_.post([=, &needs, answers = goal.answers, x = before.axes[kX].value] {
     if (axis == kA && store_.offsets().axes[kX].value != x) {
       return answer->set_value("the work offset of X was changed meanwhile; probe again");
     }
     answer->set_value(setWithoutJob(
-        axis, offset, [=](double) { return value; }, large_change_ok, large_change));
+        axis, offset, [=](double) { return value; }, answers, needs));
   });
   return answered.get();
 }
 
-/// @param offset the offset, without its value and time. @param large_change whether it was refused because it would
-/// change by too much.
+/// @param offset the offset, without its value and time. @param needs what must be answered first.
 /// @return why the offset was not set; empty if it was.
-std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
-                                        bool& large_change) {
+std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at,
+                                        const std::vector<std::string>& answers, std::vector<Need>& needs) {
   const LoopStatus status = loop_.status();
   std::string refused = refusal(status);
   if (!refused.empty()) return refused;
@@ -275,13 +316,12 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   offset.value = offset_at(status.position[i]);
   refused = travelRefusal(limits_, axis, offset.value);
   if (!refused.empty()) return refused;
-  if (!large_change_ok) refused = changeRefusal(limits_, axis, store_.offsets().axes[i], offset.value);
-  large_change = !refused.empty();
-  if (large_change) return refused;
-  return changed([&](WorkOffsets& offsets) { setIn(offsets, axis, offset); },
-                 std::string("work offset of ") + kJointNames[i] + " = " +
-                     text(Quantity{offset.value, unitOf(axis, 0)}, 9) + ", " + basisText(axis, offset) + ", by " +
-                     offset.set_by);
+  const auto need = needOfChange(limits_, axis, store_.offsets().axes[i], offset.value);
+  if (need && !isAnswered(*need, answers)) {
+    needs = {*need};
+    return need->text;
+  }
+  return changed([&](WorkOffsets& offsets) { setIn(offsets, axis, offset); }, saidOf(axis, offset));
 }
 
 void OffsetServer::publish() {

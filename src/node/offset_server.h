@@ -15,6 +15,7 @@
 #include <ros/ros.h>
 
 #include <functional>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -45,14 +46,19 @@ class OffsetServer {
   /// note was on the disk.
   void noteFinished(const Progress& last);
 
+  /// Carries out an answer of a goal, while the goal keeps other changes out. Thread safe; never waits.
+  /// @param answer kConfirmWheel or kFitOffsets. @param job the goal's job. @param by who gives the answer, for people.
+  /// @return why it was not carried out; empty if it was.
+  std::future<std::string> carryOut(NeedAnswer answer, const OffsetBasis& job, const std::string& by);
+
   /// Sets a work offset that was probed, while the caller locks jobs out. Waits for this object's thread, so it is to
   /// be called from another one.
   /// @param value [m], A [rad]. @param before the offsets when the cycle began; the value is refused if it was computed
-  /// with an offset that has changed since. @param goal by whom and for what the offset is set.
-  /// @param large_change whether it was refused only because it would change by too much.
+  /// with an offset that has changed since. @param goal by whom and for what the offset is set, and its answers.
+  /// @param needs what must be answered first.
   /// @return why it was not set; empty if it was.
   std::string setProbed(int axis, double value, const WorkOffsets& before, const flute_grinder::ProbeGoal& goal,
-                        bool& large_change);
+                        std::vector<Need>& needs);
 
  private:
   /// Computes the offset of an axis from its position [m or rad].
@@ -69,8 +75,10 @@ class OffsetServer {
   void saveNotes();
   template <typename Request, typename Response>
   void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
-  std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at, bool large_change_ok,
-                            bool& large_change);
+  std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at,
+                            const std::vector<std::string>& answers, std::vector<Need>& needs);
+  std::string mount(const OffsetBasis& job, const std::string& by);
+  std::string fit(const OffsetBasis& job, const std::string& by);
   void publish();
 
   const ControlLoop& loop_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/escaped.h"
+#include "flute_grinder/base/escaped.h"
 
 #include <cstddef>
 #include <string>

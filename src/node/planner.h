@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/plan/planned_job.h"
+#include "flute_grinder/check/planned_job.h"
 
 #include <atomic>
 #include <condition_variable>

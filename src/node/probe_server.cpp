@@ -109,9 +109,9 @@ void ProbeServer::runUnguarded(GoalHandle& handle, std::uint64_t stops, flute_gr
   if (!goal.set_offset) return;
   prober.checkStop();
   const int axis = rowOf(static_cast<ProbingCycle>(goal.cycle)).axis;
-  bool large_change = false;
-  const std::string refused = offsets_.setProbed(axis, offset, before, goal, large_change);
-  result.large_change = static_cast<std::uint8_t>(large_change);
+  std::vector<Need> needs;
+  const std::string refused = offsets_.setProbed(axis, offset, before, goal, needs);
+  result.needs = toMessage(needs);
   result.offset = offset;
   if (!refused.empty()) throw ProbingError(refused);
   result.offset_set = 1;

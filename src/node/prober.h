@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/job/quantity.h"
 
 #include <array>
 #include <cstdint>

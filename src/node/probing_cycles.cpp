@@ -1,11 +1,11 @@
 #include "node/probing_cycles.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/rake_touch.h"
-#include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/tool/rake_touch.h"
+#include "flute_grinder/tool/z_law.h"
 #include "node/plain_name.h"
 
 #include <algorithm>

@@ -1,8 +1,9 @@
 #include "node/progress_tracker.h"
 
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>
@@ -25,42 +26,58 @@ std::string describe(const Progress& p) {
   return jobText(p.job_name, p.operation, p.cutter, p.tooth_angles.size()) + ", " + placeText(p.next);
 }
 
+bool isUnfinished(const Progress& p) { return !p.job_digest.empty() && !p.finished; }
+
 }  // namespace
 
 ProgressTracker::ProgressTracker(Journal& journal) : journal_(journal), progress_(journal.status().on_disk) {}
 
-std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first, bool discard) const {
+std::string ProgressTracker::refusal(const std::string& digest, const ToothPass& first) const {
   const Journal::Status journal = journal_.status();
   if (!journal.unread.empty()) return journal.error;
-  const bool unfinished = !progress_.job_digest.empty() && !progress_.finished;
-  if (unfinished && digest == progress_.job_digest && first == progress_.next) return "";
-  if (!(first == ToothPass{})) {
-    return "the job is to begin at " + placeText(first) +
-           ", and the journal does not have the passes before as ground; allowed: " + placeText({}) +
-           ", or where the journal has left the job";
+  if (first == ToothPass{} || (isUnfinished(progress_) && digest == progress_.job_digest && first == progress_.next)) {
+    return "";
   }
-  if (discard) return "";
-  if (!journal.damage.empty()) return journal.damage + "; what job it kept is unknown; restore the file, or discard it";
-  if (!unfinished) return "";
-  return "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
+  return "the job is to begin at " + placeText(first) +
+         ", and the journal does not have the passes before as ground; allowed: " + placeText({}) +
+         ", or where the journal has left the job";
 }
 
-std::string ProgressTracker::offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const {
-  if (progress_.finished || digest != progress_.job_digest) return "";
-  if (offsets.wheel.mounting != progress_.mounting) {
-    return "the job is not finished, and another wheel has been mounted since it began; discard the job";
+std::optional<Need> ProgressTracker::need(const std::string& digest, const ToothPass& first) const {
+  Need need{NeedKind::kUnfinishedJob, "", {}, {NeedAnswer::kDiscard}};
+  const std::string damage = journal_.status().damage;
+  if (!damage.empty()) {
+    need.text = damage + "; what job it kept is unknown; restore the file, or discard it";
+  } else if (isUnfinished(progress_) && !(digest == progress_.job_digest && first == progress_.next)) {
+    need.text = "the journal keeps a job that is not finished: " + describe(progress_) + "; continue it, or discard it";
+  } else {
+    return std::nullopt;
   }
-  if (offsets.tool.clamping != progress_.clamping) {
-    return "the job is not finished, and a tool was clamped since it began; discard the job";
-  }
-  const std::string changes = offsetChanges(offsets);
-  if (changes.empty()) return "";
-  return "the job is not finished, and it began with other work offsets" + changes +
-         "; set them as they were, or discard the job";
+  return need;
+}
+
+std::optional<Need> ProgressTracker::offsetNeed(const std::string& digest, const ToothPass& first,
+                                                const WorkOffsets& offsets) const {
+  const std::string changed = progress_.finished || digest != progress_.job_digest ? "" : sinceItBegan(offsets);
+  if (changed.empty()) return std::nullopt;
+  Need need{NeedKind::kUnfinishedJob, "the job is not finished, and " + changed, {}, {}};
+  if (first == ToothPass{}) need.answers.push_back(NeedAnswer::kDiscard);
+  return need;
 }
 
 bool ProgressTracker::continues(const std::string& digest, const WorkOffsets& offsets) const {
-  return !progress_.finished && digest == progress_.job_digest && offsetRefusal(digest, offsets).empty();
+  return !progress_.finished && digest == progress_.job_digest && sinceItBegan(offsets).empty();
+}
+
+/// What has changed since the unfinished job began, with the remedy; empty if nothing has.
+std::string ProgressTracker::sinceItBegan(const WorkOffsets& offsets) const {
+  if (offsets.wheel.mounting != progress_.mounting) {
+    return "another wheel has been mounted since it began; discard the job";
+  }
+  if (offsets.tool.clamping != progress_.clamping) return "a tool was clamped since it began; discard the job";
+  const std::string changes = offsetChanges(offsets);
+  if (changes.empty()) return "";
+  return "it began with other work offsets" + changes + "; set them as they were, or discard the job";
 }
 
 /// The changes of the offsets since the last entry, for the operator; empty if there are none.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/machine/need.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "node/journal.h"
@@ -21,16 +22,17 @@ class ProgressTracker {
   /// @param journal must outlive this object.
   explicit ProgressTracker(Journal& journal);
 
-  /// Why a job must not overwrite the journal; empty if it may. The journal holds another, unfinished job, is damaged,
-  /// could not be read, or does not list the passes that the job leaves out as ground.
-  /// @param first first pass to grind. @param discard whether to give up the last job.
-  std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const;
-  /// Why a job must not be continued; empty if it may, or if it is another job. The work offsets have changed since it
-  /// began, by more than the rounding of a display (0.1 um, A 1e-6 rad), or another wheel was mounted or a tool
-  /// clamped.
-  std::string offsetRefusal(const std::string& digest, const WorkOffsets& offsets) const;
+  /// Why a job cannot begin, whatever is answered; empty if it can. The journal could not be read, or does not list the
+  /// passes that the job leaves out as ground.
+  /// @param first first pass to grind.
+  std::string refusal(const std::string& digest, const ToothPass& first) const;
+  /// What must be said before a job overwrites the journal: it is damaged, or holds another, unfinished job.
+  std::optional<Need> need(const std::string& digest, const ToothPass& first) const;
+  /// What must be said before the unfinished job is ground with work offsets that have changed since it began, by more
+  /// than the rounding of a display (0.1 um, A 1e-6 rad), with another mounting of the wheel, or another clamping.
+  std::optional<Need> offsetNeed(const std::string& digest, const ToothPass& first, const WorkOffsets& offsets) const;
 
-  /// Whether a job is the unfinished one, with unchanged work offsets as compared by offsetRefusal().
+  /// Whether a job is the unfinished one, with unchanged work offsets as compared by offsetNeed().
   bool continues(const std::string& digest, const WorkOffsets& offsets) const;
 
   /// Enters a job before it starts.
@@ -54,6 +56,7 @@ class ProgressTracker {
   std::string error() const { return journal_.status().error; }
 
  private:
+  std::string sinceItBegan(const WorkOffsets& offsets) const;
   std::string offsetChanges(const WorkOffsets& offsets) const;
   void write();
   void updatePlace(const LoopStatus& status);

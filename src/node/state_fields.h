@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/base/format.h"
 
 #include <yaml-cpp/yaml.h>
 

@@ -1,7 +1,7 @@
 #include "node/state_file.h"
 
-#include "flute_grinder/geometry/replace_file.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/job/sha256.h"
 
 #include <fcntl.h>

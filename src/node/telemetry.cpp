@@ -1,5 +1,6 @@
 #include "node/telemetry.h"
 
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 

@@ -1,6 +1,6 @@
 #include "panel/cutter_section.h"
 
-#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/tool/ground_job.h"
 #include "panel/text_view.h"
 
 #include <QStringList>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/geometry/section_outline.h"
-#include "flute_grinder/geometry/tool_figure.h"
 #include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/tool/section_outline.h"
+#include "flute_grinder/tool/tool_figure.h"
 
 #include <QString>
 

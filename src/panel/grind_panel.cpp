@@ -1,11 +1,11 @@
 #include "panel/grind_panel.h"
 
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/setup/touch_off.h"
 #include "panel/click_guard.h"
 #include "panel/panel_button.h"
 #include "panel/plain_words.h"
@@ -135,8 +135,6 @@ GrindPanel::GrindPanel(QWidget* parent)
   hold_key_->add(*buttons_.at(MachineEvent::kHold));
   connect(job_, &JobBox::planWanted, this, &GrindPanel::plan);
   connect(job_, &JobBox::startWanted, this, &GrindPanel::send);
-  connect(job_, &JobBox::swivelConfirmed, this, &GrindPanel::confirmSwivel);
-  connect(job_, &JobBox::offsetFitWanted, this, &GrindPanel::fitOffsets);
   connect(job_, &JobBox::startDelayed, this, [this] { tabs_->setCurrentIndex(0); });
   connect(job_, &JobBox::fileChosen, this, &GrindPanel::configChanged);
   connect(override_, &OverrideBox::wanted, this, &GrindPanel::setFeedOverride);
@@ -144,7 +142,6 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(jog_, &JogBox::continuousWanted, this, [this](int axis, double velocity) {
     if (link_) link_->jog(axis, velocity);
   });
-  connect(job_, &JobBox::wheelConfirmed, this, &GrindPanel::confirmWheel);
   connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::askToTouchOff);
   connect(touch_off_, &TouchOffBox::backWanted, this, &GrindPanel::askToTakeBack);
   connect(touch_off_, &TouchOffBox::reclampedWanted, this, &GrindPanel::askReclamped);
@@ -463,14 +460,6 @@ void GrindPanel::send(const flute_grinder::GrindGoal& goal) {
   showMessage(id ? "the job was sent" : "the job was not sent: no answer from the grinder " + name_);
 }
 
-void GrindPanel::confirmSwivel(double angle) {
-  link_->confirmSwivel(angle, [this, angle](const std::string& refusal) {
-    if (!refusal.empty()) return showMessage(refusal);
-    showMessage("confirm-swivel: the swivel is set to " + text(Quantity{angle, Unit::kRadian}));
-    job_->startConfirmed();
-  });
-}
-
 void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResult& result) {
   const bool good = result.error_code == flute_grinder::GrindResult::SUCCESSFUL;
   if (sent_ && id == sent_->id) {
@@ -480,6 +469,7 @@ void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResul
       goal.dry_run = false;
       return job_->setPlan(goal, result);
     }
+    if (!good && !result.plan.needs.empty()) job_->ask(goal, result.plan.needs);
   }
   if (!good) return showMessage("the job has ended: " + result.error_string);
   // A dry run of another client has written no setpoints.
@@ -512,20 +502,24 @@ void GrindPanel::askToTouchOff(int axis, double at) {
     if (basis.hasJob()) text += "For " + basis.job_name + ", wheel " + wheelText(basis) + ".";
     touch_off_->ask(QString::fromStdString(text).trimmed(), change(axis, before, view.state->position[i] - position),
                     [=] {
-                      touchOff({axis, before}, position, basis, false);
+                      touchOff({axis, before}, position, basis);
                     });
   } catch (const std::exception& error) {
     showMessage(std::string("touch-off: ") + error.what());
   }
 }
 
-void GrindPanel::touchOff(const Touched& what, double position, const OffsetBasis& basis, bool large_change_ok) {
+void GrindPanel::touchOff(const Touched& what, double position, const OffsetBasis& basis,
+                          const std::vector<std::string>& answers) {
   const auto answered = reply("touch-off: the work offset of " + axisName(what.axis) + " is set");
-  link_->touchOff(what.axis, position, basis, large_change_ok, [=](const std::string& refusal, bool large_change) {
-    answered(refusal);
-    if (refusal.empty()) offerBack(what.before.wasSet() ? std::optional<Touched>(what) : std::nullopt);
-    if (large_change) touch_off_->ask(capitalized(refusal), {}, [=] { touchOff(what, position, basis, true); });
-  });
+  link_->touchOff(what.axis, position, basis, answers,
+                  [=](const std::string& refusal, const std::vector<flute_grinder::Need>& needs) {
+                    answered(refusal);
+                    if (refusal.empty()) offerBack(what.before.wasSet() ? std::optional<Touched>(what) : std::nullopt);
+                    if (needs.empty()) return;
+                    touch_off_->ask(needs.front(),
+                                    [=](const std::string& id) { touchOff(what, position, basis, {id}); });
+                  });
 }
 
 void GrindPanel::offerBack(const std::optional<Touched>& touched) {
@@ -564,14 +558,6 @@ void GrindPanel::askReclamped() {
       [this] { link_->sayReclamped(reply("reclamped: where the teeth are is not known")); });
 }
 
-void GrindPanel::confirmWheel(const flute_grinder::GrindGoal& goal) {
-  const OffsetBasis job = basisOf(goal, OffsetMethod::kUnknown);
-  link_->confirmWheel(job, [this, job](const std::string& refusal) {
-    showMessage(refusal.empty() ? "confirm-wheel: the wheel on the spindle is " + wheelText(job) : refusal);
-    if (refusal.empty()) job_->planAnew();
-  });
-}
-
 /// The basis of an offset: the chosen job, if there is one. @throw std::exception with the reason if it is unknown.
 OffsetBasis GrindPanel::touchedFor(int axis) const {
   OffsetBasis basis;
@@ -583,34 +569,6 @@ OffsetBasis GrindPanel::touchedFor(int axis) const {
   }
   if (axis == kZ) throw std::invalid_argument("Z is 0 at the height of a job's set-up; open the job first");
   return basis;
-}
-
-void GrindPanel::fitOffsets(const flute_grinder::GrindGoal& goal) {
-  const auto message = link_->view().offsets;
-  if (!message) return;
-  const WorkOffsets offsets = fromMessage(*message);
-  struct Replies {
-    int missing = 0;
-    std::map<int, std::string> lines;  ///< a line for each axis
-  };
-  auto replies = std::make_shared<Replies>();
-  for (const OffsetMismatch& mismatch : mismatches(offsets, goal)) {
-    if (!mismatch.change) continue;
-    const double was = offsets.axes[static_cast<std::size_t>(mismatch.axis)].value, is = was + *mismatch.change;
-    const auto shown = [](double metres) { return text(Quantity{metres, Unit::kMetre}); };
-    const std::string done =
-        "work offset of " + axisName(mismatch.axis) + ": " + shown(is) + ", was " + shown(was) + "; computed";
-    ++replies->missing;
-    link_->setOffset(mismatch.axis, is, basisOf(goal, OffsetMethod::kComputed),
-                     [this, replies, axis = mismatch.axis, done](const std::string& refusal) {
-                       replies->lines[axis] = refusal.empty() ? done : refusal;
-                       if (--replies->missing > 0) return;
-                       std::string all;
-                       for (const auto& line : replies->lines) all += (all.empty() ? "" : "\n") + line.second;
-                       showMessage(all);
-                       job_->planAnew();
-                     });
-  }
 }
 
 double GrindPanel::touchedY(double diameter) const {

@@ -25,6 +25,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -83,18 +84,16 @@ class GrindPanel : public rviz::Panel {
   void dropPassedReply(std::optional<MachineState> state);
   void plan(const flute_grinder::GrindGoal& goal);
   void send(const flute_grinder::GrindGoal& goal);
-  void confirmSwivel(double angle);
   void onResult(const std::string& id, const flute_grinder::GrindResult& result);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
   void askToTouchOff(int axis, double at);
-  void touchOff(const Touched& what, double position, const OffsetBasis& basis, bool large_change_ok);
+  void touchOff(const Touched& what, double position, const OffsetBasis& basis,
+                const std::vector<std::string>& answers = {});
   void offerBack(const std::optional<Touched>& touched);
   void askToTakeBack();
   void askReclamped();
-  void confirmWheel(const flute_grinder::GrindGoal& goal);
   OffsetBasis touchedFor(int axis) const;
-  void fitOffsets(const flute_grinder::GrindGoal& goal);
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception with the reason if it
   /// cannot.
   double touchedY(double diameter) const;

@@ -1,7 +1,5 @@
 #include "panel/grinder_link.h"
 
-#include "flute_grinder/ConfirmSwivel.h"
-#include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/Jog.h"
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/Reclamped.h"
@@ -198,37 +196,25 @@ void GrinderLink::setFeedOverride(double fraction, const OnAnswer& on_answer) {
   ask<flute_grinder::SetFeedOverride>("set_feed_override", request, "feed override", "", on_answer);
 }
 
-void GrinderLink::confirmSwivel(double angle, const OnAnswer& on_answer) {
-  flute_grinder::ConfirmSwivel::Request request;
-  request.swivel = angle;
-  ask<flute_grinder::ConfirmSwivel>("confirm_swivel", request, "confirm-swivel", "", on_answer);
-}
-
-void GrinderLink::confirmWheel(const OffsetBasis& job, const OnAnswer& on_answer) {
-  flute_grinder::ConfirmWheel::Request request;
-  request.job = toMessage(job);
-  request.set_by = userAtHost();
-  ask<flute_grinder::ConfirmWheel>("confirm_wheel", request, "confirm-wheel", "confirm-wheel: ", on_answer);
-}
-
 void GrinderLink::sayReclamped(const OnAnswer& on_answer) {
   flute_grinder::Reclamped::Request request;
   request.set_by = userAtHost();
   ask<flute_grinder::Reclamped>("reclamped", request, "reclamped", "reclamped: ", on_answer);
 }
 
-void GrinderLink::touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
-                           const std::function<void(const std::string& refusal, bool large_change)>& on_answer) {
+void GrinderLink::touchOff(
+    int axis, double position, const OffsetBasis& basis, const std::vector<std::string>& answers,
+    const std::function<void(const std::string& refusal, const std::vector<flute_grinder::Need>& needs)>& on_answer) {
   flute_grinder::TouchOff::Request request;
   request.axis = static_cast<std::uint8_t>(axis);
   request.position = position;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
-  request.large_change_ok = static_cast<std::uint8_t>(large_change_ok);
+  request.answers = answers;
   call<flute_grinder::TouchOff>(
       "touch_off", request, kRequestTimeout, [on_answer, silence = noAnswer()](const auto& response) {
-        if (!response) return on_answer("touch-off: " + silence, false);
-        on_answer(response->success ? "" : "touch-off: " + response->message, response->large_change != 0);
+        if (!response) return on_answer("touch-off: " + silence, {});
+        on_answer(response->success ? "" : "touch-off: " + response->message, response->needs);
       });
 }
 
@@ -238,7 +224,7 @@ void GrinderLink::setOffset(int axis, double value, const OffsetBasis& basis, co
   request.value = value;
   request.set_by = userAtHost();
   request.basis = toMessage(basis);
-  request.large_change_ok = 1;
+  request.answers = {toString(NeedAnswer::kSetOffset)};
   ask<flute_grinder::SetOffset>("set_offset", request, "set-offset", "set-offset: ", on_answer);
 }
 
@@ -265,6 +251,7 @@ std::optional<std::string> GrinderLink::send(const flute_grinder::GrindGoal& goa
   message.header.stamp = ros::Time::now();
   message.goal_id = ids_.generateID();
   message.goal = goal;
+  message.goal.sent_by = userAtHost();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     sent_ = message.goal_id.id;

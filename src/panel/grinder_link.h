@@ -6,8 +6,9 @@
 #include "flute_grinder/GrinderState.h"
 #include "flute_grinder/Legend.h"
 #include "flute_grinder/MachineInfo.h"
+#include "flute_grinder/Need.h"
 #include "flute_grinder/WorkOffsets.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/network/service_call.h"
@@ -24,6 +25,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -74,17 +76,14 @@ class GrinderLink {
   void request(MachineEvent event, const OnAnswer& on_answer);
   /// Requests a feed override. @param fraction fraction of the job's feed.
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
-  /// Confirms the swivel angle set by hand. @param angle [rad].
-  void confirmSwivel(double angle, const OnAnswer& on_answer);
-  /// Confirms that the wheel of a job is on the spindle.
-  void confirmWheel(const OffsetBasis& job, const OnAnswer& on_answer);
   /// Reports that a tool was clamped.
   void sayReclamped(const OnAnswer& on_answer);
   /// Sets the work offset of an axis from its present position. @param position in work coordinates [m], A [rad].
-  /// @param basis job and wheel for which it is set. @param large_change_ok whether it may change by any amount.
-  /// @param on_answer see OnAnswer; also gets whether it was refused because of a large change.
-  void touchOff(int axis, double position, const OffsetBasis& basis, bool large_change_ok,
-                const std::function<void(const std::string& refusal, bool large_change)>& on_answer);
+  /// @param basis job and wheel for which it is set. @param answers answers to the needs of a refusal before.
+  /// @param on_answer see OnAnswer; also gets what must be answered first.
+  void touchOff(
+      int axis, double position, const OffsetBasis& basis, const std::vector<std::string>& answers,
+      const std::function<void(const std::string& refusal, const std::vector<flute_grinder::Need>& needs)>& on_answer);
   /// Sets an axis' work offset, however much it changes. @param value [m], A [rad].
   void setOffset(int axis, double value, const OffsetBasis& basis, const OnAnswer& on_answer);
   /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
@@ -93,7 +92,7 @@ class GrinderLink {
   /// @param velocity signed velocity [m/s], A [rad/s]; 0 stops.
   void jog(int axis, double velocity);
 
-  /// Sends a job. @return the goal's id; nothing if no grinder is connected.
+  /// Sends a job, in the name of this user. @return the goal's id; nothing if no grinder is connected.
   std::optional<std::string> send(const flute_grinder::GrindGoal& goal);
   /// Holds or cancels the running or planned job of any client, or switches the power off. Uses a connection that
   /// survives the ROS master, and has no answer: the state shows the effect.

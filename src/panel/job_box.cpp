@@ -1,14 +1,13 @@
 #include "panel/job_box.h"
 
-#include "flute_grinder/geometry/job_setup.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/setup/job_setup.h"
 #include "panel/beside.h"
 #include "panel/panel_button.h"
 #include "panel/plain_words.h"
@@ -21,7 +20,6 @@
 #include <QStringList>
 #include <QVBoxLayout>
 
-#include <cmath>
 #include <exception>
 #include <stdexcept>
 #include <utility>
@@ -35,42 +33,13 @@ constexpr const char* kFileChanged = "A file of the job has changed since it was
 constexpr const char* kZeroChanged = "A zero point or the wheel has changed since it was planned. Plan it again.";
 constexpr int kTick = 30;  ///< width of a tick and its margins [px]
 constexpr int kQuestionLines = 4;
-constexpr int kAnswerLines = 3;   ///< lines with room beside a choice of the operation; one more without
-constexpr int kAngleDigits = 10;  ///< digits with which the angle appears as in the job file
+constexpr int kAnswerLines = 3;  ///< lines with room beside a choice of the operation; one more without
 
 bool isUnfinished(const flute_grinder::JobProgress& progress) {
   return !progress.job_digest.empty() && !progress.finished;
 }
 
 QString packageJobs() { return QString::fromStdString(ros::package::getPath("flute_grinder")) + "/jobs"; }
-
-/// Whether starting a goal overwrites the journal's entry of an unfinished job: of another job, or of the first part of
-/// the same job.
-bool discardsUnfinished(const flute_grinder::GrindGoal& goal, const flute_grinder::JobProgress& progress) {
-  if (!isUnfinished(progress)) return false;
-  const bool goes_on = goal.first_tooth == progress.tooth && goal.first_pass == progress.pass;
-  return !(goes_on && progress.job_digest == jobDigest(jobFromGoal(goal)));
-}
-
-/// Whether the operator must confirm the swivel before a goal is started. Never if the drive measures it: at
-/// another angle the grinder refuses the goal.
-bool needsConfirmation(const flute_grinder::GrindGoal& goal, const Swivel& swivel) {
-  return !swivel.measured && !swivel.isAt(processOf(goal).setup_swivel);
-}
-
-/// A comparison of the values that a job asks for and the present ones.
-Comparison comparisonOf(const std::vector<OffsetMismatch>& mismatches) {
-  Comparison all{{"asked", "set", "off by"}, {}};
-  for (const OffsetMismatch& mismatch : mismatches) {
-    const std::string difference = mismatch.change ? text(Quantity{*mismatch.change, Unit::kMetre}) : "";
-    QStringList row;
-    for (const std::string& cell : {mismatch.what, mismatch.asked, mismatch.set, difference}) {
-      row << QString::fromStdString(cell);
-    }
-    all.rows.push_back(row);
-  }
-  return all;
-}
 
 }  // namespace
 
@@ -81,7 +50,6 @@ JobBox::JobBox(QWidget* parent)
       choose_(new PanelButton("choose", "Open...", "Choose a job file")),
       setup_(new PanelButton("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
       continue_(new QCheckBox(kContinue)),
-      zeros_(new QLabel),
       plan_(new PanelButton("plan", "Plan",
                             "The grinder plans and checks the job as it would be ground; nothing moves. While a job "
                             "runs, 'grind plan' does so without the grinder")),
@@ -89,18 +57,15 @@ JobBox::JobBox(QWidget* parent)
       other_job_(textView("other_job", kAnswerLines)),
       answer_(new QStackedWidget),
       form_(new QWidget),
-      discard_question_(new Question("unfinished", kQuestionLines)),
-      wheel_question_(new Question("wheel", kQuestionLines)),
-      offset_question_(new Question("offsets", kQuestionLines)),
-      swivel_question_(new Question("swivel", kQuestionLines)),
+      question_(new Question("job", kQuestionLines)),
       pages_(new QStackedWidget) {
   layOut();
-  makeQuestions();
   connect(choose_, &QPushButton::clicked, this, &JobBox::choose);
   connect(setup_, &QPushButton::clicked, this, &JobBox::openSetup);
   connect(operation_, &OperationChoice::changed, this, &JobBox::readAnew);
   connect(continue_, &QCheckBox::clicked, this, &JobBox::clickContinue);
-  connect(plan_, &QPushButton::clicked, this, &JobBox::planAnew);
+  connect(plan_, &QPushButton::clicked, this, [this] { plan({}); });
+  connect(question_, &Question::answered, this, &JobBox::closeQuestion);
   connect(&watch_, &QFileSystemWatcher::fileChanged, this, [this] {
     if (planned_) discardPlan(kFileChanged);
   });
@@ -111,10 +76,6 @@ void JobBox::layOut() {
   name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
-  zeros_->setObjectName("zero_points");
-  zeros_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-  zeros_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
-  zeros_->setFixedHeight(2 * zeros_->fontMetrics().lineSpacing() + 2);
   auto* file = new QHBoxLayout;
   file->addWidget(name_, 1);
   file->addWidget(choose_);
@@ -125,47 +86,14 @@ void JobBox::layOut() {
   layout->addWidget(operation_);
   layout->addWidget(continue_);
   layout->addWidget(plan_);
-  layout->addWidget(zeros_);
   answer_->addWidget(verdict_);
   answer_->addWidget(other_job_);
   layout->addWidget(answer_);
   pages_->addWidget(form_);
+  pages_->addWidget(question_);
   auto* pages = new QVBoxLayout(this);
   pages->setContentsMargins(6, 6, 6, 6);
   pages->addWidget(pages_);
-}
-
-void JobBox::makeQuestions() {
-  discard_question_->addDanger("discard", "Discard that job", "Start this job; the other cannot be continued any more",
-                               0, 0, [this] { askForWheel(true); });
-  keep_ = discard_question_->addAnswer("keep", "Continue it", "Plan the job from where it was left", 0, 1, [this] {
-    if (!where_left_) return;
-    continue_->setChecked(true);
-    planAnew();
-  });
-  fit_ = offset_question_->addAnswer("fit_offsets", "",
-                                     "Computed from what they were set for: the wheel and the swivel are the same. "
-                                     "Plans the job again",
-                                     0, 1, [this] {
-                                       if (planned_) Q_EMIT offsetFitWanted(*planned_);
-                                     });
-  wheel_question_->addAnswer("confirm_wheel", "It is mounted",
-                             "The wheel of the job is on the spindle. Plans the job again", 0, 1, [this] {
-                               if (planned_) Q_EMIT wheelConfirmed(*planned_);
-                             });
-  offset_question_->addDanger("ignore_offset_check", "Ignore and grind",
-                              "Start the job with the work offsets as they are", 1, 0, [this] {
-                                ignore_offset_check_ = true;
-                                askForSwivel();
-                              });
-  swivel_question_->addAnswer("confirm_swivel", "Confirm and start", "The swivel is set and clamped: start the job", 0,
-                              1, [this] {
-                                if (planned_) Q_EMIT swivelConfirmed(processOf(*planned_).setup_swivel);
-                              });
-  for (Question* question : {discard_question_, wheel_question_, offset_question_, swivel_question_}) {
-    pages_->addWidget(question);
-    connect(question, &Question::answered, this, &JobBox::closeQuestion);
-  }
 }
 
 /// Opens the file dialog, which is not modal, so that the buttons that stop the grinder work meanwhile.
@@ -301,25 +229,56 @@ std::optional<flute_grinder::GrindGoal> JobBox::beginPlan() {
   return goal;
 }
 
+/// Whether a goal is the one that would be started now, whatever its answers.
+bool JobBox::isForNow(flute_grinder::GrindGoal goal) {
+  goal.answers.clear();
+  return goalNow() == goal;
+}
+
 void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::GrindResult& result) {
-  if (goalNow() != goal) return;
+  if (!isForNow(goal)) return;
   planned_.reset();
   if (result.plan.valid) planned_ = goal;
+  needs_ = result.plan.needs;
   planned_with_ = result.plan.offsets;
   showVerdict(QString::fromStdString(describe(result)), result.plan.valid != 0);
 }
 
 void JobBox::start() {
-  if (!planned_) return;
-  if (!discardsSomething()) return askForWheel(false);
-  keep_->setVisible(where_left_.has_value());
-  const std::string lost =
-      journal_damaged_ ? journal_error_ + ". What job it kept is not known" : "Not finished: " + describe(progress_);
-  ask(discard_question_,
-      QString::fromStdString(lost + ". It cannot be continued once this one starts:") + "\n" + plannedJob());
+  if (planned_) ask(*planned_, needs_);
 }
 
-bool JobBox::discardsSomething() const { return journal_damaged_ || discardsUnfinished(*planned_, progress_); }
+void JobBox::ask(const flute_grinder::GrindGoal& goal, const std::vector<flute_grinder::Need>& needs) {
+  planned_ = goal;
+  needs_ = needs;
+  answers_ = goal.answers;
+  asked_ = 0;
+  askNext();
+}
+
+/// Asks for the next of the needs; once all are answered, starts the job.
+void JobBox::askNext() {
+  if (!planned_) return;
+  if (asked_ < needs_.size()) {
+    question_->ask(needs_[asked_++], plannedJob(), [this](const flute_grinder::NeedAnswer& answer) { take(answer); });
+    pages_->setCurrentWidget(question_);
+    Q_EMIT startDelayed();
+    return;
+  }
+  auto goal = takePlanned();
+  if (!goal) {
+    Q_EMIT startDelayed();
+    return;
+  }
+  goal->answers = answers_;
+  Q_EMIT startWanted(*goal);
+}
+
+void JobBox::take(const flute_grinder::NeedAnswer& answer) {
+  answers_.push_back(answer.id);
+  if (answer.changes_plan) return plan(answers_);
+  askNext();
+}
 
 /// A full description of the planned job.
 QString JobBox::plannedJob() const {
@@ -327,81 +286,19 @@ QString JobBox::plannedJob() const {
   return QString::fromStdString(describe(*planned_) + ", wheel " + wheel);
 }
 
-void JobBox::ask(Question* question, const QString& text, const Comparison& figures) {
-  question->ask(text, figures);
-  pages_->setCurrentWidget(question);
-  Q_EMIT startDelayed();
-}
-
-void JobBox::askForWheel(bool discard) {
-  discard_ = discard;
-  ignore_offset_check_ = false;
-  const auto wheels = toAskFor(true);
-  if (wheels.empty()) return askForOffsets();
-  ask(wheel_question_, plannedJob() + "\nIs its wheel on the spindle?", comparisonOf(wheels));
-}
-
-void JobBox::askForOffsets() {
-  if (!planned_) return;
-  const auto offsets = toAskFor(false);
-  if (offsets.empty()) return askForSwivel();
-  const QString axes = QString::fromStdString(computable(offsets));
-  fit_->setText("Fit " + axes);
-  fit_->setVisible(!axes.isEmpty());
-  ask(offset_question_, plannedJob() + "\nThese zero points are not of this job:", comparisonOf(offsets));
-}
-
-/// The offsets, the wheel and the tool that do not fit the chosen job.
-std::vector<OffsetMismatch> JobBox::offsetMismatches() const {
-  if (!job_ || !offsets_) return {};
-  return mismatches(*offsets_, goal_);
-}
-
-/// The mismatches to ask about; none for a job that is continued, which the grinder checks by itself.
-/// @param wheel true for the wheel, false for all others.
-std::vector<OffsetMismatch> JobBox::toAskFor(bool wheel) const {
-  std::vector<OffsetMismatch> asked;
-  if (continue_->isChecked()) return asked;
-  for (OffsetMismatch& mismatch : offsetMismatches()) {
-    if ((mismatch.what == "wheel") == wheel) asked.push_back(std::move(mismatch));
-  }
-  return asked;
-}
-
-void JobBox::askForSwivel() {
-  if (!planned_ || !needsConfirmation(*planned_, swivel_)) return startConfirmed();
-  const double asked = processOf(*planned_).setup_swivel;
-  const bool known = std::isfinite(swivel_.angle);
-  const auto shown = [](double angle) {
-    return QString::fromStdString(text(Quantity{angle, Unit::kRadian}, kAngleDigits));
-  };
-  const QString set = known ? shown(swivel_.angle) : "not confirmed";
-  const QString difference = known ? shown(asked - swivel_.angle) : "";
-  ask(swivel_question_, plannedJob() + "\nIs the swivel set to " + shown(asked) + " and clamped?",
-      {{"asked", "set", "off by"}, {{"swivel", shown(asked), set, difference}}});
-}
-
-void JobBox::startConfirmed() {
-  closeQuestion();
-  auto goal = takePlanned();
-  if (!goal) {
-    Q_EMIT startDelayed();
-    return;
-  }
-  goal->discard = static_cast<std::uint8_t>(discard_);
-  goal->ignore_offset_check = static_cast<std::uint8_t>(ignore_offset_check_);
-  Q_EMIT startWanted(*goal);
-}
-
-void JobBox::planAnew() {
-  if (const auto goal = beginPlan()) Q_EMIT planWanted(*goal);
+/// Plans the job, as it would be started now. @param answers answers to the needs of the plan before.
+void JobBox::plan(const std::vector<std::string>& answers) {
+  auto goal = beginPlan();
+  if (!goal) return;
+  goal->answers = answers;
+  Q_EMIT planWanted(*goal);
 }
 
 /// The planned goal. Reads the file again; if it has changed since planning, shows the reason and returns nothing.
 std::optional<flute_grinder::GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
-  if (goal && goal == goalNow()) return goal;
+  if (goal && isForNow(*goal)) return goal;
   if (job_) showVerdict(kFileChanged, false);
   return std::nullopt;
 }
@@ -413,51 +310,16 @@ void JobBox::showOtherJob(const QString& text) {
 
 void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
                      const std::optional<flute_grinder::WorkOffsets>& offsets, bool idle) {
-  offsets_.reset();
-  if (offsets) offsets_ = fromMessage(*offsets);
   if (planned_ && offsets && hasOtherZero(*offsets)) discardPlan(kZeroChanged);
   showFile();
-  showZeroPoints();
-  if (state) swivel_ = {state->swivel, state->swivel_measured != 0};
   refreshContinue(state);
   for (auto* dialog : findChildren<SetupDialog*>()) dialog->refresh(progress_, job_runs_);
-  if (!idle || !asksWithReason()) closeQuestion();
+  if (!idle || !planned_) closeQuestion();
   choose_->setEnabled(idle);
   const bool chosen = !file_.isEmpty() && !operation_->isMissing();
   setup_->setEnabled(chosen);
   continue_->setEnabled(idle && (where_left_ || !unfinished_file_.isEmpty()));
   plan_->setEnabled(idle && chosen);
-}
-
-/// Whether the question shown still needs an answer.
-bool JobBox::asksWithReason() const {
-  if (!planned_) return false;
-  if (pages_->currentWidget() == wheel_question_) return !toAskFor(true).empty();
-  if (pages_->currentWidget() == offset_question_) return !toAskFor(false).empty();
-  if (pages_->currentWidget() == swivel_question_) return needsConfirmation(*planned_, swivel_);
-  return discardsSomething();
-}
-
-void JobBox::showZeroPoints() {
-  QString text = "Zero points: not known";
-  QString hint;
-  if (offsets_) {
-    QStringList axes, said;
-    for (const OffsetMismatch& mismatch : offsetMismatches()) axes << QString::fromStdString(mismatch.what);
-    if (continue_->isChecked()) said << "as when the job began";
-    if (!axes.isEmpty()) said << "not of this job: " + axes.join(", ");
-    if (said.isEmpty()) said << "set for this job";
-    text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      const std::string basis = basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
-      hint += QString("XYZA"[axis]) + ": " + QString::fromStdString(basis) + "\n";
-    }
-    hint += "Wheel: " + QString::fromStdString(mountedText(offsets_->wheel)) + "\n";
-    hint += "Tool: " + QString::fromStdString(toolText(offsets_->tool));
-  }
-  if (text == zeros_->text() && hint == zeros_->toolTip()) return;
-  zeros_->setText(text);
-  zeros_->setToolTip(hint);
 }
 
 void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& state) {
@@ -466,14 +328,13 @@ void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& s
   job_runs_ = isInJob(static_cast<MachineState>(state->state));
   progress_ = state->progress;
   journal_error_ = state->journal_error;
-  journal_damaged_ = state->journal_damaged != 0;
   if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {
     flute_grinder::GrindGoal left = goal_;
     if (continueFrom(progress_, *job_, left).empty()) where_left_ = left;
   }
-  if (continue_->isChecked() && planned_ && planned_ != where_left_) discardPlan();
+  if (continue_->isChecked() && planned_ && !isForNow(*planned_)) discardPlan();
   findUnfinished();
   if (!where_left_) continue_->setChecked(false);
   const QString place = QString(" at tooth %1, pass %2").arg(progress_.tooth + 1).arg(progress_.pass + 1);

@@ -3,9 +3,6 @@
 #include "flute_grinder/GrindGoal.h"
 #include "flute_grinder/GrindResult.h"
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/machine/offset_fit.h"
-#include "flute_grinder/machine/swivel.h"
-#include "flute_grinder/motion/work_offsets.h"
 #include "panel/operation_choice.h"
 #include "panel/question.h"
 
@@ -30,8 +27,7 @@ struct GrindJob;
 struct JobFile;
 
 /// The part of the panel where a job is chosen, planned and started. It emits a goal only if it was planned
-/// without violations. It asks before it discards an unfinished job, if wheel or zero points do not fit, and for the
-/// swivel unless its angle is known. A question shows the values asked for beside the present ones.
+/// without violations, and asks first what the grinder says that the start needs.
 class JobBox : public QWidget {
   Q_OBJECT
 
@@ -57,9 +53,6 @@ class JobBox : public QWidget {
   /// Shows the result of a plan, if it is for the goal that would be started now.
   void setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::GrindResult& result);
 
-  /// Plans the job once more, as it would be started now.
-  void planAnew();
-
   /// Discards the plan. @param why reason for the operator; empty if he knows it.
   void discardPlan(const QString& why = "");
 
@@ -74,8 +67,8 @@ class JobBox : public QWidget {
   /// Starts the planned goal, or asks first. A plan is good for one start: the next needs a plan from the axes' new
   /// position.
   void start();
-  /// Starts the job after the grinder has taken the confirmation of swivelConfirmed().
-  void startConfirmed();
+  /// Asks for the answers that a goal still needs, and starts it then.
+  void ask(const flute_grinder::GrindGoal& goal, const std::vector<flute_grinder::Need>& needs);
 
  Q_SIGNALS:
   void fileChosen();
@@ -83,12 +76,6 @@ class JobBox : public QWidget {
   void startDelayed();
   void planWanted(const flute_grinder::GrindGoal& goal);
   void startWanted(const flute_grinder::GrindGoal& goal);
-  /// The operator has set the swivel for the job to be started. @param angle [rad].
-  void swivelConfirmed(double angle);
-  /// The operator has mounted the wheel of a goal, which is then to be planned again.
-  void wheelConfirmed(const flute_grinder::GrindGoal& goal);
-  /// The work offsets that can be computed are to be fitted to a goal.
-  void offsetFitWanted(const flute_grinder::GrindGoal& goal);
 
  private:
   void choose();
@@ -100,19 +87,13 @@ class JobBox : public QWidget {
   bool hasOtherZero(const flute_grinder::WorkOffsets& now) const;
   std::optional<flute_grinder::GrindGoal> takePlanned();
   void layOut();
-  void makeQuestions();
-  void ask(Question* question, const QString& text, const Comparison& figures = {});
   QString plannedJob() const;
   void closeQuestion() { pages_->setCurrentWidget(form_); }
-  void askForWheel(bool discard);
-  void askForOffsets();
-  void askForSwivel();
-  std::vector<OffsetMismatch> offsetMismatches() const;
-  std::vector<OffsetMismatch> toAskFor(bool wheel) const;
-  void showZeroPoints();
-  bool asksWithReason() const;
-  bool discardsSomething() const;
+  void askNext();
+  void take(const flute_grinder::NeedAnswer& answer);
+  void plan(const std::vector<std::string>& answers);
   std::optional<flute_grinder::GrindGoal> goalNow();
+  bool isForNow(flute_grinder::GrindGoal goal);
   std::optional<flute_grinder::GrindGoal> beginPlan();
   void refreshContinue(const std::optional<flute_grinder::GrinderState>& state);
   void findUnfinished();
@@ -126,37 +107,29 @@ class JobBox : public QWidget {
   std::shared_ptr<const GrindJob> job_;
   flute_grinder::GrindGoal goal_;                       ///< goal of job_, from its start
   std::optional<flute_grinder::GrindGoal> planned_;     ///< goal planned without violations
+  std::vector<flute_grinder::Need> needs_;              ///< what the planned goal needs
+  std::size_t asked_ = 0;                               ///< how many of them have been asked
+  std::vector<std::string> answers_;                    ///< answers given to them
   flute_grinder::WorkOffsets planned_with_;             ///< work offsets of that plan
   std::optional<flute_grinder::GrindGoal> where_left_;  ///< goal that continues the job, if it can be continued
   flute_grinder::JobProgress progress_;                 ///< progress last received from the grinder
   std::string journal_error_;                           ///< error of the journal; empty if it is good
-  bool journal_damaged_ = false;                        ///< the journal is damaged, and may be discarded
   bool job_runs_ = false;                               ///< the job of `progress_` is running
   QString unfinished_file_;                             ///< file of another job that can be continued; empty if unknown
   std::optional<OperationKind> unfinished_operation_;   ///< operation of that file, if it has several
   std::string sought_;                                  ///< job and chosen file for which that file was sought
-  Swivel swivel_;                                       ///< swivel last received from the grinder
-  std::optional<WorkOffsets> offsets_;                  ///< offsets last received from the grinder
-  bool discard_ = false;                                ///< the start in question may discard the unfinished job
-  bool ignore_offset_check_ = false;                    ///< the start in question may ignore the offsets
   QLabel* name_;
   OperationChoice* operation_;
   QPushButton* choose_;
   QPushButton* setup_;
   QCheckBox* continue_;
-  QLabel* zeros_;  ///< shows whether the zero points fit the job
   QPushButton* plan_;
   QPlainTextEdit* verdict_;
   QPlainTextEdit* other_job_;
   QStackedWidget* answer_;  ///< the verdict, or the job of another client
   QWidget* form_;           ///< page with all widgets above
-  Question* discard_question_;
-  QPushButton* keep_;
-  Question* wheel_question_;
-  Question* offset_question_;
-  QPushButton* fit_;
-  Question* swivel_question_;
-  QStackedWidget* pages_;  ///< the form or a question
+  Question* question_;
+  QStackedWidget* pages_;  ///< the form or the question
   QPointer<QFileDialog> file_dialog_;
   QFileSystemWatcher watch_;  ///< watches the job file and its wheel file
 };

@@ -1,6 +1,6 @@
 #include "panel/jog_box.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "panel/panel_button.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "panel/number_box.h"
 
 #include <QComboBox>

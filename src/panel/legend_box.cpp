@@ -1,6 +1,6 @@
 #include "panel/legend_box.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/scene/markers.h"
 
 #include <QGridLayout>

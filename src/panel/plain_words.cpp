@@ -1,8 +1,9 @@
 #include "panel/plain_words.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/wheel_known.h"
@@ -123,7 +124,7 @@ std::string describe(const flute_grinder::GrindResult& planned) {
   std::string text = "Takes " + duration(plan.statistics.duration) + ".\n";
   const std::string closest = closestText(plan);
   if (!closest.empty()) text += "Closest: " + closest + ".\n";
-  for (const std::string& warning : plan.warnings) text += "Zero points: " + warning + ".\n";
+  for (const flute_grinder::Need& need : plan.needs) text += "To start it: " + need.text + ".\n";
   text += feedText(plan.statistics);
   for (const flute_grinder::FeedLimit& limit : plan.statistics.feed_limits) text += "\n" + grinder::text(limit);
   if (plan.shank_cut > 0) {

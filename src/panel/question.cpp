@@ -37,7 +37,8 @@ Question::Question(const QString& name, int lines)
   layout_->addWidget(text_, 0, 0, 1, 2);
   layout_->setRowStretch(0, 1);
   for (const int column : {0, 1}) layout_->setColumnStretch(column, 1);
-  decline_ = addAnswer(("decline_" + name).toLatin1(), "Not yet", "Do nothing", 1, 1, [] {});
+  decline_ = addButton({"decline_" + name, "Not yet", "Do nothing", false, [] {}}, 1, 1);
+  layout_->setRowMinimumHeight(1, decline_->sizeHint().height());  // where the first answers come
   appearing_.setSingleShot(true);
   appearing_.setInterval(kAppearing);
   connect(&appearing_, &QTimer::timeout, this, &Question::enableAnswers);
@@ -45,25 +46,15 @@ Question::Question(const QString& name, int lines)
   connect(text_->verticalScrollBar(), &QScrollBar::rangeChanged, this, &Question::enableAnswers);
 }
 
-QPushButton* Question::addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
-                                 const std::function<void()>& act) {
-  auto* button = new PanelButton(name, text, hint);
+QPushButton* Question::addButton(const Answer& answer, int row, int column) {
+  auto* button = new PanelButton(answer.name, answer.text, answer.hint);
   button->setEnabled(false);
-  // An answer that is not offered must not move the others.
-  QSizePolicy policy = button->sizePolicy();
-  policy.setRetainSizeWhenHidden(true);
-  button->setSizePolicy(policy);
   layout_->addWidget(button, 1 + row, column);
-  connect(button, &QPushButton::clicked, this, [this, act] {
+  connect(button, &QPushButton::clicked, this, [this, act = answer.act] {
     Q_EMIT answered();
     act();
   });
-  return button;
-}
-
-QPushButton* Question::addDanger(const char* name, const QString& text, const QString& hint, int row, int column,
-                                 const std::function<void()>& act) {
-  QPushButton* button = addAnswer(name, text, hint, row, column, act);
+  if (!answer.danger) return button;
   QFont font = button->font();
   font.setPointSize(font.pointSize() - kSmaller);
   button->setFont(font);
@@ -71,10 +62,45 @@ QPushButton* Question::addDanger(const char* name, const QString& text, const QS
   return button;
 }
 
-void Question::ask(const QString& text, const Comparison& figures) {
+void Question::ask(const QString& text, const Comparison& figures, const std::vector<Answer>& answers) {
   const QString paragraphs = text.toHtmlEscaped().replace("\n", "<br/>");
   text_->setHtml("<p>" + paragraphs + "</p>" + figures.html());
+  // An answer asks the next question: its button is still at work.
+  for (QPushButton* button : answers_) {
+    button->setParent(nullptr);
+    button->deleteLater();
+  }
+  answers_.clear();
+  danger_row_ = 1 - danger_row_;
+  int row = 0, danger_row = danger_row_;
+  for (const Answer& answer : answers) {
+    answers_.push_back(addButton(answer, answer.danger ? danger_row : row, answer.danger ? 0 : 1));
+    (answer.danger ? danger_row : row) += 2;
+  }
   appear();
+}
+
+void Question::ask(const flute_grinder::Need& need, const QString& about,
+                   const std::function<void(const flute_grinder::NeedAnswer& answer)>& act) {
+  Comparison figures{{"asked", "set", "off by"}, {}};
+  for (const flute_grinder::NeedFigure& figure : need.figures) {
+    QStringList row;
+    for (const std::string* cell : {&figure.what, &figure.asked, &figure.set, &figure.difference}) {
+      row << QString::fromStdString(*cell);
+    }
+    figures.rows.push_back(row);
+  }
+  std::vector<Answer> answers;
+  for (const flute_grinder::NeedAnswer& answer : need.answers) {
+    answers.push_back({QString::fromStdString(answer.id).section('#', 0, 0), QString::fromStdString(answer.text),
+                       QString::fromStdString(answer.help), answer.danger != 0, [act, answer] { act(answer); }});
+  }
+  QStringList text;
+  for (const QString& part :
+       {about, QString::fromStdString(need.figures.empty() ? need.text : ""), QString::fromStdString(need.question)}) {
+    if (!part.isEmpty()) text << part;
+  }
+  ask(text.join("\n"), figures, answers);
 }
 
 void Question::showEvent(QShowEvent* event) {
@@ -94,7 +120,8 @@ void Question::enableAnswers() {
   // Only once the text has its size.
   if (appeared && bar.value() == bar.maximum()) seen_ = true;
   more_->setVisible(bar.value() < bar.maximum());
-  for (auto* answer : findChildren<QPushButton*>()) answer->setEnabled(appeared && (seen_ || answer == decline_));
+  decline_->setEnabled(appeared);
+  for (QPushButton* answer : answers_) answer->setEnabled(appeared && seen_);
 }
 
 }  // namespace grinder

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/Need.h"
 #include "panel/comparison.h"
 
 #include <QPushButton>
@@ -8,6 +9,7 @@
 #include <QWidget>
 
 #include <functional>
+#include <vector>
 
 class QGridLayout;
 class QLabel;
@@ -16,26 +18,30 @@ namespace grinder {
 
 /// A question before an action that the operator may not want: a text, and the answers below it in two columns, with
 /// *Not yet*, which does nothing, always in the same place. For a second after it appears it takes no answer, because
-/// the click may be meant for what was there before. Until its end has been in sight it takes only *Not yet*, because
+/// the click may be meant for what was there before; for the same reason an answer that costs a wheel or a tool is in
+/// another place than the one of the question before. Until its end has been in sight it takes only *Not yet*, because
 /// the deciding figures may be in the last line. No key gives an answer.
 class Question : public QWidget {
   Q_OBJECT
 
  public:
+  struct Answer {
+    QString name;  ///< of the button
+    QString text, hint;
+    bool danger = false;        ///< given by mistake, it costs a wheel or a tool: a smaller button on the left
+    std::function<void()> act;  ///< called after answered()
+  };
+
   /// @param name names the text NAME_question and *Not yet* decline_NAME. @param lines lines of text that have room.
   Question(const QString& name, int lines);
 
-  /// @param row,column 0 or 1, but not the place of an answer to the question before this one. *Not yet* has (1, 1).
-  /// @param act action of the answer, after answered().
-  QPushButton* addAnswer(const char* name, const QString& text, const QString& hint, int row, int column,
-                         const std::function<void()>& act);
-
-  /// As addAnswer(), in a smaller button, for an answer that costs a wheel or a tool if it is given by mistake.
-  QPushButton* addDanger(const char* name, const QString& text, const QString& hint, int row, int column,
-                         const std::function<void()>& act);
-
   /// @param figures figures below the text, on which the answer depends.
-  void ask(const QString& text, const Comparison& figures = {});
+  void ask(const QString& text, const Comparison& figures, const std::vector<Answer>& answers);
+
+  /// Asks what the grinder needs to be told. @param about what it is about, ahead of the question.
+  /// @param act gets the answer.
+  void ask(const flute_grinder::Need& need, const QString& about,
+           const std::function<void(const flute_grinder::NeedAnswer& answer)>& act);
 
  Q_SIGNALS:
   /// An answer was given, perhaps *Not yet*: the question is to be hidden.
@@ -45,13 +51,16 @@ class Question : public QWidget {
   void showEvent(QShowEvent* event) override;
 
  private:
+  QPushButton* addButton(const Answer& answer, int row, int column);
   void appear();
   void enableAnswers();
 
   QTextEdit* text_;
-  QPushButton* decline_ = nullptr;
+  QPushButton* decline_;
   QLabel* more_;
-  bool seen_ = false;  ///< its end has been in sight since it appeared
+  std::vector<QPushButton*> answers_;  ///< all but *Not yet*
+  int danger_row_ = 0;                 ///< of the first dangerous answer; the other one in the next question
+  bool seen_ = false;                  ///< its end has been in sight since it appeared
   QGridLayout* layout_;
   QTimer appearing_;
 };

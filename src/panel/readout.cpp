@@ -1,6 +1,6 @@
 #include "panel/readout.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
 

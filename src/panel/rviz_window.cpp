@@ -33,11 +33,6 @@ RvizWindow::RvizWindow(QWidget& panel)
   auto* layout = new QVBoxLayout(dialog_);
   layout->addWidget(question_);
   dialog_->setFixedWidth(kQuestionWidth);
-  question_->addDanger("end_rviz", "End rviz", "The grinder goes on, without its panel", 0, 0, [this] {
-    ends_ = true;
-    window_->close();
-    ends_ = false;
-  });
   question_->setFixedHeight(question_->minimumSizeHint().height());
   connect(question_, &Question::answered, dialog_, &QDialog::hide);
 }
@@ -121,8 +116,13 @@ bool RvizWindow::eventFilter(QObject* watched, QEvent* event) {
 void RvizWindow::ask() {
   if (dialog_->isVisible()) return dialog_->raise();
   question_->ask(why_ +
-                 " It goes on without this panel, and then only a terminal ('grind hold', 'grind cancel') and the "
-                 "emergency stop stop it. End rviz all the same?");
+                     " It goes on without this panel, and then only a terminal ('grind hold', 'grind cancel') and the "
+                     "emergency stop stop it. End rviz all the same?",
+                 {}, {{"end_rviz", "End rviz", "The grinder goes on, without its panel", true, [this] {
+                         ends_ = true;
+                         window_->close();
+                         ends_ = false;
+                       }}});
   moveBeside(*dialog_, panel_);
   dialog_->show();
 }

@@ -1,9 +1,9 @@
 #include "panel/section_view.h"
 
-#include "flute_grinder/geometry/z_law.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/tool/z_law.h"
 #include "panel/plain_words.h"
 
 #include <QHBoxLayout>

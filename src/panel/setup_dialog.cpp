@@ -1,13 +1,14 @@
 #include "panel/setup_dialog.h"
 
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/drive/parameters.h"
-#include "flute_grinder/geometry/job_setup.h"
-#include "flute_grinder/geometry/setup_sheet.h"
-#include "flute_grinder/geometry/touch_off.h"
-#include "flute_grinder/geometry/write_setup.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/network/ros_api.h"
+#include "flute_grinder/setup/job_setup.h"
+#include "flute_grinder/setup/setup_sheet.h"
+#include "flute_grinder/setup/touch_off.h"
+#include "flute_grinder/setup/write_setup.h"
 #include "panel/panel_button.h"
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
@@ -38,7 +39,7 @@ std::vector<std::string> digestsOf(const std::string& file) {
   std::vector<std::string> digests;
   try {
     for (const GrindJob& job : readJobFile(file, "1").ofAllOperations()) digests.push_back(jobDigest(job));
-  } catch (const JobFileError&) {
+  } catch (const FileError&) {
     // Such a file is no job's that was ever started.
   }
   return digests;
@@ -61,8 +62,6 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
   setObjectName("setup_dialog");
   setWindowTitle("Set-up of " + title + " for " + QString::fromStdString(grinder));
   sheet_->setFont(QFontDatabase::systemFont(QFontDatabase::FixedFont));
-  question_->addDanger("write_over", "Write it", "Replace the set-up of this operation", 0, 0,
-                       [this] { beginToWrite(); });
   auto* layout = new QVBoxLayout(this);
   layout->addWidget(sheet_, 1);
   layout->addWidget(buttons_);
@@ -115,7 +114,8 @@ void SetupDialog::ask() {
   if (isOfLastJob() && !last_.finished) {
     text = "The job of this file is not finished, and cannot be continued with another set-up. " + text;
   }
-  question_->ask(text);
+  question_->ask(
+      text, {}, {{"write_over", "Write it", "Replace the set-up of this operation", true, [this] { beginToWrite(); }}});
   showQuestion(true);
 }
 

@@ -1,6 +1,6 @@
 #include "panel/touch_off_box.h"
 
-#include "flute_grinder/job/quantity.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel/panel_button.h"
@@ -10,7 +10,6 @@
 #include <QVBoxLayout>
 
 #include <cmath>
-#include <utility>
 
 namespace grinder {
 
@@ -74,8 +73,6 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   });
   connect(back_, &QPushButton::clicked, this, &TouchOffBox::backWanted);
   connect(reclamped_, &QPushButton::clicked, this, &TouchOffBox::reclampedWanted);
-  question_->addAnswer("confirm_touch", "It is so", "What is shown then counts; nothing moves", 1, 0,
-                       [this] { done_(); });
   connect(question_, &Question::answered, this, [this] { pages_->setCurrentIndex(0); });
   auto* around = new QVBoxLayout(this);
   around->setContentsMargins(6, 6, 6, 6);
@@ -85,10 +82,19 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   chooseAxis();
 }
 
-void TouchOffBox::ask(const QString& text, const Comparison& figures, std::function<void()> done) {
-  done_ = std::move(done);
+void TouchOffBox::ask(const QString& text, const Comparison& figures, const std::function<void()>& done) {
+  question_->ask(text, figures,
+                 {{"confirm_touch", "It is so", "What is shown then counts; nothing moves", false, done}});
+  showQuestion();
+}
+
+void TouchOffBox::ask(const flute_grinder::Need& need, const std::function<void(const std::string& id)>& answered) {
+  question_->ask(need, "", [answered](const flute_grinder::NeedAnswer& answer) { answered(answer.id); });
+  showQuestion();
+}
+
+void TouchOffBox::showQuestion() {
   asked_at_ = position_;
-  question_->ask(text, figures);
   pages_->setCurrentWidget(question_);
 }
 
@@ -137,7 +143,8 @@ QString TouchOffBox::offsetText(const GrinderView& view) const {
   const ros::Time& at = view.offsets->set_at[i];
   if (at.isZero()) return text + "never set";
   const QString time = QDateTime::fromSecsSinceEpoch(at.sec).toString("yyyy-MM-dd HH:mm:ss");
-  return text + QString("set by %1, %2").arg(QString::fromStdString(view.offsets->set_by[i]), time);
+  text += QString("set by %1, %2; ").arg(QString::fromStdString(view.offsets->set_by[i]), time);
+  return text + QString::fromStdString(basisText(axis(), fromMessage(*view.offsets).axes[i]));
 }
 
 }  // namespace grinder

@@ -28,7 +28,9 @@ class TouchOffBox : public QWidget {
 
   /// Asks before a change counts; the question disappears when the axis moves.
   /// @param done action if the operator agrees.
-  void ask(const QString& text, const Comparison& figures, std::function<void()> done);
+  void ask(const QString& text, const Comparison& figures, const std::function<void()>& done);
+  /// Asks what the grinder needs to be told; disappears in the same way. @param answered gets the id of the answer.
+  void ask(const flute_grinder::Need& need, const std::function<void(const std::string& id)>& answered);
 
   /// Offers to take back the last offset set by this panel. @param axis kAxisCount for none.
   void offerBack(int axis);
@@ -43,6 +45,7 @@ class TouchOffBox : public QWidget {
   int axis() const { return axis_->currentIndex(); }
   void chooseAxis();
   QString offsetText(const GrinderView& view) const;
+  void showQuestion();
 
   QComboBox* axis_;
   NumberBox* at_;  ///< position or diameter [mm or deg]
@@ -55,7 +58,6 @@ class TouchOffBox : public QWidget {
   QStackedLayout* pages_;       ///< all widgets above, or the question
   double position_ = 0;         ///< last position of the axis received [m], A [rad]
   double asked_at_ = 0;         ///< position of the axis when the question was asked [m], A [rad]
-  std::function<void()> done_;  ///< action of the question
   int back_axis_ = kAxisCount;  ///< axis whose offset can be taken back
 };
 

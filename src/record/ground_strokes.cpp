@@ -1,6 +1,6 @@
-#include "flute_grinder/record/ground_strokes.h"
+#include "record/ground_strokes.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 
 #include <cmath>
 #include <iterator>

@@ -1,12 +1,13 @@
 #include "flute_grinder/record/job_record.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/record/cycle_figures.h"
-#include "flute_grinder/record/ground_strokes.h"
+#include "record/ground_strokes.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 #include "flute_grinder/record/record_file.h"
 
-#include "flute_grinder/job/escaped.h"
-#include "flute_grinder/job/file_error.h"
-#include "flute_grinder/job/format.h"
-#include "flute_grinder/job/regular_file.h"
+#include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/read_file.h"
 #include "flute_grinder/job/sha256.h"
 
 #include <algorithm>

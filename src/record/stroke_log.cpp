@@ -1,6 +1,6 @@
 #include "flute_grinder/record/stroke_log.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/record/cycle_figures.h"
 
 #include <cmath>

@@ -1,9 +1,10 @@
 #include "flute_grinder/record/verdict.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/tool_figure.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/flat_file.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/tool/tool_figure.h"
 
 #include <algorithm>
 #include <cmath>

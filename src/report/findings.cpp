@@ -1,7 +1,7 @@
 #include "flute_grinder/report/findings.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
 #include "report/motion.h"

@@ -1,9 +1,9 @@
 #include "flute_grinder/scene/ground_markers.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/cutter_solid.h"
-#include "flute_grinder/geometry/ground_job.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/tool/cutter_solid.h"
+#include "flute_grinder/tool/ground_job.h"
 
 #include <algorithm>
 #include <array>

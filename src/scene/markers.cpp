@@ -1,6 +1,6 @@
 #include "flute_grinder/scene/markers.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 
 #include <algorithm>
 #include <cmath>

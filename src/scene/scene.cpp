@@ -1,9 +1,9 @@
 #include "flute_grinder/scene/scene.h"
 
-#include "flute_grinder/geometry/ground_job.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
+#include "flute_grinder/tool/ground_job.h"
 
 #include <algorithm>
 

@@ -264,7 +264,7 @@ class TestGoal(CommandLine):
                 continue
             goal = flute_grinder.job.goal(path)
             self.assertEqual(goal.job_name, path.name)
-            self.assertEqual((goal.dry_run, goal.discard, goal.ignore_offset_check, goal.first_tooth, goal.first_pass), (False,) * 3 + (0, 0))
+            self.assertEqual((goal.dry_run, goal.answers, goal.first_tooth, goal.first_pass), (False, [], 0, 0))
             for field, value in gc.job_from_file(str(path)).items():
                 part, name = field.split('.')
                 self.assert_close(getattr(gc.part_of(goal, part), name), value, '%s: %s' % (path, field))
@@ -289,7 +289,7 @@ class TestGoal(CommandLine):
         self.assertEqual({'tooth_angles_deg' in job['cutter'] for job in jobs}, {True, False})
 
     def test_goal_of_64_teeth_is_short(self):
-        message = GrindActionGoal(goal=gc.goal_of(gc.paper(tooth_angles=[i * math.pi / 32 for i in range(64)])))
+        message = GrindActionGoal(goal=gc.goal_of(gc.paper(tooth_angles=[i * math.pi / 32 for i in range(64)]), answers=[]))
         message.goal_id.id = '/' + 'n' * 40 + '-12345-1700000000.123456789'
         written = io.BytesIO()
         message.serialize(written)

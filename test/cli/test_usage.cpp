@@ -88,7 +88,7 @@ TEST(Usage, ThatIsWrongIsRefused) {
       {"offsets --set", {"b=1"}},
       {"touch-off", {"b", "x --at nan"}},
       {"jog", {"b 1", "x", "x 1 --feed 0"}},
-      {"run", {"--continue", "j --continue --discard"}},
+      {"run", {"--continue", "j --answer yes", "j --answer set-offset"}},
       {"report record.bag -o report.html --job", {"0"}},
       {"completion", {"fish"}},
   };
@@ -106,7 +106,7 @@ TEST(Usage, ThatIsRightIsTaken) {
   for (const char* line :
        {"--node left/grinder status --json", "table j --step-length 0.2 --even-step exact", "run j --continue --csv c",
         "probe tooth --job j --within 360 --flange 2", "probe diameter --at 10 --job j", "jog a -1.5 --feed 10",
-        "confirm-swivel -90", "override 120", "offsets --set x=-1.5 --set a=2 --yes",
+        "confirm-swivel -90", "override 120", "offsets --set x=-1.5 --set a=2 --answer set-offset",
         "wheel measure w --diameter 124 --width 2", "wheel dress w --radial 0.1", "wheel dress w --face 0.1",
         "zeros j --stickout 62 --flange 100 --machine m --urdf u", "simulate j --sections 2"}) {
     const Said said = parse(wordsOf(line));

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "any_tool.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/curve/units.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

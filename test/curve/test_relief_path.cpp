@@ -1,7 +1,7 @@
 #include "flute_grinder/curve/relief_path.h"
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/log_curve.h"
-#include "flute_grinder/curve/units.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>

@@ -94,7 +94,7 @@ class Computer:
         """A job that moves."""
         for words in (['status'], ['enable'], ['confirm-swivel', '31.769']):
             gc.poll(lambda words=words: self.succeeds(gc.program('grind'), *words), '%s: %s' % (self.name, words))
-        command = Command('run', job, '--ignore-offset-check', prefix=self.inside)
+        command = Command('run', job, '--answer', 'ignore-offsets', prefix=self.inside)
         command.wait_text('  running  ')
         return command
 

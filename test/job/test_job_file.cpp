@@ -1,6 +1,7 @@
 #include "flute_grinder/job/job_file.h"
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
 
 #include "refusal.h"

@@ -2,11 +2,13 @@
 // its range, in the words that the tables give, and taken at either end of the range. There is no key that the tables
 // do not have.
 
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/job/wheel_file.h"
 
 #include <gtest/gtest.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <regex>
@@ -88,7 +90,7 @@ class Keys : public ::testing::TestWithParam<File> {
     Lines all;
     try {
       GetParam().parse(YAML::Dump(tree));
-    } catch (const JobFileError& error) {
+    } catch (const FileError& error) {
       std::istringstream lines(error.what());
       for (std::string line; std::getline(lines, line);) all.push_back(line.substr(line.find(": ") + 2));
     }

@@ -1,8 +1,8 @@
 // Numbers in files, in a process whose locale has a comma in them, as rviz' may have.
 
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/job/quantity.h"
 #include "german.h"
 
 #include <gtest/gtest.h>

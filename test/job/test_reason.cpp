@@ -1,7 +1,7 @@
 #include "flute_grinder/job/reason.h"
 
-#include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/machine/loop_fault.h"
 
 #include <gtest/gtest.h>

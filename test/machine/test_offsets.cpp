@@ -183,7 +183,7 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
 TEST(OffsetFit, TheWheelOnTheSpindleIsThatOfTheJob) {
   const OffsetBasis job = basisOf();
   WorkOffsets offsets = offsetsFor(job);
-  const std::string remedy = "; this job has a.yaml, D 100 mm; once it is mounted, say so: grind confirm-wheel JOB";
+  const std::string remedy = "; this job has a.yaml, D 100 mm";
   offsets.wheel = {};
   EXPECT_EQ(reasonsOf(mismatches(offsets, job)),
             std::vector<std::string>{"the wheel on the spindle is not confirmed" + remedy});
@@ -192,6 +192,25 @@ TEST(OffsetFit, TheWheelOnTheSpindleIsThatOfTheJob) {
             std::vector<std::string>{"the wheel on the spindle is b.yaml, D 100 mm" + remedy});
   offsets.wheel = {job.wheel_name, std::string(64, 'b'), 0.1};
   EXPECT_EQ(mismatches(offsets, job).size(), 1U) << "of other figures";
+}
+
+TEST(OffsetFit, TheWheelIsOneNeedAndTheOffsetsAreAnother) {
+  OffsetBasis job = basisOf();
+  const WorkOffsets offsets = offsetsFor(job);
+  EXPECT_TRUE(needsOf(mismatches(offsets, job)).empty());
+  job.end_diameter += 0.004;
+  std::vector<Need> needs = needsOf(mismatches(offsets, job));
+  ASSERT_EQ(needs.size(), 1U);
+  EXPECT_EQ(needs[0].kind, NeedKind::kOffsets);
+  EXPECT_EQ(needs[0].answers, (std::vector{NeedAnswer::kFitOffsets, NeedAnswer::kIgnoreOffsets}));
+  ASSERT_EQ(needs[0].figures.size(), 1U);
+  EXPECT_EQ(needs[0].figures[0].what + " " + needs[0].figures[0].difference, "Y 2 mm");
+  job.wheel_name = "b.yaml";
+  needs = needsOf(mismatches(offsets, job));
+  ASSERT_EQ(needs.size(), 2U);
+  EXPECT_EQ(needs[0].kind, NeedKind::kWheel);
+  EXPECT_EQ(needs[0].answers, std::vector{NeedAnswer::kConfirmWheel});
+  EXPECT_EQ(needs[1].answers, std::vector{NeedAnswer::kIgnoreOffsets}) << "those of another wheel cannot be computed";
 }
 
 TEST(OffsetFit, WhatWasSetWithAWheelDoesNotFitOnceAnotherWasOnTheSpindle) {
@@ -300,15 +319,17 @@ TEST(OffsetLimits, OfAnAxisThatTurnsForEverAreThoseOfAnyOffset) {
 TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {
   const OffsetLimits limits = limitsOf(100);
   const WorkOffset was{0.0015, "anna@grinder", 1.7e9};
-  EXPECT_EQ(changeRefusal(limits, kY, was, 0.006), "");
-  EXPECT_EQ(
-      changeRefusal(limits, kY, was, -0.0105),
-      "work offset of axis Y would change by 12 mm, from 1.5 mm to -10.5 mm; allowed without a confirmation: 5 mm");
-  EXPECT_NE(changeRefusal(limits, kY, was, kNan), "");
-  EXPECT_EQ(changeRefusal(limits, kA, was, 6), "");
-  EXPECT_NE(changeRefusal(limits, kA, was, 7), "");
-  EXPECT_EQ(changeRefusal(limits, kY, WorkOffset{}, 0.1), "") << "never set";
-  EXPECT_EQ(changeRefusal(limits, kY, {kNan, "anna@grinder", 1.7e9}, 0.1), "") << "unknown";
+  const auto need = needOfChange(limits, kY, was, -0.0105);
+  ASSERT_TRUE(need);
+  EXPECT_EQ(need->text,
+            "work offset of axis Y would change by 12 mm, from 1.5 mm to -10.5 mm; allowed without an answer: 5 mm");
+  EXPECT_EQ(need->figures[0].difference, "-12 mm");
+  EXPECT_FALSE(needOfChange(limits, kY, was, 0.006));
+  EXPECT_TRUE(needOfChange(limits, kY, was, kNan));
+  EXPECT_FALSE(needOfChange(limits, kA, was, 6));
+  EXPECT_TRUE(needOfChange(limits, kA, was, 7));
+  EXPECT_FALSE(needOfChange(limits, kY, WorkOffset{}, 0.1)) << "never set";
+  EXPECT_FALSE(needOfChange(limits, kY, {kNan, "anna@grinder", 1.7e9}, 0.1)) << "unknown";
 }
 
 }  // namespace test_offsets

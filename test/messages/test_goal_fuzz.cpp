@@ -96,6 +96,7 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.tooth_angles; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.cutter.spiral_angles; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<double>& { return g.operations[0].wheel_points; }),
+      countAt([](flute_grinder::GrindGoal& g) -> std::vector<std::string>& { return g.answers; }),
       countAt([](flute_grinder::GrindGoal& g) -> std::vector<flute_grinder::Process>& { return g.operations; })};
   const std::vector<std::uint8_t> whole = bytesOf(good);
   for (const std::size_t at : counts) std::copy_n(whole.begin() + at, 4, bytes.begin() + at);

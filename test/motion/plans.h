@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include "flute_grinder/job/grind_job.h"

@@ -130,7 +130,7 @@ class RunTest(unittest.TestCase):
         """The paper's job, whatever the journal keeps; once it is in its stroke, with how many batches there were ahead of it."""
         client = client or gc.grinder()
         seen = len(client.batches)
-        command = self.grind('--node', client.name, 'run', PAPER_JOB, '--discard', '--ignore-offset-check', *arguments, **options)
+        command = self.grind('--node', client.name, 'run', PAPER_JOB, '--answer', 'discard', '--answer', 'ignore-offsets', *arguments, **options)
         self.wait_in_stroke(client, seen)
         return command, seen
 

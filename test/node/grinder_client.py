@@ -74,7 +74,7 @@ def goal_of(job, **fields):
     """The action's goal of a job; `fields` are the goal's own, as dry_run=True. Whatever the journal keeps is forgotten,
     and the work offsets are right, unless they say otherwise. The job may be a goal of a file, too."""
     goal = copy.copy(job) if isinstance(job, GrindGoal) else GrindGoal()
-    for name, value in dict({'discard': True, 'ignore_offset_check': True}, **fields).items():
+    for name, value in dict({'answers': ['discard', 'ignore-offsets']}, **fields).items():
         setattr(goal, name, value)
     for path, value in () if isinstance(job, GrindGoal) else job.items():
         part, name = path.split('.')
@@ -432,14 +432,14 @@ class Grinder:
         rospy.wait_for_service(name, PATIENCE)
         return rospy.ServiceProxy(name, kind)(*arguments)
 
-    def set_offset(self, axis, value, by='anna@grinder', basis=None, large_change_ok=True):
-        return self._offset('set_offset', SetOffset, axis, value, by, basis, large_change_ok)
+    def set_offset(self, axis, value, by='anna@grinder', basis=None, answers=('set-offset',)):
+        return self._offset('set_offset', SetOffset, axis, value, by, basis, answers)
 
-    def touch_off(self, axis, position, by='anna@grinder', basis=None, large_change_ok=True):
-        return self._offset('touch_off', TouchOff, axis, position, by, basis, large_change_ok)
+    def touch_off(self, axis, position, by='anna@grinder', basis=None, answers=('set-offset',)):
+        return self._offset('touch_off', TouchOff, axis, position, by, basis, answers)
 
-    def _offset(self, service, kind, axis, value, by, basis, large_change_ok):
-        return self._call(service, kind, axis, value, by, basis or OffsetBasis(), large_change_ok)
+    def _offset(self, service, kind, axis, value, by, basis, answers):
+        return self._call(service, kind, axis, value, by, basis or OffsetBasis(), list(answers))
 
     enable = partialmethod(_call, 'enable', Trigger)
     disable = partialmethod(_call, 'disable', Trigger)

@@ -2,8 +2,8 @@
 
 #include "drive/hal_parameters.h"
 #include "drive/simulated_drive.h"
+#include "flute_grinder/base/read_file.h"
 #include "flute_grinder/control/machine_config.h"
-#include "flute_grinder/job/yaml_text.h"
 #include "node/node_files.h"
 
 #include "yaml_parameters.h"

@@ -80,7 +80,7 @@ class TestMachine(CommandLine):
         job_of = job, '--operation', 'secondary'
         self.grind(0, 'plan', *job_of, '--csv', self.path('plan.csv'))
         batches = len(grinder().batches)
-        printed = self.grind(0, 'run', *job_of, '--discard', '--ignore-offset-check', '--csv', self.path('run.csv'))
+        printed = self.grind(0, 'run', *job_of, '--answer', 'discard', '--answer', 'ignore-offsets', '--csv', self.path('run.csv'))
         with open(self.path('plan.csv')) as plan, open(self.path('run.csv')) as run:
             planned, streamed = plan.read().splitlines(), run.read().splitlines()
         # The run's file has four more columns, the positions that the drive read.
@@ -113,7 +113,7 @@ class TestMachine(CommandLine):
         self.grind(0, 'override', '10')
         self.addCleanup(grinder().set_feed_override, 1)
         batches = len(grinder().batches)
-        command = Command('run', PAPER_JOB, '--discard', '--ignore-offset-check')
+        command = Command('run', PAPER_JOB, '--answer', 'discard', '--answer', 'ignore-offsets')
         self.addCleanup(command.close)
         RunTest.wait_in_stroke(grinder(), batches)
         self.grind(0, 'hold')

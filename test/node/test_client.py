@@ -42,8 +42,8 @@ class TestClient(CommandLine):
 
     def test_client_grinds_a_job_with_the_goal_of_grind_run(self):
         job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1, teeth=2)
-        self.grind(0, 'run', job, '--discard', '--ignore-offset-check')
-        of_run = self.bits_of_job(discard=False)
+        self.grind(0, 'run', job, '--answer', 'discard', '--answer', 'ignore-offsets')
+        of_run = self.bits_of_job(answers=['ignore-offsets'], sent_by='')
         seen = len(grinder().batches)
         done = self.run_client(job)
         self.assertEqual(done.returncode, 0, done.stderr)

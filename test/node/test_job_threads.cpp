@@ -1,4 +1,4 @@
-#include "collision/machine.h"
+#include "check/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/job/job_file.h"

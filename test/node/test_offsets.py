@@ -177,30 +177,29 @@ class TestUse(OffsetsTest):
         run.cancel()
         run.wait()
         self.assertTrue(self.client.set_offset(Y, OFFSETS[Y] + 0.0001).success)
-        run = self.client.send(job, first_tooth=1, discard=False).wait()
+        run = self.client.send(job, first_tooth=1, answers=['ignore-offsets']).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertIn('it began with other work offsets; that of axis Y was 23.7 mm and is 23.8 mm', run.text)
         self.assertTrue(self.client.set_offset(Y, OFFSETS[Y]).success)
         # Nobody has said what they were set for, but that they are right was said when it began.
-        run = self.client.send(job, first_tooth=1, discard=False, ignore_offset_check=False).wait()
+        run = self.client.send(job, first_tooth=1, answers=[]).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
 
 
 class TestZeroPoints(OffsetsTest):
     """An offset is known for what it was set."""
 
-    def check_rejected(self, text, **fields):
-        run = self.client.send(gc.SHORT, ignore_offset_check=False, **fields).wait()
+    def check_rejected(self, text, answers=('discard',)):
+        run = self.client.send(gc.SHORT, answers=list(answers)).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertIn(text, run.text)
 
     def check_reported(self, *texts):
-        """As a warning where nothing moves."""
-        plan = self.client.plan(gc.goal_of(gc.SHORT)).plan
+        """As a need where nothing moves."""
+        plan = self.client.plan(gc.goal_of(gc.SHORT, answers=[])).plan
         self.assertTrue(plan.valid)
-        self.assertEqual(len(plan.warnings), len(texts), plan.warnings)
-        for warning, text in zip(plan.warnings, texts):
-            self.assertIn(text, warning)
+        needs = [need for need in plan.needs if need.name in ('wheel', 'offsets')]
+        self.assertEqual([need.text for need in needs], list(texts))
 
     def test_a_plan_is_shown_until_a_zero_point_is_another(self):
         legends = gc.received(self.addCleanup, '/%s/legend' % self.node.name, Legend)
@@ -210,10 +209,10 @@ class TestZeroPoints(OffsetsTest):
         gc.poll(lambda: legends[-1] == Legend(), 'the first view')
 
     def test_of_another_diameter(self):
-        wheel = 'the wheel on the spindle is not confirmed; this job has straight, 3 mm wide, D 100 mm; once it is mounted, say so: grind confirm-wheel JOB'
-        never = wheel + '; X was never set; Y was never set; Z was never set'
-        self.check_reported(never)
-        self.check_rejected(never + '; set them for this job, or start it with --ignore-offset-check')
+        wheel = 'the wheel on the spindle is not confirmed; this job has straight, 3 mm wide, D 100 mm'
+        never = 'X was never set; Y was never set; Z was never set'
+        self.check_reported(wheel, never)
+        self.check_rejected(wheel + '; answer: confirm-wheel; ' + never + '; answer: ignore-offsets')
         self.assertRegex(self.said('status'), r'(?m)^zero point Y    never set$')
 
         run = self.client.send(gc.SHORT, wheel_name='\x1b[2J').wait()
@@ -224,18 +223,18 @@ class TestZeroPoints(OffsetsTest):
         d10 = gc.job_file(os.path.join(self.folder, 'd10.yaml'))
         self.assertEqual(self.said('confirm-wheel', d6), 'the wheel on the spindle is straight, 3 mm wide, D 100 mm\n')
         self.grind(0, 'offsets', '--set', 'x=0', '--set', 'y=1', '--set', 'z=2', '--job', d6)
-        reported = 'Y was set by hand for D 6 mm, wheel straight, 3 mm wide, D 100 mm (d6.yaml); this job has D 10 mm; ' \
-               "'grind offsets --fit JOB' computes Y"
+        reported = 'Y was set by hand for D 6 mm, wheel straight, 3 mm wide, D 100 mm (d6.yaml); this job has D 10 mm'
         self.check_reported(reported)
         self.check_rejected(reported)
-        self.check_rejected('Y was set by hand', first_tooth=0, discard=False)
+        self.check_rejected('Y was set by hand', answers=())
 
-        self.assertRegex(self.said('offsets', '--fit', d10),
+        self.grind(0, 'run', d10, '--dry-run', '--answer', 'fit-offsets')
+        self.assertRegex(self.said('offsets'),
                          r'(?m)^Y +3\.0000 .*; computed for D 10 mm, wheel straight, 3 mm wide, D 100 mm \(d10\.yaml\)$')
         for got, expected in zip(self.offsets().values, (0, 3 * MM, 2 * MM, 0)):
             self.assertAlmostEqual(got, expected, delta=1e-15)
         self.check_reported()
-        run = self.client.send(gc.SHORT, ignore_offset_check=False).wait()
+        run = self.client.send(gc.SHORT, answers=['discard']).wait()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
         self.assertRegex(self.said('status'), r'(?m)^zero point Y    computed for D 10 mm, wheel')
         reported = self.json('status')['zero_points']
@@ -248,24 +247,10 @@ class TestZeroPoints(OffsetsTest):
         self.assertEqual(self.offsets().tool.clamping, clamping + 1)
         self.check_reported()
 
-        # Of a wheel that has become thinner Y alone could be computed: nothing is.
-        other = gc.job_file(os.path.join(self.folder, 'other.yaml'), end_diameter_mm=12, width_mm=2)
-        self.assertRegex(self.grind(1, 'offsets', '--fit', other).stderr,
-                         r'(?m)^X was set by hand for .*; this job has wheel straight, 2 mm wide, D 100 mm; set it anew$')
-        self.assertAlmostEqual(self.offsets().values[Y], 3 * MM, delta=1e-15)
-
-        # The question for the second is answered by no: the first is as it was.
-        both = gc.job_file(os.path.join(self.folder, 'both.yaml'), end_diameter_mm=12,
-                           setup='{swivel_deg: 31.769, height_mm: 30}')
-        before = self.offsets()
-        self.grind(1, 'offsets', '--fit', both)
-        self.assertEqual((self.offsets().values, self.offsets().basis), (before.values, before.basis))
-
     def test_computed_ones_fit_their_job(self):
         job = gc.package_file('test/jobs/paper.yaml')
         self.grind(0, 'confirm-wheel', job)
         self.said('zeros', job, '--stickout', '62', '--flange', '2', '--set')
-        self.assertNotIn('warning', self.grind(0, 'run', job, '--dry-run').stderr)
         self.check_reported()
         self.assertEqual(self.json('offsets')['axes']['z']['set_for']['method'], 'computed')
 
@@ -285,7 +270,7 @@ class TestToolOfSeveralOperations(OffsetsTest):
         self.grind(0, 'confirm-wheel', self.job, '--operation', operation)
 
     def set_zeros(self, operation):
-        self.grind(0, 'zeros', self.job, '--operation', operation, '--stickout', '62', '--flange', '2', '--set', '--yes')
+        self.grind(0, 'zeros', self.job, '--operation', operation, '--stickout', '62', '--flange', '2', '--set', '--answer', 'set-offset')
 
     def run_operation(self, operation, status=0):
         return self.grind(status, 'run', self.job, '--operation', operation).stderr
@@ -313,7 +298,7 @@ class TestToolOfSeveralOperations(OffsetsTest):
         self.run_operation('primary')
         self.check_refused('primary', 'A: operation primary relief is ground on this tool already')
         # The wheel is the same, and only the height is another.
-        self.grind(0, 'offsets', '--fit', self.job, '--operation', 'secondary')
+        self.grind(0, 'run', self.job, '--operation', 'secondary', '--dry-run', '--answer', 'fit-offsets')
         self.run_operation('secondary')
         self.assertRegex(self.said('offsets'), r'(?m)^tool in the collet: reamer\.yaml with flute, primary relief, secondary relief$')
         # It was dressed on another machine.
@@ -394,14 +379,19 @@ class TestCommandLine(OffsetsTest):
         self.assertAlmostEqual(status['work']['x_mm'], -62.5, delta=0.001)
         self.assertRegex(self.said('status'), r'(?m)^work position +X -62\.500, Y 50\.000')
 
+    def test_an_answer_that_there_is_not_is_refused(self):
+        run = self.client.send(gc.SHORT, answers=['yes']).wait()
+        self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))
+        self.assertIn('answer = yes; allowed: discard, confirm-wheel,', run.text)
+        self.assertIn('answer = yes; allowed: ', self.client.set_offset(X, 0, answers=['yes']).message)
+
     def test_touch_off(self):
         self.assertEqual(self.said('touch-off', 'x', '--at', '1.5'),
                          'axis X: work offset -51.5 mm; it is at 1.5 mm of the work\n')
         self.grind(0, 'touch-off', 'a', '--at', '30')
         self.grind(0, 'touch-off', 'z', '--job', gc.package_file('test/jobs/paper.yaml'))
-        self.assertRegex(self.grind(1, 'touch-off', 'x', '--at', '30').stderr,
-                         r'would change by 28\.5 mm.*\n--yes sets it all the same$')
-        self.grind(0, 'touch-off', 'x', '--at', '30', '--yes')
+        self.assertIn('would change by 28.5 mm', self.grind(1, 'touch-off', 'x', '--at', '30').stderr)
+        self.grind(0, 'touch-off', 'x', '--at', '30', '--answer', 'set-offset')
         values = self.offsets().values
         self.assertAlmostEqual(values[X], self.rest[X] - 30 * MM, delta=1e-12)
         self.assertAlmostEqual(values[A], self.rest[A] - 30 * DEG, delta=1e-12)
@@ -410,19 +400,19 @@ class TestCommandLine(OffsetsTest):
     def test_terminal_is_asked_for_a_large_change(self):
         job = gc.package_file('test/jobs/paper.yaml')
         zeros = ('zeros', job, '--stickout', '62', '--flange', '2', '--set')
-        fit = ('offsets', '--fit', gc.job_file(os.path.join(self.folder, 'd40.yaml'), end_diameter_mm=40))
         self.grind(0, 'offsets', '--set', 'x=0', '--set', 'y=4', '--set', 'z=0', '--job', job)
-        for command, axis in ((('offsets', '--set', 'x=12.3'), X), (('touch-off', 'x', '--at', '30'), X), (fit, Y), (zeros, X)):
+        for command in (('offsets', '--set', 'x=12.3'), ('touch-off', 'x', '--at', '30'), zeros):
             before = self.offsets()
-            self.assertRegex(self.grind(1, *command).stderr, r'would change by .*\n--yes sets it all the same\n')
-            for answer in ('n', '', 'yet'):
-                self.assertRegex(self.grind_answering(answer, 1, *command), r'would change by .*\nSet it\? \[y/N\] ')
+            self.assertIn('would change by ', self.grind(1, *command).stderr)
+            for answer in ('2', '', 'yes'):
+                said = self.grind_answering(answer, 1, *command)
+                self.assertRegex(said, r'  axis X; asked: .* mm; set: .* mm; off by: .* mm\r?\n  1  Set it: ')
             self.assertEqual(self.offsets().values, before.values)
-            self.grind_answering('y\ny\ny', 0, *command)
-            self.assertNotEqual(self.offsets().values[axis], before.values[axis], command)
-        self.grind(0, 'offsets', '--set', 'x=-40', '--yes')
-        self.grind(0, *zeros, '--yes')
-        self.grind(2, 'zeros', job, '--stickout', '62', '--flange', '2', '--yes')
+            self.grind_answering('1\n1\n1', 0, *command)
+            self.assertNotEqual(self.offsets().values[X], before.values[X], command)
+        self.grind(0, 'offsets', '--set', 'x=-40', '--answer', 'set-offset')
+        self.grind(0, *zeros, '--answer', 'set-offset')
+        self.grind(2, 'zeros', job, '--stickout', '62', '--flange', '2', '--answer', 'set-offset')
 
     def test_touch_off_y_on_a_blank(self):
         """The wheel's centre is then at (blank + worn wheel) / 2 from the axis, and Y = 0 is at (D1 + new wheel) / 2."""

@@ -1,7 +1,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "node/planner.h"
 
-#include "collision/machine.h"
+#include "check/machine.h"
 #include "control/fixtures.h"
 #include "flute_grinder/job/grind_job.h"
 #include "soon.h"

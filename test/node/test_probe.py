@@ -105,7 +105,7 @@ class TestCycles(ProbeTest):
         self.assertRegex(self.grind(1, *end_face, '50').stderr,
                          'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
         self.assertEqual(self.offset(X)['offset_mm'], before)
-        self.grind(0, *end_face, '50', '--yes')
+        self.grind(0, *end_face, '50', '--answer', 'set-offset')
         self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
 
     def test_the_first_tooth_gives_the_offset_of_a(self):

@@ -58,12 +58,25 @@ class ProgressTrackerTest : public ::testing::Test {
     status_.strokes_ended_at = strokeOf(program, pass) + 1;
     tracker_.update(status_);
   }
+  /// Why a job cannot begin there, unless it is said that the one before is discarded.
+  static std::string refusal(const ProgressTracker& tracker, const std::string& digest, const ToothPass& first,
+                             bool discard = false) {
+    const std::string refused = tracker.refusal(digest, first);
+    const auto need = tracker.need(digest, first);
+    if (!refused.empty() || !need || discard) return refused;
+    EXPECT_EQ(need->answers, std::vector{NeedAnswer::kDiscard});
+    return need->text;
+  }
+  std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const {
+    return refusal(tracker_, digest, first, discard);
+  }
   std::string offsetRefusal(const std::string& digest, const Axes& offset) {
     WorkOffsets offsets = now_;
     for (std::size_t axis = 0; axis < offsets.axes.size(); ++axis) {
       offsets.axes[axis].value = offset[static_cast<int>(axis)];
     }
-    const std::string refused = tracker_.offsetRefusal(digest, offsets);
+    const auto need = tracker_.offsetNeed(digest, kFirst, offsets);
+    const std::string refused = need ? need->text : "";
     const bool continues = digest == onDisk().job_digest && !onDisk().finished && refused.empty();
     EXPECT_EQ(tracker_.continues(digest, offsets), continues);
     return refused;
@@ -138,24 +151,24 @@ TEST_F(ProgressTrackerTest, AJobThatWasNotStartedLeavesTheOneBefore) {
 }
 
 TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOtherAndAFinishedOneOfNone) {
-  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
+  EXPECT_EQ(refusal("job", kFirst), "");
   grind(two_, "job", 1);
-  EXPECT_EQ(tracker_.refusal("job", {0, 1}), "") << "it is continued";
-  EXPECT_NE(tracker_.refusal("job", kFirst), "") << "from its beginning";
-  const std::string other = tracker_.refusal("other", kFirst);
+  EXPECT_EQ(refusal("job", {0, 1}), "") << "it is continued";
+  EXPECT_NE(refusal("job", kFirst), "") << "from its beginning";
+  const std::string other = refusal("other", kFirst);
   EXPECT_NE(other.find("job.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), tooth 1, pass 2"),
             std::string::npos)
       << other;
   EXPECT_NE(other.find("discard"), std::string::npos);
   grind(two_, "job", 2);
-  EXPECT_EQ(tracker_.refusal("other", kFirst), "");
-  EXPECT_EQ(tracker_.refusal("job", kFirst), "");
+  EXPECT_EQ(refusal("other", kFirst), "");
+  EXPECT_EQ(refusal("job", kFirst), "");
 }
 
 TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) {
   const GrindProgram three = program(3);
   const auto isRefused = [&](const std::string& digest, const ToothPass& first) {
-    const std::string refused = tracker_.refusal(digest, first), discarding = tracker_.refusal(digest, first, true);
+    const std::string refused = refusal(digest, first), discarding = refusal(digest, first, true);
     EXPECT_EQ(refused, discarding) << "what is discarded is not ground";
     return refused.find("allowed: tooth 1, pass 1, or where the journal has left the job") != std::string::npos;
   };
@@ -165,7 +178,7 @@ TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) 
   EXPECT_TRUE(isRefused("job", {0, 2}));
   EXPECT_TRUE(isRefused("job", {1, 0}));
   EXPECT_TRUE(isRefused("other", {0, 1}));
-  EXPECT_EQ(tracker_.refusal("job", kFirst, true), "");
+  EXPECT_EQ(refusal("job", kFirst, true), "");
   grind(three, "job", 3);
   EXPECT_TRUE(isRefused("job", {0, 2})) << "it is finished";
 }
@@ -176,9 +189,9 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   Journal writer(path, "/test");
   ProgressTracker tracker(writer);
   EXPECT_EQ(
-      tracker.refusal("job", kFirst),
+      refusal(tracker, "job", kFirst),
       "journal " + path + ": its checksum is missing; what job it kept is unknown; restore the file, or discard it");
-  EXPECT_EQ(tracker.refusal("job", kFirst, true), "");
+  EXPECT_EQ(refusal(tracker, "job", kFirst, true), "");
   // What is done about the wheel leaves it, for whoever can restore it.
   for (const bool known : {false, true}) {
     status_.wheel = unknownWheel(test_support::machineConfig().machine.limits);
@@ -194,11 +207,11 @@ TEST_F(ProgressTrackerTest, AJournalThatCannotBeReadIsInTheWayEvenIfDiscardedUnt
   std::ofstream(folder) << "a file";
   Journal writer(folder / "journal", "/test");
   ProgressTracker tracker(writer);
-  EXPECT_EQ(tracker.refusal("job", kFirst, true).rfind("journal " + folder.string(), 0), 0U);
+  EXPECT_EQ(refusal(tracker, "job", kFirst, true).rfind("journal " + folder.string(), 0), 0U);
   std::filesystem::remove(folder);
   EXPECT_TRUE(test_support::soon([&] {
     tracker.update(status_);
-    return tracker.refusal("job", kFirst).empty();
+    return refusal(tracker, "job", kFirst).empty();
   }));
 }
 

@@ -71,7 +71,7 @@ class Recording:
 
     def grind_with_hold_and_override(self):
         """The job by the command line; in its stroke it is held, and then ground at half the feed."""
-        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--ignore-offset-check', '--csv',
+        run = subprocess.Popen([gc.program('grind'), '--node', 'recorded', 'run', PAPER_JOB, '--answer', 'ignore-offsets', '--csv',
                                 self.csv],
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
         try:

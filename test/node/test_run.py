@@ -14,7 +14,7 @@ from grind_command import PAPER_JOB, RunTest, default_signals
 from grinder_client import LIFT, MM, STROKE, X, grinder
 
 # Whatever the test before has left in the journal is forgotten.
-RUN = ['run', '--discard', '--ignore-offset-check']
+RUN = ['run', '--answer', 'discard', '--answer', 'ignore-offsets']
 
 CLEAR_LINE = '\r\x1b[K'
 # What the line shows where there is room for all.

@@ -11,7 +11,7 @@ import threading
 import actionlib
 import rosgraph
 import rospy
-from flute_grinder.msg import (FeedLimit, GrindAction, GrinderState, GrindFeedback, GrindResult, PathStatistics, PlanReport, SetpointBatch, Stop,
+from flute_grinder.msg import (FeedLimit, GrindAction, GrinderState, GrindFeedback, GrindResult, Need, PathStatistics, PlanReport, SetpointBatch, Stop,
                                WorkOffsets, WrittenSetpoint)
 from flute_grinder.srv import SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
@@ -139,9 +139,9 @@ class TestStandIn(RunTest):
         command.wait_text('  ' + shown)
         command.wait_text('held: ' + shown)
         statistics = PathStatistics(setpoints=1, feed_limits=[FeedLimit(cause=bad)])
-        goal.set_succeeded(GrindResult(plan=PlanReport(statistics=statistics, closest_bodies=[bad] * 2, warnings=[bad])))
+        goal.set_succeeded(GrindResult(plan=PlanReport(statistics=statistics, closest_bodies=[bad] * 2, needs=[Need(text=bad)])))
         self.assertEqual(command.end(), 0, command.text)
-        self.assertIn('warning: ' + shown, command.text)
+        self.assertIn('to start it: ' + shown, command.text)
         self.assertNotIn('\x1b', command.text)
 
     def test_planning_on_a_terminal(self):
@@ -188,11 +188,11 @@ class TestStandIn(RunTest):
         self.assertEqual(command.end(), 0, command.text)
         self.assertRegex(command.stdout, r'(?m)^streamed +0 setpoints in 0\.000 s, 0 missed, 7 written but not published$')
 
-    def test_goal_has_the_files_name_and_what_is_discarded(self):
-        for arguments, discard in (([], False), (['--discard'], True)):
+    def test_goal_has_the_files_name_and_the_answers(self):
+        for arguments, answers in (([], []), (['--answer', 'discard', '--answer', 'fit-offsets'], ['discard', 'fit-offsets'])):
             self.node.goals.clear()
             command, goal = self.start_run(*arguments)
-            self.assertEqual((goal.get_goal().job_name, goal.get_goal().discard), ('paper.yaml', discard))
+            self.assertEqual((goal.get_goal().job_name, goal.get_goal().answers), ('paper.yaml', answers))
             goal.set_succeeded(GrindResult())
             self.assertEqual(command.end(), 0)
 

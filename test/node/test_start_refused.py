@@ -4,7 +4,8 @@ every moment of a job, is shown in test/control."""
 
 import math
 
-from flute_grinder.msg import GrinderState, GrindResult, Reason
+import rospy
+from flute_grinder.msg import GrinderState, GrindResult, Reason, WorkOffsets
 
 import grinder_client as gc
 from grinder_client import DEG
@@ -63,7 +64,7 @@ class TestSwivel(gc.OwnNode):
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.NOT_READY), run.text)
         self.assertEqual([reason.kind for reason in run.result.reasons], [Reason.SWIVEL])
         self.assertEqual([f.state for f in run.feedback], [], 'it was not even planned')
-        done = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--ignore-offset-check')
+        done = self.grind(1, 'run', gc.package_file('test/jobs/paper.yaml'), '--answer', 'ignore-offsets')
         self.assertIn('process.setup.swivel_deg = 31.769 deg: ' + text, done.stderr)
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
         self.assertEqual(self.client.wait_rest(), rest)
@@ -99,3 +100,19 @@ class TestSwivel(gc.OwnNode):
         done = self.grind(1, 'confirm-swivel', '31.769')
         self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which is at 31.8 deg; '
                                       'nothing is to be confirmed\n')
+
+    def test_a_goal_is_sent_again_with_the_answers_to_what_was_shown(self):
+        self.start_ready()
+        rejected = self.send(answers=['discard']).wait()
+        wheel, zeros, swivel = rejected.result.plan.needs
+        self.assertEqual([need.name for need in (wheel, zeros, swivel)], ['wheel', 'offsets', 'swivel'])
+        answers = [need.answers[-1].id for need in (wheel, zeros, swivel)]
+        # Somebody else sets a zero point before it is answered: what was shown is no longer so.
+        self.assertTrue(self.client.set_offset(gc.X, 0.001).success)
+        again = self.send(answers=['discard'] + answers).wait()
+        self.assertEqual([need.name for need in again.result.plan.needs], ['offsets'])
+        self.assertEqual(rospy.wait_for_message('/%s/offsets' % self.node.name, WorkOffsets, gc.PATIENCE).wheel.diameter, 100 * gc.MM, 'that was answered')
+        answers.append(again.result.plan.needs[0].answers[-1].id)
+        run = self.send(answers=['discard'] + answers).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertAlmostEqual(self.client.fresh_state().swivel, gc.part_of(gc.goal_of(gc.SHORT), 'process').setup_swivel, delta=1e-12)

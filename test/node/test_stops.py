@@ -178,8 +178,8 @@ class TestTheWayDown(NodeTest):
         self.start(machine()).make_ready()
         path = os.path.join(self.node.folder, 'job.yaml')
         gc.job_file(path, flute_length_mm=10)
-        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--discard',
-                                   '--ignore-offset-check'],
+        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--answer', 'discard',
+                                   '--answer', 'ignore-offsets'],
                                   stdout=subprocess.DEVNULL)
         try:
             self.client.wait_for(lambda: self.client.batches, 'the first setpoints')

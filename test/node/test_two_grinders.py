@@ -56,8 +56,8 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         cls.jobs = {name: gc.job_file(os.path.join(cls.folder, name.replace('/', '_') + '.yaml'), **changes)
                     for name, changes in CHANGES.items()}
         cls.left, cls.right = clients()
-        runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--discard',
-                                  '--ignore-offset-check', '--csv',
+        runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--answer', 'discard',
+                                  '--answer', 'ignore-offsets', '--csv',
                                   cls.csv(name)],
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
                 for name in NAMES]

@@ -163,7 +163,7 @@ class TestWithoutMaster(RunTest):
         for words in (['enable'], ['confirm-swivel', '31.769']):
             done = self.master.grind(*words)
             self.assertEqual(done.returncode, 0, done.stderr)
-        command = self.grind('run', PAPER_JOB, '--ignore-offset-check', environment=self.master.environment)
+        command = self.grind('run', PAPER_JOB, '--answer', 'ignore-offsets', environment=self.master.environment)
         command.wait_text('  running  ')
         self.master.kill()
         return command

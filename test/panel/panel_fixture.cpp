@@ -133,7 +133,7 @@ void Panel::press(const char* name) {
     for (auto* text : panel_->findChildren<QTextEdit*>()) {
       if (text->isVisible()) text->verticalScrollBar()->setValue(text->verticalScrollBar()->maximum());
     }
-    return the<QPushButton>(name).isVisible() && enabled(name);
+    return isVisible(name) && enabled(name);
   };
   EXPECT_TRUE(QTest::qWaitFor(offered, kPatience)) << name;
   click(name);

@@ -73,7 +73,11 @@ class Panel {
   /// Whether a text of the panel, or a label of it, has this in it.
   ::testing::AssertionResult says(const char* name, const std::string& part) { return has(text(name), part); }
   ::testing::AssertionResult shows(const char* name, const std::string& part) { return has(label(name), part); }
-  bool isVisible(const char* name) { return the<QWidget>(name).isVisible(); }
+  /// Whether something of this name is in sight; the answers to a question are there while it is asked only.
+  bool isVisible(const char* name) {
+    const auto* widget = panel_->findChild<QWidget*>(name);
+    return widget && widget->isVisible();
+  }
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
   std::string state() { return label("state"); }
   /// Shows one of the tabs by a click.

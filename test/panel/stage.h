@@ -1,7 +1,5 @@
 #pragma once
 
-#include "flute_grinder/ConfirmSwivel.h"
-#include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/GrindActionFeedback.h"
 #include "flute_grinder/GrindActionGoal.h"
 #include "flute_grinder/GrindActionResult.h"
@@ -18,6 +16,7 @@
 #include "flute_grinder/WorkOffsets.h"
 
 #include "flute_grinder/machine/machine_state.h"
+#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel_fixture.h"
 
@@ -72,7 +71,7 @@ class Stage {
     serve<flute_grinder::TouchOff>("touch_off", [this](const auto& request, auto& response) {
       touches.push_back(request);
       answer(response, touch_refusal);
-      response.large_change = large_change;
+      response.needs = touch_needs;
     });
     serve<flute_grinder::SetOffset>("set_offset", [this](const auto& request, auto& response) {
       offsets_set.push_back(request);
@@ -83,18 +82,9 @@ class Stage {
       state.override = request.fraction;
       answer(response, "");
     });
-    serve<flute_grinder::ConfirmWheel>("confirm_wheel", [this](const auto& request, auto& response) {
-      wheels.push_back(request);
-      answer(response, "");
-    });
     serve<flute_grinder::Reclamped>("reclamped", [this](const auto& /*request*/, auto& response) {
       ++reclamped;
       answer(response, "");
-    });
-    serve<flute_grinder::ConfirmSwivel>("confirm_swivel", [this](const auto& request, auto& response) {
-      swivels.push_back(request.swivel);
-      answer(response, swivel_refusal);
-      if (response.success) state.swivel = request.swivel;
     });
     goals_ = nh_.subscribe<flute_grinder::GrindActionGoal>("grind/goal", 100, &Stage::onGoal, this);
     jogs_ = listen("jog", jogs);
@@ -196,8 +186,6 @@ class Stage {
   int resumes = 0;
   Names triggers;               ///< that were asked for
   std::string trigger_refusal;  ///< of what only says so; empty to accept it
-  std::string swivel_refusal;   ///< of a confirmation; empty to accept it
-  std::vector<double> swivels;
   std::vector<double> overrides;
   std::vector<flute_grinder::GrindActionGoal> plans;  ///< dry runs
   std::vector<flute_grinder::GrindActionGoal> goals;  ///< all others
@@ -207,9 +195,8 @@ class Stage {
   std::vector<flute_grinder::Jog> jogs;
   std::vector<flute_grinder::TouchOff::Request> touches;
   std::string touch_refusal;
-  bool large_change = false;  ///< the reason of that
+  std::vector<flute_grinder::Need> touch_needs;  ///< what must be answered then
   std::vector<flute_grinder::SetOffset::Request> offsets_set;
-  std::vector<flute_grinder::ConfirmWheel::Request> wheels;
   int reclamped = 0;
   std::string goal_id;                 ///< of the progress
   flute_grinder::GrindResult planned;  ///< of a dry run
@@ -267,11 +254,26 @@ class Staged : public ::testing::Test {
  protected:
   std::vector<flute_grinder::GrindActionGoal> goals() { return stage.get(&Stage::goals); }
   std::vector<int> stops() { return stage.get(&Stage::stops); }
-  std::vector<double> swivels() { return stage.get(&Stage::swivels); }
   std::vector<flute_grinder::TouchOff::Request> touches() { return stage.get(&Stage::touches); }
 
   Stage stage;
 };
+
+const Need kUnfinished{NeedKind::kUnfinishedJob, "the journal keeps another job", {}, {NeedAnswer::kDiscard}};
+const Need kOtherWheel{NeedKind::kWheel,
+                       "another wheel is on the spindle",
+                       {{"wheel", "w.yaml, D 100 mm", "other.yaml, D 90 mm", ""}},
+                       {NeedAnswer::kConfirmWheel}};
+const Need kOtherZeros{NeedKind::kOffsets,
+                       "Y and Z are of another job",
+                       {{"Y", "D 10 mm", "touched off for D 6 mm (other.yaml)", "2 mm"}},
+                       {NeedAnswer::kFitOffsets, NeedAnswer::kIgnoreOffsets}};
+const Need kNoZeros{
+    NeedKind::kOffsets, "X was never set", {{"X", "touched off", "never set", ""}}, {NeedAnswer::kIgnoreOffsets}};
+const Need kSwivelToSet{NeedKind::kSwivel,
+                        "the swivel is not confirmed",
+                        {{"swivel", "31.769 deg", "not known", ""}},
+                        {NeedAnswer::kConfirmSwivel}};
 
 /// With a panel that has the paper's job, which can be ground.
 class OnStage : public Staged {
@@ -286,6 +288,10 @@ class OnStage : public Staged {
     stage.change(how);
     stage.be("lifting", panel);
     stage.be("ready", panel);
+  }
+  /// Says what a start needs, from the next plan on.
+  void need(const std::vector<Need>& needs) {
+    stage.change([&] { stage.planned.plan.needs = toMessage(needs); });
   }
   /// Plans and starts the job, until a question has this answer.
   void startAndBeAsked(const char* answer) {

@@ -418,13 +418,13 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
     stage.planned.plan.closest_bodies = {"wheel", "collet"};
     stage.planned.plan.closest_distance = 1.4214e-3;
     stage.planned.plan.closest_x = 0.037;
-    stage.planned.plan.warnings = {"X was never set; Y was never set"};
+    stage.planned.plan.needs = toMessage({kNoZeros});
     stage.planned.plan.shank_cut = 0.375e-3;
   });
   panel.press("plan");
   const std::string good =
       "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
-      "Zero points: X was never set; Y was never set.\nThe feed is never reached." +
+      "To start it: X was never set.\nThe feed is never reached." +
       shank;
   WAIT_FOR(verdict() == good);
   const std::vector<std::string> reasons{
@@ -478,18 +478,18 @@ TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
   WAIT_FOR(!panel.enabled("cancel"));
 }
 
-/// With a job that is planned, and a swivel that nobody has confirmed.
+/// With a job to be planned, and a swivel that nobody has confirmed.
 class BeforeTheSwivelIsSet : public OnStage {
  protected:
   void SetUp() override {
+    need({kSwivelToSet});
     publish([&] { stage.state.swivel = std::numeric_limits<double>::quiet_NaN(); });
-    panel.plan();
   }
-  void start() { startAndBeAsked("confirm_swivel"); }
+  void start() { startAndBeAsked("confirm-swivel"); }
   void setSwivel(double angle, bool measured) {
     publish([&] { stage.state.swivel = angle, stage.state.swivel_measured = static_cast<std::uint8_t>(measured); });
   }
-  bool asks() { return panel.isVisible("confirm_swivel"); }
+  bool asks() { return panel.isVisible("confirm-swivel"); }
 };
 
 TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
@@ -510,45 +510,19 @@ TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
 
 TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmedOnly) {
   start();
-  for (const char* shown :
-       {"paper.yaml (D 10 mm, ", ", wheel straight, 3 mm wide, D 100 mm", "31.769 deg", "not confirmed"}) {
-    EXPECT_TRUE(panel.says("swivel_question", shown)) << shown;
+  for (const char* shown : {"Is the swivel set to this angle and clamped?", "31.769 deg", "not known"}) {
+    EXPECT_TRUE(panel.says("job_question", shown)) << shown;
   }
   panel.picture("swivel_question");
-  panel.press("decline_swivel");
+  panel.press("decline_job");
   WAIT_FOR(!asks());
   EXPECT_TRUE(panel.enabled("start")) << "the plan is still good";
-  start();
-  stage.change([&] { stage.swivel_refusal = "confirm-swivel refused: for a test"; });
-  panel.press("confirm_swivel");
-  WAIT_FOR(panel.says("messages", "Confirm-swivel refused: for a test"));
-  EXPECT_FALSE(asks());
   EXPECT_EQ(goals().size(), 0U);
-  stage.change([&] { stage.swivel_refusal = ""; });
   start();
-  panel.press("confirm_swivel");
+  panel.press("confirm-swivel");
   WAIT_FOR(goals().size() == 1);
   EXPECT_FALSE(asks());
-  ASSERT_EQ(swivels().size(), 2U);
-  EXPECT_DOUBLE_EQ(swivels()[1], 31.769 * M_PI / 180);
-  EXPECT_FALSE(goals().at(0).goal.discard);
-}
-
-TEST_F(BeforeTheSwivelIsSet, TheQuestionGoesWhenSomebodyElseConfirmsIt) {
-  start();
-  stage.change([&] { stage.state.swivel = 31.8 * M_PI / 180; });
-  WAIT_FOR(!asks());
-  panel.click("start");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(swivels().empty());
-}
-
-TEST_F(BeforeTheSwivelIsSet, ADriveThatMeasuresItIsNotAsked) {
-  setSwivel(0.1, true);
-  panel.click("start");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(asks());
-  EXPECT_TRUE(swivels().empty()) << "the grinder refuses the goal and says why";
+  EXPECT_EQ(goals().at(0).goal.answers, std::vector{answerId(kSwivelToSet, NeedAnswer::kConfirmSwivel)});
 }
 
 /// With a job of the grinder's journal that is not finished.
@@ -569,32 +543,27 @@ class AfterAJobWasLeft : public OnStage {
 TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
   EXPECT_TRUE(panel.says("verdict", "It ended: in the middle, with the grinder's program."));
   EXPECT_FALSE(panel.enabled("continue")) << "its file is not known";
+  need({kUnfinished});
   startAndBeAsked("discard");
-  EXPECT_EQ(
-      panel.text("unfinished_question"),
-      "Not finished: published.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), at tooth 2, pass 3. "
-      "It cannot be continued once this one starts:\npaper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 "
-      "tooth), wheel straight, 3 mm wide, D 100 mm");
-  EXPECT_FALSE(panel.isVisible("keep")) << "the chosen file is another job";
+  EXPECT_EQ(panel.text("job_question"),
+            "paper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), wheel straight, 3 mm wide, D 100 "
+            "mm\nthe journal keeps another job\nThat job cannot be continued once this one starts.");
   panel.picture("discard_question");
   EXPECT_EQ(goals().size(), 0U);
   panel.press("discard");
   WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goal().discard);
+  EXPECT_EQ(goal().answers, std::vector{answerId(kUnfinished, NeedAnswer::kDiscard)});
   EXPECT_EQ(goal().job_name, "paper.yaml");
   EXPECT_FALSE(panel.isVisible("discard"));
 }
 
-TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedInsteadOfBegunAgain) {
+TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedWhereItWasLeft) {
   leave(kPaper);
-  startAndBeAsked("keep");
-  EXPECT_EQ(panel.the<QPushButton>("keep").text(), "Continue it");
-  panel.press("keep");
-  WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
-  EXPECT_EQ(goals().size(), 0U);
+  panel.tick("continue");
+  panel.plan();
   panel.click("start");
   WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(goal().discard);
+  EXPECT_TRUE(goal().answers.empty());
   EXPECT_EQ(goal().first_tooth, 1);
   EXPECT_EQ(goal().first_pass, 2);
 }
@@ -618,27 +587,13 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
   EXPECT_EQ(panel.text("verdict").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
 }
 
-TEST_F(AfterAJobWasLeft, ADamagedJournalIsDiscardedIfTheOperatorSaysSo) {
+TEST_F(AfterAJobWasLeft, ADamagedJournalIsSaid) {
   stage.change([&] {
     stage.state.progress = flute_grinder::JobProgress();
     stage.state.journal_error = "journal /j: its checksum is wrong";
     stage.state.journal_damaged = 1;
   });
   WAIT_FOR(panel.text("verdict") == "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
-  startAndBeAsked("discard");
-  EXPECT_TRUE(panel.says("unfinished_question", "journal /j: its checksum is wrong. What job it kept is not known."));
-  panel.press("discard");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goal().discard);
-}
-
-TEST_F(AfterAJobWasLeft, NothingIsAskedOnceItIsFinished) {
-  leave(kPaper);
-  publish([&] { stage.state.progress.finished = 1; });
-  panel.plan();
-  panel.click("start");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(goal().discard);
 }
 
 TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {

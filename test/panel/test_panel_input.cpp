@@ -225,13 +225,13 @@ TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
 }
 
 TEST_F(BesideADialog, HoldStaysAndWorksBesideAQuestionWhateverTabIsOpen) {
-  publish([&] { stage.state.swivel = 0; });
+  need({kSwivelToSet});
   panel.plan();
   const QPoint place = panel.the<QWidget>("hold").pos();
   panel.openTab("Section");
   WAIT_FOR(panel.shows("section_figures", "Rake "));
   EXPECT_EQ(panel.the<QWidget>("hold").pos(), place);
-  startAndBeAsked("confirm_swivel");
+  startAndBeAsked("confirm-swivel");
   expectHoldWorks();
 }
 
@@ -241,28 +241,21 @@ class Asked : public OnStage {
  protected:
   void SetUp() override {
     activate(panel);
-    stage.publishOffsets({}, goalFromFile(kPaper.toStdString()));
-    publish([&] {
-      stage.state.swivel = 0;
-      stage.state.progress.job_digest = std::string(64, 'a');
-      stage.state.progress.cutter.tooth_angles = {0};
-      stage.state.override = 0.5;
-    });
-    WAIT_FOR(panel.label("zero_points") == "Zero points: not of this job: X, Y, Z");
+    need({kUnfinished, kNoZeros, kSwivelToSet});
+    publish([&] { stage.state.override = 0.5; });
     startAndBeAsked("discard");
   }
-  bool shown(const std::string& question) { return panel.isVisible((question + "_question").c_str()); }
 };
 
 TEST_F(Asked, AQuestionTakesNoClickAtFirst) {
   // Far from the button that asks, long after it in the events' time, but not in the operator's.
   panel.press("discard");
-  for (const char* answer : {"ignore_offset_check", "decline_offsets"}) panel.click(answer);
-  EXPECT_TRUE(shown("offsets"));
-  WAIT_FOR(panel.enabled("decline_offsets"));
+  for (const char* answer : {"ignore-offsets", "decline_job"}) panel.click(answer);
+  EXPECT_TRUE(panel.isVisible("ignore-offsets"));
+  WAIT_FOR(panel.enabled("decline_job"));
   panel.openTab("Section");
   panel.openTab("Job");
-  EXPECT_FALSE(panel.enabled("ignore_offset_check")) << "it appears again";
+  EXPECT_FALSE(panel.enabled("ignore-offsets")) << "it appears again";
 }
 
 TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
@@ -270,23 +263,24 @@ TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
     auto& button = panel.the<QPushButton>(name);
     return QRect(button.mapTo(&panel.widget(), QPoint()), button.size());
   };
-  const QRect discard = place("discard"), not_yet = place("decline_unfinished");
+  const QRect discard = place("discard"), not_yet = place("decline_job");
   panel.press("discard");
-  WAIT_FOR(panel.enabled("ignore_offset_check"));
-  const QRect right = place("ignore_offset_check");
-  EXPECT_EQ(place("decline_offsets"), not_yet);
+  WAIT_FOR(panel.enabled("ignore-offsets"));
+  const QRect right = place("ignore-offsets");
+  EXPECT_EQ(place("decline_job"), not_yet);
   EXPECT_FALSE(right.intersects(discard));
-  panel.press("ignore_offset_check");
-  WAIT_FOR(panel.enabled("confirm_swivel"));
-  EXPECT_EQ(place("decline_swivel"), not_yet);
-  for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm_swivel").intersects(before));
+  panel.press("ignore-offsets");
+  WAIT_FOR(panel.enabled("confirm-swivel"));
+  EXPECT_EQ(place("decline_job"), not_yet);
+  for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm-swivel").intersects(before));
 }
 
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
-  for (const char* answer : {"discard", "ignore_offset_check", "confirm_swivel"}) panel.press(answer);
+  for (const char* answer : {"discard", "ignore-offsets", "confirm-swivel"}) panel.press(answer);
   WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goals().at(0).goal.discard);
-  EXPECT_TRUE(goals().at(0).goal.ignore_offset_check);
+  EXPECT_EQ(goals().at(0).goal.answers, (std::vector<std::string>{answerId(kUnfinished, NeedAnswer::kDiscard),
+                                                                  answerId(kNoZeros, NeedAnswer::kIgnoreOffsets),
+                                                                  answerId(kSwivelToSet, NeedAnswer::kConfirmSwivel)}));
   WAIT_FOR(panel.says("messages", "The job begins at a feed override of 50 %"));
   // From the goal on: a job that is still planned begins held.
   WAIT_FOR(panel.enabled("hold"));
@@ -295,13 +289,11 @@ TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
 }
 
 TEST_F(Asked, NoKeyAnswers) {
-  const std::vector<std::pair<const char*, std::string>> ways{
-      {"discard", "unfinished"}, {"ignore_offset_check", "offsets"}, {"confirm_swivel", "swivel"}};
-  for (const auto& [answer, question] : ways) {
-    SCOPED_TRACE(question);
+  for (const char* answer : {"discard", "ignore-offsets", "confirm-swivel"}) {
+    SCOPED_TRACE(answer);
     WAIT_FOR(panel.enabled(answer));
     for (auto* button : panel.widget().findChildren<QAbstractButton*>()) pressKeys(*button);
-    EXPECT_TRUE(shown(question));
+    EXPECT_TRUE(panel.isVisible(answer));
     panel.press(answer);
   }
   WAIT_FOR(goals().size() == 1);
@@ -418,7 +410,7 @@ class Keys : public OnStage {
     const auto holds = static_cast<std::size_t>(std::count(stops.begin(), stops.end(), flute_grinder::Stop::HOLD));
     return stage.get([&] {
       return stage.goals.size() + stage.steps.size() + stage.jogs.size() + stage.triggers.size() +
-             stage.touches.size() + stage.offsets_set.size() + stage.swivels.size() + stage.overrides.size() +
+             stage.touches.size() + stage.offsets_set.size() + stage.overrides.size() +
              static_cast<std::size_t>(stage.resumes) + stage.state.spindle_commanded + stops.size() - holds;
     });
   }

@@ -1,7 +1,7 @@
 // The panel against the grinder's node with the simulated drive: a job, and the set-up sheet, which is solved for this
 // machine, and written into the job file.
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "german.h"
 #include "panel_fixture.h"
@@ -33,10 +33,10 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   WAIT_FOR(panel.state() == "Ready");
   panel.picture("planned");
   panel.press("start");
-  panel.press("confirm_wheel");
-  WAIT_FOR(panel.says("messages", "Confirm-wheel: the wheel on the spindle is "));
+  panel.press("confirm-wheel");
+  WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
   panel.press("start");
-  for (const char* answer : {"ignore_offset_check", "confirm_swivel"}) panel.press(answer);
+  for (const char* answer : {"ignore-offsets", "confirm-swivel"}) panel.press(answer);
   WAIT_FOR(panel.state() == "Running" && panel.the<QProgressBar>("stroke").value() > 100);
   EXPECT_EQ(panel.label("place"), "slow.yaml, tooth 1, pass 1");
   EXPECT_FALSE(panel.isVisible("other_job")) << "it was started here";
@@ -136,15 +136,15 @@ TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
   WAIT_FOR(panel->state() == "Ready");
   panel->plan();
   panel->press("start");
-  const auto asks_for_wheel = [&] { return panel->isVisible("confirm_wheel"); };
-  WAIT_FOR(asks_for_wheel() || panel->isVisible("ignore_offset_check"));
+  const auto asks_for_wheel = [&] { return panel->isVisible("confirm-wheel"); };
+  WAIT_FOR(asks_for_wheel() || panel->isVisible("ignore-offsets"));
   // Another test may have confirmed it.
   if (asks_for_wheel()) {
-    panel->press("confirm_wheel");
-    WAIT_FOR(panel->says("messages", "Confirm-wheel: the wheel on the spindle is "));
+    panel->press("confirm-wheel");
+    WAIT_FOR(panel->text("verdict").find("Takes ") == 0);
     panel->press("start");
   }
-  for (const char* answer : {"ignore_offset_check", "confirm_swivel"}) panel->press(answer);
+  for (const char* answer : {"ignore-offsets", "confirm-swivel"}) panel->press(answer);
   WAIT_FOR(panel->state() == "Running" && !panel->enabled("write_setup"));
   EXPECT_EQ(panel->label("why_not_written"), "This job runs: its set-up file is not written.");
   panel->click("cancel");

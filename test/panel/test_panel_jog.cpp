@@ -1,6 +1,6 @@
 // The jog buttons of the panel, against a grinder of the test's own.
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "stage.h"
 
 #include <QAbstractScrollArea>
@@ -263,7 +263,7 @@ TEST_F(Jogging, TouchOffOfYAndZNeedsTheJob) {
   EXPECT_TRUE(touches().empty());
 }
 
-TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
+TEST_F(Jogging, ShowsWhoHasSetAnOffsetWhenAndForWhat) {
   const auto offset = [&] { return panel.label("work_offset"); };
   auto& axes = panel.the<QComboBox>("touch_axis");
   EXPECT_TRUE(offset().empty());
@@ -272,11 +272,14 @@ TEST_F(Jogging, ShowsWhoHasSetAnOffsetAndWhen) {
   offsets.set_by[kY] = "anna@cell-3";
   const QDateTime when(QDate(2024, 2, 29), QTime(23, 59, 1));
   offsets.set_at[kY] = ros::Time(static_cast<double>(when.toSecsSinceEpoch()));
+  offsets.basis[kY] = toMessage(basisOf(goalFromFile(kPaper.toStdString()), OffsetMethod::kTouchOff));
   offsets.error = "its file is damaged";
   stage.publishOffsets(offsets);
   WAIT_FOR(offset() == "Work offset of X: -51.5000 mm, never set");
   axes.setCurrentText("Y");
-  WAIT_FOR(offset() == "Work offset of Y: 1.4900 mm, set by anna@cell-3, 2024-02-29 23:59:01");
+  WAIT_FOR(offset() ==
+           "Work offset of Y: 1.4900 mm, set by anna@cell-3, 2024-02-29 23:59:01; "
+           "touched off for D 10 mm, wheel straight, 3 mm wide, D 100 mm (paper.yaml)");
   axes.setCurrentText("Z");
   WAIT_FOR(offset() == "Work offset of Z is unknown: its file is damaged");
   axes.setCurrentText("A");

@@ -7,9 +7,9 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
-#include "flute_grinder/record/ground_strokes.h"
 #include "flute_grinder/record/record_file.h"
 #include "node/job_recorder.h"
+#include "record/ground_strokes.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "flute_grinder/job/file_error.h"
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/record/record_file.h"
 #include "temp_folder.h"
 

@@ -1,13 +1,13 @@
-#include "flute_grinder/report/tool_records.h"
+#include "flute_grinder/record/tool_records.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/ground_tool.h"
-#include "flute_grinder/geometry/tool_figure.h"
-#include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
-#include "flute_grinder/record/ground_strokes.h"
+#include "flute_grinder/tool/ground_tool.h"
+#include "flute_grinder/tool/tool_figure.h"
+#include "flute_grinder/tool/z_law.h"
+#include "record/ground_strokes.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,10 @@
 #include "flute_grinder/record/verdict.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/tool_figure.h"
-#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/tool/tool_figure.h"
+#include "flute_grinder/tool/z_law.h"
 #include "refusal.h"
 #include "temp_folder.h"
 
@@ -325,7 +326,7 @@ TEST(Tolerances, BadOnesAreNamed) {
   for (const std::string wrong : {"-1", ".nan", ".inf", "true", "wide", "[1]"}) {
     EXPECT_NE(refusal(whole + "land_mm: " + wrong).find("; allowed: a number from 0"), std::string::npos) << wrong;
   }
-  EXPECT_THROW(readTolerances("config/none.yaml"), JobFileError);
+  EXPECT_THROW(readTolerances("config/none.yaml"), FileError);
 }
 
 }  // namespace test_verdict

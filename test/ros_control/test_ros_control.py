@@ -156,7 +156,7 @@ class TestRosControl(unittest.TestCase):
                 ('hang', GrindResult.HARDWARE_FAULT, '')):
             with self.subTest(now):
                 self.enable()
-                run = client.send(gc.paper(), discard=True).wait_in_stroke(2 * gc.MM)
+                run = client.send(gc.paper()).wait_in_stroke(2 * gc.MM)
                 self.now.publish(now)
                 if now == 'hang':
                     client.wait_for(lambda: 'does not return to the control loop' in client.states[-1].fault, 'the watchdog')

@@ -2,11 +2,12 @@
 
 #include "flute_grinder/scene/ground_markers.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/z_law.h"
-#include "flute_grinder/job/format.h"
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/tool_text.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/z_law.h"
 #include "jobs.h"
 
 #include <gtest/gtest.h>

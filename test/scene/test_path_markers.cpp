@@ -1,10 +1,10 @@
 #include "flute_grinder/scene/path_markers.h"
 
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/geometry/ground_job.h"
-#include "flute_grinder/geometry/z_law.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/motion/job_plan.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include "motion/generators.h"
 

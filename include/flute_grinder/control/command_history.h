@@ -1,8 +1,8 @@
 #pragma once
 
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/drive/drive.h"
-#include "flute_grinder/job/axes.h"
 
 #include <algorithm>
 #include <array>

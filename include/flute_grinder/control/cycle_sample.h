@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/drive/drive.h"
-#include "flute_grinder/job/axes.h"
 #include "flute_grinder/machine/loop_fault.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/machine/swivel.h"

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/fault_text.h"
 #include "flute_grinder/drive/drive.h"
-#include "flute_grinder/job/fault_text.h"
 
 #include <atomic>
 #include <condition_variable>

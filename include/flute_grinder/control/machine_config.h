@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/control/diagnostic_thresholds.h"
 #include "flute_grinder/control/loop_config.h"
 #include "flute_grinder/drive/parameters.h"
-#include "flute_grinder/job/axes.h"
 #include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/machine/machine_model.h"
 

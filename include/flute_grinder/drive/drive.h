@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/job/axes.h"
-#include "flute_grinder/job/fault_text.h"
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/fault_text.h"
 
 #include <ros/duration.h>
 #include <ros/node_handle.h>

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
-#include "flute_grinder/job/yaml_text.h"
+#include "flute_grinder/base/enum_table.h"
 
 #include <yaml-cpp/yaml.h>
 
@@ -29,7 +28,7 @@ class FlatFile {
   /// @param name name of the file in messages.
   /// @param kind kind of file, e.g. "job file".
   /// @param content its sections or keys, in words.
-  /// @throw JobFileError if it is not a map, or a key is duplicate or not a word.
+  /// @throw FileError if it is not a map, or a key is duplicate or not a word.
   FlatFile(const std::string& text, std::string name, std::string kind, const std::string& content);
 
   /// @return whether a value of the right type was found.
@@ -122,7 +121,7 @@ class FlatFile {
   /// Adds errors that already contain file and line.
   void add(const std::string& errors);
 
-  /// @throw JobFileError with the first errors and the number of further ones, if there are any.
+  /// @throw FileError with the first errors and the number of further ones, if there are any.
   void throwErrors() const;
 
  private:

@@ -1,9 +1,9 @@
 #pragma once
 
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
-#include "flute_grinder/curve/enum_table.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/curve/units.h"
 #include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/job/tooth_pass.h"

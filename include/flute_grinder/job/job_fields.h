@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/quantity.h"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,6 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/setup_file.h"
 #include "flute_grinder/job/wheel_file.h"
-#include "flute_grinder/job/yaml_text.h"
 
 #include <optional>
 #include <string>
@@ -15,7 +14,7 @@ namespace grinder {
 /// @param path the file.
 /// @param operation the job's operation if there are several: its number, from 1, or its kind, e.g. "primary".
 /// @return the job in SI.
-/// @throw JobFileError if a file cannot be read, a key is missing, unknown or duplicated, a value has the wrong type,
+/// @throw FileError if a file cannot be read, a key is missing, unknown or duplicated, a value has the wrong type,
 /// is
 ///        not finite or is not allowed, or a set-up was solved for another cutter or wheel.
 GrindJob readJobFile(const std::string& path, const std::string& operation = "");

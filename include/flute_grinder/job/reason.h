@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/job/move_kind.h"
-#include "flute_grinder/job/quantity.h"
 
 #include <cstdint>
 #include <stdexcept>

@@ -34,7 +34,7 @@ void clearSetup(GrindJob& job);
 /// Reads the set-up of the job's operation into `job`.
 /// @param text text of the set-up file; `name` is the file in messages.
 /// @param job operation with its cutter and wheel.
-/// @throw JobFileError if the file has no set-up for this operation, if a figure is missing or not a number, or if the
+/// @throw FileError if the file has no set-up for this operation, if a figure is missing or not a number, or if the
 ///        set-up was solved for another cutter or wheel: the text names the first difference.
 void takeSetup(const std::string& text, const std::string& name, GrindJob& job);
 
@@ -42,7 +42,7 @@ void takeSetup(const std::string& text, const std::string& name, GrindJob& job);
 /// @param before text of the file; empty if there is none yet.
 /// @param name the file in messages.
 /// @param job_name name of the job file. A set-up file of another job is not written over.
-/// @throw JobFileError if `before` is not the text of this job's set-up file.
+/// @throw FileError if `before` is not the text of this job's set-up file.
 std::string withSetup(const std::string& before, const std::string& name, const std::string& job_name,
                       const GrindJob& job);
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "flute_grinder/job/grind_job.h"
-#include "flute_grinder/job/yaml_text.h"
 
 #include <optional>
 #include <string>
@@ -30,7 +29,7 @@ struct WheelFile {
 };
 
 /// Reads and checks a wheel file (YAML, mm and deg).
-/// @throw JobFileError with a line for each error.
+/// @throw FileError with a line for each error.
 WheelFile readWheelFile(const std::string& path);
 
 /// Reads and checks a wheel from text; `name` is the file in messages.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/fault_text.h"
+#include "flute_grinder/base/fault_text.h"
 #include "flute_grinder/motion/limit_check.h"
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
+#include "flute_grinder/base/enum_table.h"
 
 #include <cstdint>
 #include <optional>

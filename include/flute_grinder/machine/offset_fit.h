@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/machine/need.h"
 #include "flute_grinder/motion/work_offsets.h"
 
 #include <optional>
@@ -29,6 +30,9 @@ struct OffsetMismatch {
 /// or probed on a tooth. No operation is ground twice.
 /// @param job the job's values; method is ignored, and so are names for axes that fit.
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job);
+
+/// What an operator must say before a job starts with such offsets: a need of the wheel, and one of all the others.
+std::vector<Need> needsOf(const std::vector<OffsetMismatch>& mismatches);
 
 /// The job for which a work offset was set, for the operator, e.g. "touched off for D 6 mm, wheel straight_d100_w3.yaml
 /// (taper.yaml)", with only the values that the axis depends on; "never set" if it was not set, "cannot be read" if it

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "flute_grinder/machine/need.h"
 #include "flute_grinder/motion/axis_limits.h"
 #include "flute_grinder/motion/work_offsets.h"
 
+#include <optional>
 #include <string>
 
 namespace grinder {
@@ -23,10 +25,10 @@ OffsetLimits offsetLimits(const AxisLimits& travel, const Axes& change);
 /// @param value the offset [m], A [rad].
 std::string travelRefusal(const OffsetLimits& limits, int axis, double value);
 
-/// Why an offset must be confirmed, for the operator in mm and deg; empty if it need not be. An offset that was never
-/// set, or is unknown, may be set to any value.
+/// What must be said before an offset changes by more than OffsetLimits::change. An offset that was never set, or is
+/// unknown, may be set to any value.
 /// @param from the present offset.
 /// @param to the new value [m], A [rad].
-std::string changeRefusal(const OffsetLimits& limits, int axis, const WorkOffset& from, double to);
+std::optional<Need> needOfChange(const OffsetLimits& limits, int axis, const WorkOffset& from, double to);
 
 }  // namespace grinder

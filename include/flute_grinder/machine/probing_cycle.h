@@ -1,7 +1,7 @@
 #pragma once
 
-#include "flute_grinder/curve/enum_table.h"
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/enum_table.h"
 
 #include <cstdint>
 

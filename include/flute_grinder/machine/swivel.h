@@ -1,10 +1,12 @@
 #pragma once
 
-#include "flute_grinder/curve/units.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/reason.h"
+#include "flute_grinder/machine/need.h"
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace grinder {
 
@@ -26,5 +28,9 @@ struct Swivel {
 /// Why a job cannot be ground with the present swivel, and the remedy.
 /// @param asked the job's angle [rad].
 Reason reasonOf(const Swivel& swivel, double asked);
+
+/// What must be said, or done, before a job starts with the present swivel; nothing if it is at the job's angle.
+/// @param asked the job's angle [rad].
+std::optional<Need> needOf(const Swivel& swivel, double asked);
 
 }  // namespace grinder

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/job/axes.h"
+#include "flute_grinder/base/axes.h"
 #include "flute_grinder/motion/job_plan.h"
 
 #include <nlohmann/json.hpp>

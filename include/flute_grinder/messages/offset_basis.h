@@ -16,7 +16,7 @@ namespace grinder {
 struct JobFile;
 
 /// The goal of a job file, with the names of the file and of its wheel file.
-/// @throw JobFileError if a file cannot be read.
+/// @throw FileError if a file cannot be read.
 flute_grinder::GrindGoal goalFromFile(const std::string& path, const std::string& operation = "");
 flute_grinder::GrindGoal goalFromFile(const JobFile& file);
 
@@ -35,14 +35,5 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets);
 
 /// The work offsets that do not fit a goal.
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
-
-/// The warnings of a dry run or a plan about such offsets: none, or one text.
-std::vector<std::string> offsetWarnings(const WorkOffsets& offsets, const flute_grinder::GrindGoal& goal);
-
-/// Why offsets do not fit, and the remedy, for the operator; empty if all fit.
-std::string text(const std::vector<OffsetMismatch>& mismatches);
-
-/// The axes in a list of mismatches whose offset can be computed, e.g. "Y and Z".
-std::string computable(const std::vector<OffsetMismatch>& mismatches);
 
 }  // namespace grinder

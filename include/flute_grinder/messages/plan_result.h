@@ -1,8 +1,8 @@
 #pragma once
 
 #include "flute_grinder/GrindResult.h"
-#include "flute_grinder/geometry/tool_figure.h"
-#include "flute_grinder/plan/planned_job.h"
+#include "flute_grinder/check/planned_job.h"
+#include "flute_grinder/tool/tool_figure.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 #pragma once
 
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
-#include "flute_grinder/curve/units.h"
-#include "flute_grinder/job/axes.h"
 
 namespace grinder {
 

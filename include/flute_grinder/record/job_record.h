@@ -1,16 +1,16 @@
 #pragma once
 
+#include "flute_grinder/check/planned_job.h"
 #include "flute_grinder/control/cycle_sample.h"
-#include "flute_grinder/geometry/run_strokes.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/motion/work_offsets.h"
-#include "flute_grinder/plan/planned_job.h"
 #include "flute_grinder/record/job_events.h"
 #include "flute_grinder/record/machine_info.h"
 #include "flute_grinder/record/record_file.h"
 #include "flute_grinder/record/stroke_log.h"
 #include "flute_grinder/record/verdict.h"
+#include "flute_grinder/tool/run_strokes.h"
 
 #include <cstdint>
 #include <memory>

@@ -57,8 +57,7 @@ RecordHead readHead(const std::string& path);
 /// Reads a record, with its texts escaped(). @throw FileError as readHead(), and if the checksum is wrong.
 Record readRecord(const std::string& path);
 
-/// Whether a file begins like a record. @throw FileError if it cannot be read, JobFileError if it is not a regular
-/// file.
+/// Whether a file begins like a record. @throw FileError if it cannot be read or is not a regular file.
 bool isRecord(const std::string& path);
 
 /// Judges a record again by other tolerances, and by its tool.

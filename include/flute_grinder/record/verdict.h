@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/geometry/ground_tool.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/record/stroke_log.h"
+#include "flute_grinder/tool/ground_tool.h"
 
 #include <cstdint>
 #include <optional>
@@ -20,7 +20,7 @@ struct Tolerances {
   double late_cycles_percent = 0;  ///< late control cycles [%]
 };
 
-/// Reads the tolerances. @param path YAML file with the names above as keys. @throw JobFileError if it cannot be read,
+/// Reads the tolerances. @param path YAML file with the names above as keys. @throw FileError if it cannot be read,
 /// a key is missing or unknown, or a value is not a number from 0.
 Tolerances readTolerances(const std::string& path);
 

@@ -24,7 +24,7 @@ class MessageInstance;
 
 namespace grinder {
 
-/// Whether a file begins like a bag. @throw FileError if it cannot be read, JobFileError if it is not a regular file.
+/// Whether a file begins like a bag. @throw FileError if it cannot be read or is not a regular file.
 bool isBag(const std::string& path);
 
 /// A setpoint in a bag.

@@ -1,11 +1,11 @@
 #pragma once
 
-#include "flute_grinder/geometry/ground_tool.h"
 #include "flute_grinder/messages/json.h"
 #include "flute_grinder/record/stroke_log.h"
+#include "flute_grinder/record/tool_records.h"
 #include "flute_grinder/record/verdict.h"
 #include "flute_grinder/report/bag_run.h"
-#include "flute_grinder/report/tool_records.h"
+#include "flute_grinder/tool/ground_tool.h"
 
 #include <memory>
 #include <optional>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "flute_grinder/geometry/wheel_profile.h"
 #include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/scene/markers.h"
+#include "flute_grinder/tool/wheel_profile.h"
 
 namespace grinder {
 

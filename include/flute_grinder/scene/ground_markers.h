@@ -1,9 +1,9 @@
 #pragma once
 
-#include "flute_grinder/geometry/ground_cutter.h"
 #include "flute_grinder/job/move_kind.h"
 #include "flute_grinder/job/tooth_pass.h"
 #include "flute_grinder/scene/markers.h"
+#include "flute_grinder/tool/ground_cutter.h"
 
 #include <optional>
 

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "flute_grinder/curve/log_curve.h"
-#include "flute_grinder/geometry/ground_edge.h"
 #include "flute_grinder/motion/grind_program.h"
 #include "flute_grinder/scene/markers.h"
+#include "flute_grinder/tool/ground_edge.h"
 
 #include <optional>
 #include <vector>

@@ -214,7 +214,7 @@ def zero_points(data):
                                   for point in points.values() if point['set_at'])
             table.add(operation['operation'], *map(zero_point, points.values()), '; '.join(filter(None, bases)),
                       classes={i: 'not-measured' for i, point in enumerate(points.values(), 1) if not point['set_at']})
-    note = '<p class="failed">Ground without the check of the zero points (--ignore-offset-check): %s.</p>' % text(', '.join(ignored))
+    note = '<p class="failed">Ground without the check of the zero points (--answer ignore-offsets): %s.</p>' % text(', '.join(ignored))
     return ([note] if ignored else []) + ([table.html()] if table else [])
 
 

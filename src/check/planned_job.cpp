@@ -1,0 +1,55 @@
+#include "flute_grinder/check/planned_job.h"
+
+#include "flute_grinder/tool/z_law.h"
+
+#include <stdexcept>
+#include <vector>
+
+namespace grinder {
+
+namespace {
+
+/// A plan without a program, because there is no law of Z.
+JobPlan refused(Reason reason) {
+  JobPlan plan;
+  plan.fault = reason.kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+  plan.reasons.push_back(std::move(reason));
+  return plan;
+}
+
+JobPlan planWithLaw(const ValidJob& job, const Machine& machine, const RunStart& run,
+                    const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  std::optional<ValidJob> with_law;
+  try {
+    with_law = withLaws(job, watch);
+  } catch (const ReasonError& error) {
+    return refused(error.reason());
+  } catch (const std::invalid_argument& error) {
+    return refused(otherReason(error.what()));
+  }
+  return planJob(*with_law, machine, run, visit, watch);
+}
+
+void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) {
+  if (plan.good() && !reasons.empty()) plan.fault = fault;
+  plan.reasons.insert(plan.reasons.end(), reasons.begin(), reasons.end());
+}
+
+}  // namespace
+
+PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const MachineShapes& shapes, const RunStart& run,
+                        const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
+  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), {}, {}, {}, {}};
+  if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
+  CutterCheck cutter = checkGroundCutter(planned.program->job());
+  planned.complete = cutter.complete;
+  planned.figures = cutter.figures;
+  planned.edges = std::move(cutter.edges);
+  refuse(planned, PlanFault::kTool, cutter.reasons);
+  const CollisionResult collision = checkCollision(*planned.program, shapes);
+  planned.closest = collision.closest;
+  if (collision.reason) refuse(planned, PlanFault::kCollision, {*collision.reason});
+  return planned;
+}
+
+}  // namespace grinder

@@ -1,0 +1,306 @@
+#include "flute_grinder/tool/cutter_solid.h"
+
+#include "flute_grinder/base/on_all_cores.h"
+#include "flute_grinder/base/units.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+constexpr double kNoStep = 1e-9;           ///< [m]
+constexpr std::size_t kShankSections = 8;  ///< sections computed at once, until one is whole
+
+struct Layer {
+  double x;
+  std::vector<PolarPoint> outline;
+};
+
+OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution) {
+  const std::vector<GroundTooth>& teeth = cutter.teeth();
+  double widest = teeth.empty() ? 0 : units::kTurn + teeth.front().angle - teeth.back().angle;
+  for (std::size_t i = 1; i < teeth.size(); ++i) widest = std::max(widest, teeth[i].angle - teeth[i - 1].angle);
+  const double columns = std::ceil(widest / units::kTurn * static_cast<double>(resolution.around));
+  return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns)),
+          !cutter.reliefs(0).empty()};
+}
+
+/// The sections of cone and shank, and the layers between them.
+std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
+                            const OutlineGrid& grid) {
+  std::vector<Layer> layers;
+  const LogCurve curve(cutter.cutter());
+  const auto add = [&](double x, std::vector<PolarPoint> outline) {
+    Layer next{x, std::move(outline)};
+    if (!layers.empty() && x > layers.back().x) {
+      const Layer last = layers.back();
+      const double twist = std::abs(curve.a(x) - curve.a(last.x));
+      const double parts = std::ceil(twist / units::kTurn * static_cast<double>(resolution.around));
+      for (double part = 1; part < parts; ++part) {
+        Layer& layer = layers.emplace_back(Layer{last.x + part / parts * (x - last.x), last.outline});
+        for (std::size_t i = 0; i < layer.outline.size(); ++i) {
+          layer.outline[i] = between(last.outline[i], next.outline[i], part / parts);
+        }
+      }
+    }
+    layers.push_back(std::move(next));
+  };
+  const double step = (extent.to - extent.from) / static_cast<double>(resolution.sections - 1);
+  const auto at = [&](std::size_t i) {
+    return i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
+  };
+  const auto outlines = [&](std::size_t count, const auto& x_of, const auto& radius_of) {
+    std::vector<std::vector<PolarPoint>> all(count);
+    onAllCores(count, [&](std::size_t i) { all[i] = sectionOutline(cutter, x_of(i), radius_of(x_of(i)), grid); });
+    return all;
+  };
+  auto of_cone = outlines(resolution.sections, at, [&](double x) { return cutter.cutter().radius(x); });
+  for (std::size_t i = 0; i < of_cone.size(); ++i) add(at(i), std::move(of_cone[i]));
+  if (!(extent.shank_to > extent.to)) return layers;
+  const double shank = extent.shank_diameter / 2;
+  const auto is_whole = [&] {
+    const auto& outline = layers.back().outline;
+    return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
+  };
+  // Without a step there must be no ring between cone and shank: it would appear as a line of slivers.
+  const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
+  const std::size_t first = is_step ? 0 : 1;
+  const auto shank_x = [&](std::size_t i) {
+    return std::min(extent.shank_to, extent.to + static_cast<double>(i) * step);
+  };
+  std::vector<std::vector<PolarPoint>> of_shank;
+  for (std::size_t i = first; shank_x(i) < extent.shank_to && (i == 0 || !is_whole()); ++i) {
+    const std::size_t next = (i - first) % kShankSections;
+    if (next == 0) {
+      of_shank = outlines(
+          kShankSections, [&](std::size_t k) { return shank_x(i + k); }, [&](double) { return shank; });
+    }
+    add(shank_x(i), std::move(of_shank[next]));
+  }
+  add(extent.shank_to, sectionOutline(cutter, extent.shank_to, shank, grid));
+  return layers;
+}
+
+/// Corners of a triangle or a tetrahedron, as indices of vertices.
+using Triangle = std::array<std::uint32_t, 3>;
+using Tetrahedron = std::array<std::uint32_t, 4>;
+
+/// A section divided into triangles. Each body between two flutes has rings and columns, since an undercut wall hides
+/// the axis from some of its points. There are points inside the outline, too.
+class SectionMesh {
+ public:
+  SectionMesh(const OutlineGrid& grid, CutDirection direction) : grid_(grid), centre_(index(grid.teeth, 0, 1)) {
+    for (std::size_t body = 0; body < grid.teeth; ++body) {
+      tooth_.push_back(static_cast<std::uint16_t>(grid.tooth(grid.land(body, 0), direction)));
+      for (std::size_t k = 0; k < grid.columns; ++k) add(centre_, at(body, 0, k), at(body, 0, k + 1));
+      for (std::size_t ring = 0; ring < grid.rings; ++ring) {
+        for (std::size_t k = 0; k < grid.columns; ++k) {
+          add(at(body, ring, k), at(body, ring + 1, k), at(body, ring + 1, k + 1));
+          add(at(body, ring, k), at(body, ring + 1, k + 1), at(body, ring, k + 1));
+        }
+      }
+    }
+  }
+
+  /// Triangles, counterclockwise as seen from the shank, body by body.
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  std::uint16_t toothOf(std::size_t triangle) const { return tooth_[triangle / (triangles_.size() / grid_.teeth)]; }
+
+  /// The points of a section: its outline, then the points inside it, the centre last.
+  std::vector<PolarPoint> points(const std::vector<PolarPoint>& outline) const {
+    std::vector<PolarPoint> all = outline;
+    for (std::size_t body = 0; body < grid_.teeth; ++body) {
+      for (std::size_t ring = 0; ring < grid_.rings; ++ring) {
+        const PolarPoint from = outline[grid_.high(body, ring)];
+        PolarPoint to = outline[grid_.lowOfNext(body, ring)];
+        if (ring == 0 && body + 1 == grid_.teeth) to.turns += 1;
+        for (std::size_t k = 1; k < grid_.columns; ++k) {
+          all.push_back(between(from, to, static_cast<double>(k) / static_cast<double>(grid_.columns)));
+        }
+      }
+    }
+    all.push_back({0, 0});
+    return all;
+  }
+
+ private:
+  std::uint32_t index(std::size_t body, std::size_t ring, std::size_t column) const {
+    return static_cast<std::uint32_t>(grid_.size() + (body * grid_.rings + ring) * (grid_.columns - 1) + column - 1);
+  }
+  /// A point of a body: ring 0 joins the floors of its two flutes, and the last ring is the land.
+  std::uint32_t at(std::size_t body, std::size_t ring, std::size_t column) const {
+    if (ring == grid_.rings) return static_cast<std::uint32_t>(grid_.land(body, column));
+    if (column == 0) return static_cast<std::uint32_t>(grid_.high(body, ring));
+    if (column == grid_.columns) return static_cast<std::uint32_t>(grid_.lowOfNext(body, ring));
+    return index(body, ring, column);
+  }
+  void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) { triangles_.push_back({a, b, c}); }
+
+  OutlineGrid grid_;
+  std::uint32_t centre_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint16_t> tooth_;  ///< tooth of each body
+};
+
+/// Joins layers into a solid.
+class Joiner {
+ public:
+  /// @param turns_on whether the outlines turn toward higher indices from layer to layer.
+  /// @param with_inside whether the inside is divided into tetrahedra, too.
+  Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, bool with_inside)
+      : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), with_inside_(with_inside) {}
+
+  void add(const Layer& layer, bool is_end) {
+    begin_ = end_;
+    end_ = static_cast<std::uint32_t>(solid_.vertices.size());
+    for (const PolarPoint& p : with_inside_ || is_end ? mesh_.points(layer.outline) : layer.outline) {
+      const double angle = units::kTurn * (p.turns - std::floor(p.turns));
+      solid_.vertices.emplace_back(layer.x, p.radius * std::cos(angle), p.radius * std::sin(angle));
+    }
+  }
+
+  /// Joins the two layers added last.
+  /// @param is_step whether they are at the same X.
+  void joinLayers(bool is_step) {
+    const auto n = static_cast<std::uint32_t>(grid_.size());
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t next = (i + 1) % n;
+      const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid_.kind(i, direction_);
+      const auto tooth = static_cast<std::uint16_t>(grid_.tooth(i, direction_));
+      // The diagonal runs against the turn, as in the tetrahedra: the other diagonal would roughen a land.
+      const bool up = (i < next) != turns_on_;
+      const std::uint32_t from = up ? i : next, to = up ? next : i;
+      addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
+      addTriangle({begin_ + from, end_ + next, end_ + i}, kind, tooth);
+    }
+    if (!with_inside_) return;
+    for (const Triangle& t : mesh_.triangles()) addPrism(t);
+  }
+
+  /// Closes the solid at the layer added last.
+  void close(bool toward_shank) {
+    for (std::size_t i = 0; i < mesh_.triangles().size(); ++i) {
+      auto [a, b, c] = mesh_.triangles()[i];
+      if (!toward_shank) std::swap(b, c);
+      addTriangle({end_ + a, end_ + b, end_ + c}, SurfaceKind::kEndFace, mesh_.toothOf(i));
+    }
+  }
+
+  CutterSolid take() { return std::move(solid_); }
+
+  /// The solid without a wedge.
+  CutterSolid takeWithout(const Wedge& wedge) const {
+    const WedgeCut cut(wedge);
+    CutterSolid rest;
+    const auto& at = solid_.vertices;
+    for (const SolidTriangle& t : solid_.triangles) {
+      const auto& v = t.vertices;
+      for (const WedgeCut::Polygon& p : cut.outside({at[v[0]], at[v[1]], at[v[2]]})) append(rest, p, t.kind, t.tooth);
+    }
+    for (const Tetrahedron& v : inside_) {
+      for (const WedgeCut::Polygon& p : cut.faces({at[v[0]], at[v[1]], at[v[2]], at[v[3]]})) {
+        append(rest, p, SurfaceKind::kCut, 0);
+      }
+    }
+    return rest;
+  }
+
+ private:
+  /// Adds the prism between a triangle of the last layer but one and the same triangle of the last layer. The diagonals
+  /// of its sides all run from the lower index to the higher, or all the other way, so that they match the neighbours'
+  /// diagonals.
+  void addPrism(Triangle t) {
+    const auto tetrahedron = [&, odd = isOdd(t) != turns_on_](std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                                                              std::uint32_t d) {
+      inside_.push_back(odd ? Tetrahedron{b, a, c, d} : Tetrahedron{a, b, c, d});
+    };
+    std::sort(t.begin(), t.end());
+    if (turns_on_) std::reverse(t.begin(), t.end());
+    const auto [a, b, c] = t;
+    tetrahedron(begin_ + a, begin_ + b, begin_ + c, end_ + c);
+    tetrahedron(begin_ + a, begin_ + b, end_ + c, end_ + b);
+    tetrahedron(begin_ + a, end_ + a, end_ + b, end_ + c);
+  }
+
+  /// Whether sorting the corners turns the triangle over.
+  static bool isOdd(const Triangle& t) { return (t[0] > t[1]) ^ (t[1] > t[2]) ^ (t[0] > t[2]); }
+
+  static bool hasArea(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
+    return !(a == b || b == c || c == a);
+  }
+
+  static void append(CutterSolid& solid, const WedgeCut::Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
+    const auto first = static_cast<std::uint32_t>(solid.vertices.size());
+    solid.vertices.insert(solid.vertices.end(), polygon.begin(), polygon.end());
+    for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
+      if (!hasArea(polygon[0], polygon[i], polygon[i + 1])) continue;
+      solid.triangles.push_back({{first, first + i, first + i + 1}, kind, tooth});
+    }
+  }
+
+  void addTriangle(const Triangle& v, SurfaceKind kind, std::uint16_t tooth) {
+    if (!hasArea(solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]])) return;
+    solid_.triangles.push_back({v, kind, tooth});
+  }
+
+  OutlineGrid grid_;
+  CutDirection direction_;
+  bool turns_on_;
+  SectionMesh mesh_;
+  bool with_inside_;
+  CutterSolid solid_;
+  std::vector<Tetrahedron> inside_;
+  std::uint32_t begin_ = 0, end_ = 0;  ///< first vertices of the two layers added last
+};
+
+void check(const SolidExtent& extent, const SolidResolution& resolution) {
+  const auto require = [](bool good, const char* name, double value, const char* allowed) {
+    if (good) return;
+    std::ostringstream text;
+    text << "solid: " << name << " = " << value << "; allowed: " << allowed;
+    throw std::invalid_argument(text.str());
+  };
+  require(std::isfinite(extent.from), "from", extent.from, "a finite X [m]");
+  require(extent.to > extent.from && std::isfinite(extent.to), "to", extent.to, "beyond `from`, finite [m]");
+  require(std::isfinite(extent.shank_to), "shank_to", extent.shank_to, "a finite X [m]");
+  require(!(extent.shank_to > extent.to) || (extent.shank_diameter > 0 && std::isfinite(extent.shank_diameter)),
+          "shank_diameter", extent.shank_diameter, "positive and finite [m]");
+  require(resolution.sections >= 2, "sections", static_cast<double>(resolution.sections), "from 2");
+  require(resolution.around >= 3, "around", static_cast<double>(resolution.around), "from 3");
+}
+
+}  // namespace
+
+double CutterSolid::volume() const {
+  double six = 0;
+  for (const SolidTriangle& t : triangles) {
+    six += vertices[t.vertices[0]].dot(vertices[t.vertices[1]].cross(vertices[t.vertices[2]]));
+  }
+  return six / 6;
+}
+
+CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
+                        const std::optional<Wedge>& cut_out) {
+  check(extent, resolution);
+  const OutlineGrid grid = gridOf(cutter, resolution);
+  const std::vector<Layer> layers = layersOf(cutter, extent, resolution, grid);
+  const bool turns_on = layers.front().outline.front().turns < layers.back().outline.front().turns;
+  Joiner joiner(grid, cutter.direction(), turns_on, cut_out.has_value());
+  joiner.add(layers.front(), true);
+  joiner.close(false);
+  for (std::size_t i = 1; i < layers.size(); ++i) {
+    joiner.add(layers[i], i + 1 == layers.size());
+    joiner.joinLayers(layers[i].x == layers[i - 1].x);
+  }
+  joiner.close(true);
+  return cut_out ? joiner.takeWithout(*cut_out) : joiner.take();
+}
+
+}  // namespace grinder

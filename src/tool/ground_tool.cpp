@@ -1,0 +1,69 @@
+#include "flute_grinder/tool/ground_tool.h"
+
+#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+using units::kMillimetre;
+
+constexpr int kVolumeSections = 12;
+constexpr double kMinGouge = 1e-6;  ///< depth up to which a gouge may come from averaging positions [m]
+
+/// The reason for the deepest gouge, if it is deep enough.
+std::optional<Reason> reasonOf(const std::vector<Gouge>& gouges) {
+  const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
+  const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
+  if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
+  return otherReason(
+      format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
+             "%.3f mm; allowed: up to %.3f mm",
+             deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
+             deepest->x / kMillimetre, kBadGouge / kMillimetre));
+}
+
+}  // namespace
+
+bool GroundTool::allTeethGround() const {
+  std::set<int> teeth;
+  for (const RunStroke& stroke : strokes) {
+    if (stroke.move == MoveKind::kStroke) teeth.insert(stroke.place.tooth);
+  }
+  return teeth.size() == job->tooth_angles.size();
+}
+
+std::vector<double> evenSections(const GrindJob& job, int count) {
+  std::vector<double> at;
+  for (int i = 0; i < count; ++i) at.push_back(job.cutter.flute_length * i / (count - 1));
+  return at;
+}
+
+GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
+  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
+  tool.check = checkGroundCutter(job, tool.cutter);
+  for (const double x : at) {
+    const GroundSection section = tool.cutter.section(x);
+    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
+  }
+  tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
+  return tool;
+}
+
+GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
+  GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
+  tool.of_run = true;
+  tool.on_planned = strokes.isOnPlanned();
+  tool.strokes = strokes.strokes();
+  tool.gouges = gougesOf(strokes, kMinGouge);
+  if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
+  return tool;
+}
+
+}  // namespace grinder

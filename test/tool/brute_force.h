@@ -1,0 +1,213 @@
+#pragma once
+
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/setup/setup_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+/// @file
+/// The walls of a groove by trying: the wheel is tried at many places of the stroke and of its profile. Shares no code
+/// with the sweep but the wheel's profile and the path.
+namespace grinder::brute {
+
+/// A cutter of one tooth and a straight wheel, in the shop's units.
+struct Shop {
+  double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
+  CutDirection cut = CutDirection::kRightHand;
+
+  SetupRequest request() const {
+    constexpr double kMm = units::kMillimetre, kDegree = units::kDegree;
+    SetupRequest r;
+    r.cutter = {diameter * kMm, cone * kDegree, spiral * kDegree, rake * kDegree, length * kMm, cut};
+    r.rake = rake * kDegree;
+    r.tooth_angles = {0};
+    r.wheel = WheelProfile::straight(wheel * kMm, width * kMm);
+    r.nominal_radius = wheel / 2 * kMm;
+    r.depth = depth * kMm;
+    r.min_swivel = -60 * kDegree;
+    r.max_swivel = 60 * kDegree;
+    return r;
+  }
+};
+
+/// A set-up of a wheel that grinds a request's cutter.
+struct Bench {
+  const SetupRequest& request;
+  double swivel, height, depth;
+  int poses = 120, places = 24;
+  ZCorrection z_correction{};
+  double x_shift = 0, taper = 0;  ///< of the wheel's centre, and beside the request's y_per_x
+
+  /// dZ/dY
+  static double zPerY(const SetupRequest& request) {
+    return (request.cutter.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(request.cutter.rake_angle);
+  }
+
+  double radius(double x) const { return request.cutter.end_diameter / 2 + x * std::tan(request.cutter.cone_angle); }
+
+  /// How far the path has turned at a place of the stroke.
+  double turned(double s) const {
+    const double tan_cone = std::tan(request.cutter.cone_angle), tan_spiral = std::tan(request.cutter.spiral_angle);
+    const double r0 = request.cutter.end_diameter / 2;
+    return std::abs(tan_cone) < 1e-9 ? tan_spiral * s / r0 : tan_spiral / tan_cone * std::log(1 + s * tan_cone / r0);
+  }
+
+  struct End {
+    double angle = -std::numeric_limits<double>::infinity(), w = 0;
+  };
+
+  /// The end of the circle's arc inside the wheel while it stands at s; side 1 is the upper end, -1 the lower one.
+  End endAt(double x, double r, double s, int side) const {
+    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
+    const double y0 =
+        request.cutter.end_diameter / 2 + request.nominal_radius - depth + s * (tan_cone + request.y_per_x + taper);
+    const double z0 = height + s * tan_cone * zPerY(request) + z_correction.at(s).z;
+    const WheelProfile& wheel = request.wheel;
+    const double lower = wheel.lowerFace(), upper = wheel.upperFace();
+    double sine = 0;
+    const auto inside = [&](double w) {
+      const double dz = (w + (x - s) * sn) / cs;
+      sine = (z0 + dz) / r;
+      if (!(std::abs(sine) <= 1)) return false;
+      const double dy = r * std::sqrt(1 - sine * sine) - y0, t = dz * sn + (x - s) * cs;
+      return dy * dy + t * t <= wheel.radius(w) * wheel.radius(w);
+    };
+    const auto place = [&](double i) {
+      return side > 0 ? upper - (upper - lower) * i / places : lower + (upper - lower) * i / places;
+    };
+    for (int i = 0; i <= places; ++i) {
+      if (!inside(place(i))) continue;
+      double in = place(i);
+      if (i > 0) {
+        double out = place(i - 1);
+        for (int k = 0; k < 36; ++k) {
+          const double middle = (in + out) / 2;
+          (inside(middle) ? in : out) = middle;
+        }
+      }
+      inside(in);
+      return {side * (std::asin(sine) + turned(s - x_shift)), in};
+    }
+    return {};
+  }
+
+  /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
+  End wall(double x, double r, int side) const {
+    const double large = request.wheel.maxRadius(), rise = large * std::abs(std::tan(request.cutter.cone_angle));
+    const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
+                         (request.wheel.upperFace() - request.wheel.lowerFace());
+    double from = x - 1.5 * reach, to = x + 1.5 * reach;
+    const double apex = -request.cutter.end_diameter / 2 / std::tan(request.cutter.cone_angle);
+    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
+    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
+    const double step = (to - from) / poses;
+    std::vector<End> ends;
+    for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
+    const auto angle = [&](int i) { return i < 0 || i > poses ? -1e9 : ends[static_cast<std::size_t>(i)].angle; };
+    End best;
+    for (int i = 0; i <= poses; ++i) {
+      if (!std::isfinite(angle(i)) || angle(i) < angle(i - 1) || angle(i) < angle(i + 1)) continue;
+      const End peak = highest(x, r, std::max(from, from + (i - 1) * step), std::min(to, from + (i + 1) * step), side);
+      best = std::max({best, peak, ends[static_cast<std::size_t>(i)]},
+                      [](const End& a, const End& b) { return a.angle < b.angle; });
+    }
+    return best;
+  }
+
+  /// By golden section between two poses.
+  End highest(double x, double r, double a, double b, int side) const {
+    End best;
+    constexpr double kGolden = 0.6180339887498949;
+    for (int k = 0; k < 40; ++k) {
+      const double left = b - kGolden * (b - a), right = a + kGolden * (b - a);
+      const End one = endAt(x, r, left, side), other = endAt(x, r, right, side);
+      if (one.angle > best.angle) best = one;
+      if (other.angle > best.angle) best = other;
+      (one.angle > other.angle ? b : a) = one.angle > other.angle ? right : left;
+    }
+    return best;
+  }
+
+  /// The angle of the edge at X [rad].
+  double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
+
+  /// The minimum radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
+  double core(double x) const {
+    double out = 0, in = radius(x);
+    for (int i = 0; i < 20; ++i) {
+      const double middle = (out + in) / 2;
+      (std::isfinite(wall(x, middle, 1).angle) ? in : out) = middle;
+    }
+    return in;
+  }
+
+  int rakeSide() const { return request.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
+
+  double rake(double x) const {
+    const double r = radius(x), h = 1e-5 * r;
+    return std::atan(r * (wall(x, r - h, rakeSide()).angle - wall(x, r + h, rakeSide()).angle) / (2 * h));
+  }
+
+  /// The larger error of the rake at both ends of the flute; infinite if the wheel does not reach the outer circle.
+  double rakeError() const {
+    const double one = std::abs(rake(0) - request.rake);
+    const double other = std::abs(rake(request.cutter.flute_length) - request.rake);
+    return one <= other ? other : other <= one ? one : std::numeric_limits<double>::infinity();
+  }
+
+  /// The minimum land over both ends of the flute [m].
+  double land() const {
+    double min = std::numeric_limits<double>::infinity();
+    const double pitch = 2 * 3.14159265358979324 / static_cast<double>(request.tooth_angles.size());
+    for (const double x : {0.0, request.cutter.flute_length}) {
+      const double flute = wall(x, radius(x), 1).angle + wall(x, radius(x), -1).angle;
+      min = std::min(min, radius(x) * (pitch - flute));
+    }
+    return min;
+  }
+
+  /// Whether the rake face, a tenth of the depth below the outer circle, is formed beyond the wheel's maximum radius.
+  bool formedByFace() const {
+    const WheelProfile& wheel = request.wheel;
+    double max = rakeSide() > 0 ? wheel.lowerFace() : wheel.upperFace();
+    for (int i = 0; i <= 1000; ++i) {
+      const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * i / 1000;
+      if (wheel.radius(w) >= wheel.maxRadius() * (1 - 1e-6))
+        max = std::max(rakeSide() * max, rakeSide() * w) * rakeSide();
+    }
+    for (const double x : {0.0, request.cutter.flute_length}) {
+      const double w = wall(x, radius(x) - 0.1 * depth, rakeSide()).w;
+      if (rakeSide() * (w - max) < -1e-6) return false;
+    }
+    return true;
+  }
+
+  /// The depth that leaves a core at X = 0; infinite if none does.
+  static double depthFor(const SetupRequest& request, double swivel, double height, double core, int places,
+                         int discs) {
+    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
+    const double reach = 0.8 * request.wheel.maxRadius();
+    double min = std::numeric_limits<double>::infinity();
+    for (int i = -places; i <= places; ++i) {
+      const double s = reach * i / places;
+      if (std::abs(s * tan_cone) > 0.98 * request.cutter.end_diameter / 2) continue;
+      for (int k = 0; k <= discs; ++k) {
+        const WheelProfile& wheel = request.wheel;
+        const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * k / discs;
+        const double dz = (w - s * sn) / cs, t = dz * sn - s * cs;
+        const double z = height + dz + s * tan_cone * zPerY(request);
+        const double squared = wheel.radius(w) * wheel.radius(w) - t * t;
+        if (std::abs(z) > core || squared < 0) continue;
+        const double low = request.cutter.end_diameter / 2 + request.nominal_radius + s * (tan_cone + request.y_per_x) -
+                           std::sqrt(squared);
+        min = std::min(min, low - std::sqrt(core * core - z * z));
+      }
+    }
+    return min;
+  }
+};
+
+}  // namespace grinder::brute

@@ -1,0 +1,171 @@
+// Solids: closed, facing outward, and of the volume that the sections have.
+
+#include "flute_grinder/tool/cutter_solid.h"
+
+#include "tool/solid_cases.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <map>
+
+namespace grinder {
+namespace test_cutter_solid {
+
+using test_support::Case;
+using test_support::cylinder;
+using test_support::SolidCase;
+using units::kDegree;
+using units::kMillimetre;
+
+/// So fine that the volume is right to a thousandth.
+constexpr SolidResolution kMiddling{30, 16, 120};
+
+using Corner = std::array<double, 3>;
+
+/// How many edges are not passed once in each direction.
+std::size_t openEdges(const CutterSolid& solid) {
+  std::map<std::pair<Corner, Corner>, int> passed;
+  const auto corner = [&](std::uint32_t i) {
+    return Corner{solid.vertices[i].x(), solid.vertices[i].y(), solid.vertices[i].z()};
+  };
+  for (const SolidTriangle& t : solid.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Corner a = corner(t.vertices[i]), b = corner(t.vertices[(i + 1) % 3]);
+      EXPECT_NE(a, b);
+      passed[a < b ? std::pair(a, b) : std::pair(b, a)] += a < b ? 1 : -1;
+    }
+  }
+  std::size_t open = 0;
+  for (const auto& [edge, times] : passed) open += times != 0;
+  return open;
+}
+
+double blankVolume(const ConicalCutter& cutter, double from, double to) {
+  const double a = cutter.radius(from), b = cutter.radius(to);
+  return units::kPi * (to - from) * (a * a + a * b + b * b) / 3;
+}
+
+TEST(CutterSolid, IsClosedAndHasTheVolumeOfTheSections) {
+  for (const SolidCase& c : test_support::solidCases()) {
+    SCOPED_TRACE(c.name);
+    const CutterSolid solid = cutterSolid(c.ground, {c.from, c.to}, kMiddling);
+    EXPECT_EQ(openEdges(solid), 0u);
+    const double expected = blankVolume(c.ground.cutter(), c.from, c.to) - c.ground.volumeRemoved(c.from, c.to, 20);
+    EXPECT_NEAR(solid.volume(), expected, 1e-3 * expected);
+  }
+}
+
+TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
+  Case c = cylinder();
+  c.to = 15;
+  const GroundCutter ground = c.ground(4);
+  const double cone = cutterSolid(ground, {0, 0.02}, kMiddling).volume();
+  for (const double diameter : {14.0, 10.0, 9.0}) {
+    SCOPED_TRACE(diameter);
+    const CutterSolid solid = cutterSolid(ground, {0, 0.02, diameter * kMillimetre, 0.05}, kMiddling);
+    EXPECT_EQ(openEdges(solid), 0u);
+    const double shank = units::kPi * diameter * diameter / 4 * 30e-9;
+    const double taken = cone + shank - solid.volume();
+    EXPECT_GT(taken, -1e-3 * solid.volume());
+    EXPECT_LT(taken, 0.1 * shank);
+    EXPECT_EQ(solid.vertices.back().x(), 0.05);
+  }
+}
+
+/// A triangle across the turn of a land leans along X by several times as much, and looks like a scale.
+TEST(CutterSolid, OfACylinderHasLandsWithoutScales) {
+  for (const double spiral : {-30.0, 30.0}) {
+    Case c = cylinder();
+    c.spiral = spiral;
+    c.swivel = spiral;
+    const CutterSolid solid = cutterSolid(c.ground(3), {0, 0.02}, {40, 16, 72});
+    double leans = 0;
+    for (const SolidTriangle& t : solid.triangles) {
+      if (t.kind != SurfaceKind::kLand) continue;
+      const auto at = [&](std::size_t i) { return solid.vertices[t.vertices[i]]; };
+      leans = std::max(leans, std::abs((at(1) - at(0)).cross(at(2) - at(0)).normalized().x()));
+    }
+    EXPECT_GT(leans, 0) << spiral;
+    EXPECT_LT(leans, 0.02) << spiral;
+  }
+}
+
+TEST(CutterSolid, CutOpenIsClosedAndLacksTheWedge) {
+  for (const SolidCase& c : test_support::solidCases()) {
+    SCOPED_TRACE(c.name);
+    const SolidExtent extent{c.from, c.to, 2.4 * c.ground.cutter().radius(c.to), c.to + 0.02};
+    const SolidResolution coarse{12, 8, 36};
+    const double whole = cutterSolid(c.ground, extent, coarse).volume();
+    double rest = 0;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const double from = (quarter * 90 + 17) * kDegree;
+      const CutterSolid open = cutterSolid(c.ground, extent, coarse, Wedge{from, from + 90 * kDegree});
+      EXPECT_EQ(openEdges(open), 0u);
+      rest += open.volume();
+      for (const SolidTriangle& t : open.triangles) {
+        const Eigen::Vector3d middle =
+            (open.vertices[t.vertices[0]] + open.vertices[t.vertices[1]] + open.vertices[t.vertices[2]]) / 3;
+        const double into = std::remainder(std::atan2(middle.z(), middle.y()) - from - 45 * kDegree, 2 * units::kPi);
+        EXPECT_TRUE(middle.tail<2>().norm() < 1e-6 || std::abs(into) > 45 * kDegree - 1e-6);
+      }
+    }
+    EXPECT_NEAR(rest, 3 * whole, 1e-9 * whole);
+  }
+}
+
+TEST(CutterSolid, ReportsWhatEachTriangleIs) {
+  for (const SolidCase& c : test_support::solidCases()) {
+    if (c.name != "unequal pitch" && c.name != "left hand") continue;
+    SCOPED_TRACE(c.name);
+    const GroundSection section = c.ground.section(0.01);
+    const CutterSolid solid = cutterSolid(c.ground, {0.0099, 0.0101}, {2, 64, 60});
+    std::array<std::size_t, static_cast<std::size_t>(SurfaceKind::kCut) + 1> count{};
+    for (const SolidTriangle& t : solid.triangles) {
+      ++count[static_cast<std::size_t>(t.kind)];
+      const Eigen::Vector3d middle =
+          (solid.vertices[t.vertices[0]] + solid.vertices[t.vertices[1]] + solid.vertices[t.vertices[2]]) / 3;
+      const double angle = std::atan2(middle.z(), middle.y());
+      const double behind = std::remainder(angle - *section.teeth[t.tooth].edge, 2 * units::kPi);
+      // Behind an edge that moves toward falling angles are the larger ones.
+      const bool right = c.ground.direction() == CutDirection::kRightHand;
+      if (t.kind == SurfaceKind::kLand) {
+        EXPECT_NEAR(std::hypot(middle.y(), middle.z()), section.radius, 0.01 * kMillimetre);
+        EXPECT_GT(right ? behind : -behind, -0.02);
+        EXPECT_LT(right ? behind : -behind, *section.teeth[t.tooth].land + 0.02);
+      }
+      if (t.kind == SurfaceKind::kRakeFace && middle.tail<2>().norm() > 0.9 * section.radius) {
+        EXPECT_NEAR(behind, 0, 0.05);
+      }
+    }
+    for (const SurfaceKind kind :
+         {SurfaceKind::kRakeFace, SurfaceKind::kFluteBack, SurfaceKind::kLand, SurfaceKind::kEndFace}) {
+      EXPECT_GT(count[static_cast<std::size_t>(kind)], 100u);
+    }
+  }
+}
+
+TEST(CutterSolid, RefusesWhatCannotBeShown) {
+  const GroundCutter ground = cylinder().ground(4);
+  const double nan = std::nan("");
+  for (const SolidExtent& extent : {SolidExtent{0, 0},
+                                    {0.01, 0},
+                                    {nan, 0.01},
+                                    {0, nan},
+                                    {0, 0.01, 0, 0.02},
+                                    {0, 0.01, nan, 0.02},
+                                    {0, 0.01, 0.01, nan}}) {
+    EXPECT_THROW(cutterSolid(ground, extent), std::invalid_argument) << extent.from << ' ' << extent.to;
+  }
+  for (const SolidResolution& resolution : {SolidResolution{1, 64, 180}, {60, 1, 180}, {60, 64, 2}}) {
+    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, resolution), std::invalid_argument) << resolution.sections;
+  }
+  for (const double to : {1.0, 5.0}) {
+    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{1, to}), std::invalid_argument) << to;
+  }
+}
+
+}  // namespace test_cutter_solid
+}  // namespace grinder

@@ -1,0 +1,359 @@
+// Where a ball touches the first tooth's rake face, against a plane and against membership in the swept wheel.
+
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/reason.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/rake_touch.h"
+#include "flute_grinder/tool/z_law.h"
+#include "jobs.h"
+#include "random_cases.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace grinder {
+namespace test_rake_touch {
+
+using test_support::jobOf;
+using test_support::paper;
+using units::kDegree;
+using units::kMillimetre;
+using units::kPi;
+
+constexpr double kNearly = 1e-5;  ///< 0.1 um at the largest cutter's edge [rad]
+
+/// A ball at a distance and an angle about the axis.
+struct Ball {
+  double x, from_axis, angle, diameter;
+
+  Eigen::Vector3d centre() const { return {x, from_axis * std::cos(angle), from_axis * std::sin(angle)}; }
+};
+
+double touch(const ValidJob& job, const Ball& ball) { return rakeTouchAngle(job, ball.centre(), ball.diameter); }
+
+/// Why a ball is refused.
+std::optional<Reason> refusal(const ValidJob& job, const Ball& ball) {
+  try {
+    touch(job, ball);
+    return std::nullopt;
+  } catch (const ReasonError& error) {
+    return error.reason();
+  }
+}
+
+/// A cutter with straight flutes on a cylinder of 10 mm under an upright straight wheel: both walls are planes.
+GrindJob straight(CutDirection cut) {
+  GrindJob job = paper();
+  job.cutter.cone_angle = job.cutter.spiral_angle = 0;
+  job.cutter.cut = cut;
+  job.process().wheel_diameter = 100 * kMillimetre;
+  job.process().wheel_width = 4 * kMillimetre;
+  job.process().depth = 2 * kMillimetre;
+  job.process().setup_swivel = 0;
+  job.process().setup_height = (cut == CutDirection::kRightHand ? -1.3 : 1.3) * kMillimetre;
+  return job;
+}
+
+/// Whether a ball is free in the groove of the first tooth, by trying: points of the ball against the wheel at many
+/// places of the stroke. Shares no code with the sweep but the wheel's profile and the correction of Z.
+class Groove {
+ public:
+  explicit Groove(const ValidJob& job)
+      : job_(job), wheel_(wheelOf(*job).worn(job->process().wheel_wear)), z_correction_(job.zCorrectionOf(0)) {}
+
+  /// The minimum depth in the wheel's way of the ball's points within the blank, while A is as given; negative if the
+  /// ball is in the cutter [m].
+  /// @param rows of points, from which the point that is deepest in the cutter is refined.
+  double room(const Ball& ball, double a, int rows) const {
+    double best = std::numeric_limits<double>::infinity(), best_up = 0, best_around = 0;
+    const auto look = [&](double up, double around) {
+      const double value = roomAt(ball, a, up, around);
+      if (value < best) best = value, best_up = up, best_around = around;
+    };
+    for (int i = 0; i <= rows; ++i) {
+      for (int k = 0; k < 2 * rows; ++k) look((1.0 * i / rows - 0.5) * kPi, kPi * k / rows);
+    }
+    for (double step = kPi / rows / 2; step > 1e-5; step /= 2) {
+      const double up = best_up, around = best_around;
+      for (const int i : {-1, 0, 1}) {
+        for (const int k : {-1, 0, 1}) look(up + i * step, around + k * step);
+      }
+    }
+    return best;
+  }
+
+  double radius(double x) const { return job_->cutter.end_diameter / 2 + x * std::tan(job_->cutter.cone_angle); }
+
+ private:
+  double roomAt(const Ball& ball, double a, double up, double around) const {
+    const double r = ball.diameter / 2;
+    // The pole is along the radius, toward the axis or away from it.
+    const double x = ball.x + r * std::cos(up) * std::cos(around);
+    const double out = ball.from_axis + r * std::sin(up), aside = r * std::cos(up) * std::sin(around);
+    const double from_axis = std::hypot(out, aside);
+    if (from_axis > radius(x)) return std::numeric_limits<double>::infinity();
+    return depthInWay(x, from_axis, ball.angle + a + std::atan2(aside, out));
+  }
+
+  /// How deep a point of the cutter comes to lie in the wheel along the stroke.
+  double depthInWay(double x, double from_axis, double angle) const {
+    const GrindProcess& p = job_->process();
+    const double step = (job_->cutter.flute_length + p.overtravel_shank + p.overtravel_end) / kPlaces;
+    const auto depth = [&](double i) { return depthAt(x, from_axis, angle, i * step - p.overtravel_end); };
+    std::array<double, kPlaces + 1> values;
+    for (int i = 0; i <= kPlaces; ++i) values[i] = depth(i);
+    double best = -std::numeric_limits<double>::infinity();
+    // The deepest place may be beside any peak.
+    for (int i = 0; i <= kPlaces; ++i) {
+      const int before = std::max(0, i - 1), after = std::min(kPlaces, i + 1);
+      if (values[i] < std::max(values[before], values[after])) continue;
+      double from = before, to = after;
+      const double golden = 0.6180339887498949;
+      for (int k = 0; k < 45; ++k) {
+        const double left = to - golden * (to - from), right = from + golden * (to - from);
+        const double one = depth(left), other = depth(right);
+        best = std::max({best, one, other});
+        one > other ? to = right : from = left;
+      }
+    }
+    return best;
+  }
+
+  double depthAt(double x, double from_axis, double angle, double s) const {
+    const GrindProcess& p = job_->process();
+    const CutterGeometry& c = job_->cutter;
+    const double tan_cone = std::tan(c.cone_angle), r0 = c.end_diameter / 2;
+    const double z_per_y = (c.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(c.rake_angle);
+    const double along = s - p.setup_x_shift;
+    const double turned = std::abs(tan_cone) < 1e-9
+                              ? std::tan(c.spiral_angle) * along / r0
+                              : std::tan(c.spiral_angle) / tan_cone * std::log(radius(along) / r0);
+    const double depth = p.depth + (p.depthEnd() - p.depth) * s / c.flute_length;
+    const double dx = x - s;
+    const double dy = from_axis * std::cos(angle - turned) - (radius(s) + p.wheel_diameter / 2 - depth - p.wheel_wear);
+    const double dz =
+        from_axis * std::sin(angle - turned) - (p.setup_height + s * tan_cone * z_per_y + z_correction_.at(s).z);
+    const double w = dz * std::cos(p.setup_swivel) - dx * std::sin(p.setup_swivel);
+    const double within = std::clamp(w, wheel_.lowerFace(), wheel_.upperFace());
+    const double from_spindle = std::sqrt(std::max(0.0, dx * dx + dy * dy + dz * dz - w * w));
+    return std::min({wheel_.radius(within) - from_spindle, w - wheel_.lowerFace(), wheel_.upperFace() - w});
+  }
+
+  static constexpr int kPlaces = 400;
+  const ValidJob job_;
+  WheelProfile wheel_;
+  ZCorrection z_correction_;
+};
+
+/// Expects that the ball is free a little before A, and in the cutter a little beyond.
+void expectTouch(const ValidJob& job, const Ball& ball, double a, int rows = 16) {
+  const Groove groove(job);
+  const double side = job->cutter.cut == CutDirection::kRightHand ? 1 : -1;
+  EXPECT_GT(groove.room(ball, a - side * kNearly, rows), 0);
+  EXPECT_LT(groove.room(ball, a + side * kNearly, rows), 0);
+}
+
+/// A right-hand or left-hand cutter, cylindrical or conical, with a wheel swivelled somewhat beyond its spiral angle.
+class RandomJobs {
+ public:
+  GrindJob job() {
+    GrindJob job = paper();
+    const double side = flag() ? 1 : -1;
+    job.cutter.cut = side > 0 ? CutDirection::kRightHand : CutDirection::kLeftHand;
+    job.cutter.end_diameter = between(3, 20) * kMillimetre;
+    job.cutter.cone_angle = flag() ? 0 : between(-1, 8) * kDegree;
+    job.cutter.spiral_angle = between(-10, 45) * side * kDegree;
+    job.cutter.rake_angle = between(0, 15) * kDegree;
+    GrindProcess& p = job.process();
+    p.depth = between(0.1, 0.25) * job.cutter.end_diameter;
+    if (flag()) p.depth_end = between(0.9, 1.1) * p.depth;
+    if (flag()) p.setup_x_shift = between(-1, 0) * kMillimetre;
+    p.overtravel_end = p.overtravel_shank = 10 * kMillimetre;
+    p.wheel_profile = flag() ? WheelShape::kStraight : WheelShape::kFullRadius;
+    p.wheel_diameter = between(60, 125) * kMillimetre;
+    p.wheel_width = between(0.1, 0.5) * job.cutter.end_diameter;
+    p.wheel_wear = flag() ? 0 : 0.05 * kMillimetre;
+    p.setup_swivel = job.cutter.spiral_angle + side * between(0, 9) * kDegree;
+    const double face = job.cutter.end_diameter / 2 * std::sin(between(0, 25) * kDegree);
+    p.setup_height = side * (face - p.wheel_width / 2 / std::cos(p.setup_swivel));
+    return job;
+  }
+
+  Ball ball(const GrindJob& job) {
+    const double diameter = between(0.1, 0.6) * job.process().depth, length = job.cutter.flute_length;
+    const double x = between(diameter / 2, length - diameter / 2);
+    const double outer = job.cutter.end_diameter / 2 + x * std::tan(job.cutter.cone_angle);
+    return {x, outer - between(0.05, 0.5) * job.process().depth, between(-1, 1) * kPi, diameter};
+  }
+
+ private:
+  double between(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
+  bool flag() { return random_() % 2 == 0; }
+
+  std::mt19937 random_{5};
+};
+
+TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
+  for (const double angle : {0.0, -2.5}) {
+    for (const double diameter : {0.2, 1.5}) {
+      for (const double from_axis : {4.2, 4.5}) {
+        const Ball ball{10 * kMillimetre, from_axis * kMillimetre, angle, diameter * kMillimetre};
+        // The upper face stands by 2 mm above the wheel's middle, the lower one by 2 mm below.
+        const double high = std::asin((0.7 - diameter / 2) / from_axis) - angle;
+        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kRightHand)), ball), high, 1e-9);
+        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kLeftHand)), ball), -high - 2 * angle, 1e-9);
+      }
+    }
+  }
+}
+
+TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
+  RandomJobs random;
+  int touched = 0, of_hand[2] = {0, 0};
+  const int cases = test_support::randomCases(24);
+  for (int i = 0; i < cases; ++i) {
+    SCOPED_TRACE(i);
+    const ValidJob job(random.job());
+    const Ball ball = random.ball(*job);
+    try {
+      expectTouch(job, ball, touch(job, ball));
+      ++touched, ++of_hand[job->cutter.cut == CutDirection::kRightHand];
+    } catch (const ReasonError&) {
+      continue;  // the ball lies badly
+    }
+  }
+  EXPECT_GT(touched, cases / 2);
+  EXPECT_GT(std::min(of_hand[0], of_hand[1]), cases / 6);
+}
+
+TEST(RakeTouch, FollowsTheLawOfZ) {
+  GrindJob asked = jobOf("taper_d6_t6");
+  asked.process().wheel_wear_per_pass = 0;
+  asked.process().z_law = ZLaw::kConstantRake;
+  const ValidJob job = withLaws(ValidJob(asked));
+  const Ball ball{6 * kMillimetre, Groove(job).radius(6 * kMillimetre) - 0.5 * kMillimetre, 0, 0.6 * kMillimetre};
+  expectTouch(job, ball, touch(job, ball));
+}
+
+TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFaceFirst) {
+  GrindJob asked = paper();
+  asked.process().wheel_wear_per_pass = 0;
+  const ValidJob job(asked);
+  int touched = 0, refused = 0;
+  for (int i = 0; i < 8; ++i) {
+    SCOPED_TRACE(i);
+    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.00125 * i) * kMillimetre, 0, 0.8 * kMillimetre};
+    if (refusal(job, ball)) {
+      ++refused;
+      EXPECT_EQ(touched, 0);
+    } else {
+      ++touched;
+      expectTouch(job, ball, touch(job, ball), 48);
+    }
+  }
+  EXPECT_GT(touched, 1);
+  EXPECT_GT(refused, 1);
+}
+
+TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWouldNot) {
+  const ValidJob job(jobOf("left_hand_d8_t3"));
+  struct Wrong {
+    double from_axis_mm;
+    const char* what;
+  };
+  for (const Wrong& wrong :
+       {Wrong{1, "else it touches the flute's floor first"}, Wrong{3.2, "else it touches the flute's floor first"},
+        Wrong{4.1, "else it touches the cutting edge"}, Wrong{4.6, "else it touches nothing of the flute"}}) {
+    SCOPED_TRACE(wrong.from_axis_mm);
+    Ball ball{10 * kMillimetre, wrong.from_axis_mm * kMillimetre, 0, 0.5 * kMillimetre};
+    const auto reason = refusal(job, ball);
+    ASSERT_TRUE(reason);
+    EXPECT_EQ(reason->kind, ReasonKind::kOutOfRange);
+    EXPECT_EQ(reason->field, "ball's distance from the axis");
+    EXPECT_EQ(reason->detail, wrong.what);
+    EXPECT_NEAR(reason->value, ball.from_axis, 1e-6);
+    for (const double part : {0.0, 0.5, 1.0}) {
+      ball.from_axis = reason->low + part * (reason->limit - reason->low);
+      EXPECT_FALSE(refusal(job, ball)) << part;
+    }
+  }
+}
+
+TEST(RakeTouch, ABallThatIsTooLargeForTheFluteIsRefusedWithOneThatIsNot) {
+  for (const char* name : {"paper", "left_hand_d8_t3"}) {
+    SCOPED_TRACE(name);
+    const ValidJob job(jobOf(name));
+    const Ball ball{10 * kMillimetre, 5 * kMillimetre, 0, 6 * kMillimetre};
+    const auto reason = refusal(job, ball);
+    ASSERT_TRUE(reason);
+    EXPECT_EQ(reason->field, "ball diameter");
+    EXPECT_DOUBLE_EQ(reason->value, ball.diameter);
+    EXPECT_LT(reason->limit, ball.diameter);
+    EXPECT_EQ(refusal(job, {ball.x, ball.from_axis, 0, reason->limit}).value_or(Reason{}).field,
+              "ball's distance from the axis");
+  }
+}
+
+TEST(RakeTouch, InASlotTheOtherWallIsTouchedFirstByABallThatIsWiderThanTheSlot) {
+  GrindJob job = straight(CutDirection::kRightHand);
+  job.process().depth = 3 * kMillimetre;
+  job.process().wheel_width = kMillimetre;
+  job.process().setup_height = 0;
+  Ball ball{10 * kMillimetre, 3.5 * kMillimetre, 0, 0.99 * kMillimetre};
+  EXPECT_NEAR(touch(ValidJob(job), ball), std::asin(0.005 / 3.5), 1e-9);
+  ball.diameter = 1.01 * kMillimetre;
+  const auto reason = refusal(ValidJob(job), ball);
+  ASSERT_TRUE(reason);
+  EXPECT_EQ(reason->field, "ball diameter");
+  EXPECT_EQ(reason->detail, "else it touches the flute's other wall first");
+}
+
+TEST(RakeTouch, TheWholeBallMustBeWithinTheFlutesLength) {
+  const ValidJob job(straight(CutDirection::kRightHand));
+  const double length = job->cutter.flute_length, nan = std::numeric_limits<double>::quiet_NaN();
+  Ball ball{0, 4.5 * kMillimetre, 0, kMillimetre};
+  for (const double x : {-kMillimetre, 0.49 * kMillimetre, length - 0.49 * kMillimetre, length + kMillimetre, nan}) {
+    ball.x = x;
+    const auto reason = refusal(job, ball);
+    ASSERT_TRUE(reason) << x;
+    EXPECT_EQ(reason->field, "ball's X");
+    EXPECT_DOUBLE_EQ(reason->low, 0.5 * kMillimetre);
+    EXPECT_DOUBLE_EQ(reason->limit, length - 0.5 * kMillimetre);
+  }
+  for (const double x : {0.5 * kMillimetre, length - 0.5 * kMillimetre}) {
+    ball.x = x;
+    EXPECT_FALSE(refusal(job, ball)) << x;
+  }
+}
+
+TEST(RakeTouch, NoBallAndNoPlaceAreRefused) {
+  const ValidJob job(straight(CutDirection::kRightHand));
+  const double nan = std::numeric_limits<double>::quiet_NaN(), x = 10 * kMillimetre;
+  for (const double diameter : {0.0, -kMillimetre, 1.0, nan}) {
+    EXPECT_EQ(refusal(job, {x, 4.5 * kMillimetre, 0, diameter}).value_or(Reason{}).field, "ball diameter");
+  }
+  for (const double from_axis : {nan, std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(refusal(job, {x, from_axis, 0, kMillimetre}).value_or(Reason{}).field, "ball's distance from the axis");
+  }
+  EXPECT_EQ(refusal(job, {x, 0, 0, kMillimetre}).value_or(Reason{}).detail, "else it touches the flute's floor first");
+}
+
+TEST(RakeTouch, WithoutARakeFaceThereTheXIsRefused) {
+  GrindJob job = straight(CutDirection::kRightHand);
+  job.process().setup_height = 20 * kMillimetre;  // the wheel passes above the cutter
+  const auto reason = refusal(ValidJob(job), {10 * kMillimetre, 4.5 * kMillimetre, 0, kMillimetre});
+  ASSERT_TRUE(reason);
+  EXPECT_EQ(reason->field, "ball's X");
+  EXPECT_EQ(text(*reason), "ball's X = 10 mm; allowed: where the first tooth has a rake face");
+}
+
+}  // namespace test_rake_touch
+}  // namespace grinder

@@ -103,7 +103,7 @@ class TestCycles(ProbeTest):
         self.grind(0, *end_face, '2')
         before = self.offset(X)['offset_mm']
         self.assertRegex(self.grind(1, *end_face, '50').stderr,
-                         'work offset of axis X would change by .* allowed without a confirmation: 5 mm')
+                         'work offset of axis X would change by .* allowed without an answer: 5 mm')
         self.assertEqual(self.offset(X)['offset_mm'], before)
         self.grind(0, *end_face, '50', '--answer', 'set-offset')
         self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)

@@ -2,19 +2,15 @@
 
 #include "cli/answers.h"
 #include "cli/json_output.h"
-#include "cli/offset_watch.h"
 #include "cli/time_text.h"
-#include "flute_grinder/ConfirmWheel.h"
-#include "flute_grinder/Reclamped.h"
-#include "flute_grinder/SetOffset.h"
-#include "flute_grinder/TouchOff.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
+#include "flute_grinder/client/latest.h"
+#include "flute_grinder/client/requests.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/network/user_at_host.h"
 #include "flute_grinder/setup/touch_off.h"
 
 #include <cmath>
@@ -111,7 +107,7 @@ bool agree(const flute_grinder::GrinderState& state, const flute_grinder::WorkOf
 }
 
 /// Waits for a state computed with the present work offsets. @return the exit status.
-int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const OffsetWatch& offsets) {
+int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const Latest<flute_grinder::WorkOffsets>& offsets) {
   if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
   if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
   return 0;
@@ -119,7 +115,7 @@ int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const OffsetWat
 
 int show(ros::NodeHandle& nh, bool json) {
   const StateWatch watch(nh);
-  const OffsetWatch offsets(nh);
+  const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
   if (const int status = awaitAgreement(nh, watch, offsets)) return status;
   if (json) {
     print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
@@ -134,35 +130,24 @@ int show(ros::NodeHandle& nh, bool json) {
 int confirmWheel(const std::string& node, const ConfirmWheelOptions& options) {
   const OffsetBasis job = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kUnknown);
   ros::NodeHandle nh(node);
-  flute_grinder::ConfirmWheel::Request request;
-  request.job = toMessage(job);
-  request.again = static_cast<std::uint8_t>(options.again);
-  request.set_by = userAtHost();
-  const int status = call<flute_grinder::ConfirmWheel>(nh, "confirm_wheel", request);
+  const int status = call<flute_grinder::ConfirmWheel>(nh, "confirm_wheel", wheelRequest(job, options.again));
   return status != 0 ? status : succeed("the wheel on the spindle is " + wheelText(job));
 }
 
 int sayReclamped(const std::string& node) {
   ros::NodeHandle nh(node);
-  flute_grinder::Reclamped::Request request;
-  request.set_by = userAtHost();
-  const int status = call<flute_grinder::Reclamped>(nh, "reclamped", request);
+  const int status = call<flute_grinder::Reclamped>(nh, "reclamped", reclampedRequest());
   return status != 0 ? status : succeed("a tool was clamped; where its teeth are is not known");
 }
 
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
                   const std::vector<std::string>& answers) {
-  flute_grinder::SetOffset::Request request;
-  request.axis = static_cast<std::uint8_t>(axis);
-  request.value = value;
-  request.set_by = userAtHost();
-  request.basis = toMessage(basis);
-  request.answers = answers;
+  auto request = offsetRequest(axis, value, basis, answers);
   return callAnswering<flute_grinder::SetOffset>(nh, "set_offset", request) ? 0 : 1;
 }
 
 std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh) {
-  const OffsetWatch watch(nh);
+  const Latest<flute_grinder::WorkOffsets> watch(nh, "offsets");
   if (!await(kPatience, [&] { return watch.newest() != nullptr; })) return std::nullopt;
   return *watch.newest();
 }
@@ -193,18 +178,13 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   if (axis == kY && !options.at) {
     throw std::invalid_argument("touch-off y needs --at DIAMETER, of the blank that the wheel touches");
   }
-  flute_grinder::TouchOff::Request request;
-  request.axis = static_cast<std::uint8_t>(axis);
-  request.position = options.at.value_or(0) * shopScale(unitOf(axis, 0));
-  request.set_by = userAtHost();
-  const OffsetBasis basis = basisFor(options, OffsetMethod::kTouchOff);
-  request.basis = toMessage(basis);
-  request.answers = options.answers;
+  auto request = touchOffRequest(axis, options.at.value_or(0) * shopScale(unitOf(axis, 0)),
+                                 basisFor(options, OffsetMethod::kTouchOff), options.answers);
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job, options.operation);
     const StateWatch watch(nh);
-    const OffsetWatch offsets(nh);
+    const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
     if (const int status = awaitAgreement(nh, watch, offsets)) return status;
     const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);
     if (!refused.empty()) return fail(refused);

@@ -4,17 +4,17 @@
 #include "cli/interrupt.h"
 #include "cli/json_output.h"
 #include "cli/last_job.h"
-#include "cli/offset_watch.h"
 #include "cli/state_watch.h"
 #include "cli/stop_keys.h"
 #include "flute_grinder/ConfirmSwivel.h"
-#include "flute_grinder/JogStep.h"
 #include "flute_grinder/SetFeedOverride.h"
 #include "flute_grinder/base/axes.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
 #include "flute_grinder/base/units.h"
+#include "flute_grinder/client/latest.h"
+#include "flute_grinder/client/requests.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -205,7 +205,7 @@ void leaveRos() {
 int printStatus(const std::string& node, bool json) {
   ros::NodeHandle nh(node);
   const StateWatch watch(nh);
-  const OffsetWatch offsets(nh);
+  const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
   if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
   // A limited wait: the last known state is better than none.
   await(kFreshness, [&] { return watch.fresh() && offsets.newest(); });
@@ -342,10 +342,7 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   catchHolds();
   keys.start([&] { keys.hold(); });
   const double end = *position.newest() + distance * unit;
-  flute_grinder::JogStep::Request request;
-  request.axis = static_cast<std::uint8_t>(axis);
-  request.distance = distance * unit;
-  request.speed = feed * unit / 60;
+  const auto request = jogRequest(axis, distance * unit, feed * unit / 60);
   const auto moves = [](std::uint8_t state) {
     return state == flute_grinder::GrinderState::JOGGING || state == flute_grinder::GrinderState::JOGGING_RETRACTED;
   };

@@ -1,10 +1,9 @@
 #pragma once
 
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/client/latest.h"
 
 #include <ros/ros.h>
-
-#include <mutex>
 
 namespace grinder {
 
@@ -29,12 +28,12 @@ const ros::WallDuration kMasterPatience(2);  ///< longest wait for a ROS master 
 class StateWatch {
  public:
   /// @param nh the grinder's namespace.
-  explicit StateWatch(ros::NodeHandle& nh);
+  explicit StateWatch(const ros::NodeHandle& nh) : state_(nh, "state") {}
 
   /// Whether a state has been received.
-  bool begun() const { return heard() > 0; }
+  bool begun() const { return state_.count() > 0; }
   /// Whether a state was received that was published after this object was made: the first may be old.
-  bool fresh() const { return heard() > 1; }
+  bool fresh() const { return state_.count() > 1; }
   /// Waits for a state sent after this call. @return false if the connection is lost.
   bool awaitNext() const;
   flute_grinder::GrinderState newest() const;
@@ -42,13 +41,7 @@ class StateWatch {
   bool lost() const;
 
  private:
-  std::uint64_t heard() const;
-
-  mutable std::mutex mutex_;
-  flute_grinder::GrinderState newest_;
-  ros::SteadyTime time_;  ///< time at which the newest state was received
-  std::uint64_t heard_ = 0;
-  ros::Subscriber subscriber_;
+  Latest<flute_grinder::GrinderState> state_;
 };
 
 /// Error text for a lost connection.

@@ -29,7 +29,7 @@ namespace grinder {
 
 namespace {
 
-constexpr int kRefreshInterval = 50;            ///< period of the grinder's state [ms]
+constexpr int kRefreshInterval = 100;  ///< time without news from the grinder until it is looked at all the same [ms]
 constexpr const char* kTitleSeparator = " - ";  ///< separator as in rviz's own title
 constexpr int kButtonColumns = 4;
 constexpr int kSpacing = 3;            ///< gap between the panel's parts, which must fit a screen of 1024 x 768 [px]
@@ -154,7 +154,6 @@ GrindPanel::GrindPanel(QWidget* parent)
   });
   connect(&refresh_timer_, &QTimer::timeout, this, &GrindPanel::refresh);
   setNode("grinder");
-  refresh_timer_.start(kRefreshInterval);
 }
 
 void GrindPanel::layOut() {
@@ -301,12 +300,20 @@ void GrindPanel::setNode(const QString& node) {
 void GrindPanel::connectLink() {
   // Without a master the link would wait for one.
   if (name_.empty() || master_watch_->master() == Master::kMissing) return;
-  link_ = std::make_unique<GrinderLink>(
+  link_ = std::make_unique<GrinderClient>(
       name_, [this](const std::string& id, const flute_grinder::GrindResult& result) { onResult(id, result); },
-      [this](const std::string& refusal) { showMessage(refusal); });
+      [this](const std::string& refusal) { showMessage(refusal); },
+      [this] {
+        // One look for all that comes until then.
+        if (!has_news_.exchange(true))
+          QMetaObject::invokeMethod(
+              this, [this] { refresh(); }, Qt::QueuedConnection);
+      });
 }
 
 void GrindPanel::refresh() {
+  has_news_ = false;
+  refresh_timer_.start(kRefreshInterval);
   GrinderView view;
   if (!link_) connectLink();
   if (link_) {
@@ -477,7 +484,7 @@ void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResul
 }
 
 void GrindPanel::setFeedOverride(double fraction) {
-  const GrinderLink::OnAnswer show = reply(format("feed override: %.0f %%", fraction * 100));
+  const GrinderClient::OnAnswer show = reply(format("feed override: %.0f %%", fraction * 100));
   link_->setFeedOverride(fraction, [this, show](const std::string& refusal) {
     override_->answered();
     show(refusal);
@@ -486,7 +493,7 @@ void GrindPanel::setFeedOverride(double fraction) {
 
 void GrindPanel::jogStep(int axis, double distance, double speed) {
   const std::string way = text(Quantity{distance, unitOf(axis, 0)});
-  link_->jogStep(axis, distance, speed, reply("jog: " + axisName(axis) + " by " + way));
+  link_->jogStep(jogRequest(axis, distance, speed), reply("jog: " + axisName(axis) + " by " + way));
 }
 
 void GrindPanel::askToTouchOff(int axis, double at) {
@@ -512,7 +519,7 @@ void GrindPanel::askToTouchOff(int axis, double at) {
 void GrindPanel::touchOff(const Touched& what, double position, const OffsetBasis& basis,
                           const std::vector<std::string>& answers) {
   const auto answered = reply("touch-off: the work offset of " + axisName(what.axis) + " is set");
-  link_->touchOff(what.axis, position, basis, answers,
+  link_->touchOff(touchOffRequest(what.axis, position, basis, answers),
                   [=](const std::string& refusal, const std::vector<flute_grinder::Need>& needs) {
                     answered(refusal);
                     if (refusal.empty()) offerBack(what.before.wasSet() ? std::optional<Touched>(what) : std::nullopt);
@@ -541,7 +548,8 @@ void GrindPanel::askToTakeBack() {
   }
   touch_off_->ask("Set it back?", change(axis, now, before.value), [this, axis = axis, before = before] {
     const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is what it was");
-    link_->setOffset(axis, before.value, before.basis, [=](const std::string& refusal) {
+    const std::vector<std::string> shown{toString(NeedAnswer::kSetOffset)};
+    link_->setOffset(offsetRequest(axis, before.value, before.basis, shown), [=](const std::string& refusal) {
       answered(refusal);
       if (refusal.empty()) offerBack(std::nullopt);
     });
@@ -587,7 +595,7 @@ void GrindPanel::showOtherJob(const GrinderView& view, bool job_runs) {
             : QString());
 }
 
-GrinderLink::OnAnswer GrindPanel::reply(const std::string& done) {
+GrinderClient::OnAnswer GrindPanel::reply(const std::string& done) {
   return [this, done](const std::string& refusal) { showMessage(refusal.empty() ? done : refusal); };
 }
 

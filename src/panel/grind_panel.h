@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/network/master_watch.h"
-#include "panel/grinder_link.h"
 #include "panel/hold_key.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"
@@ -21,6 +21,7 @@
 #include <QTabWidget>
 #include <QTimer>
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -101,14 +102,14 @@ class GrindPanel : public rviz::Panel {
   /// Shows a reply instead of the previous one. @param text the reply; its first line is in sight.
   void showMessage(const std::string& text);
   /// Shows the answer to a request. @param done text if the request succeeds.
-  GrinderLink::OnAnswer reply(const std::string& done);
+  GrinderClient::OnAnswer reply(const std::string& done);
 
   const std::shared_ptr<MasterWatch> master_watch_;
   const std::shared_ptr<HoldKey> hold_key_;
-  QString node_;                       ///< name of the node, as entered
-  std::string name_;                   ///< resolved name of the node; empty if invalid
-  QString titled_;                     ///< name that this panel has put into the window's title
-  std::unique_ptr<GrinderLink> link_;  ///< null if the name is invalid, or until a master answers
+  QString node_;                         ///< name of the node, as entered
+  std::string name_;                     ///< resolved name of the node; empty if invalid
+  QString titled_;                       ///< name that this panel has put into the window's title
+  std::unique_ptr<GrinderClient> link_;  ///< null if the name is invalid, or until a master answers
   std::optional<Sent> sent_;
   std::optional<Passing> passing_;  ///< state to which the last request leads
   std::optional<Touched> touched_;  ///< touch-off that can be taken back
@@ -133,9 +134,10 @@ class GrindPanel : public rviz::Panel {
   QPlainTextEdit* messages_;
   QPushButton* choose_node_;
   NodeDialog* node_dialog_;
-  RvizWindow* rviz_window_;  ///< window around this panel
-  QString moves_;            ///< text on what moves, as last known; empty if nothing does
-  QTimer refresh_timer_;
+  RvizWindow* rviz_window_;            ///< window around this panel
+  QString moves_;                      ///< text on what moves, as last known; empty if nothing does
+  std::atomic<bool> has_news_{false};  ///< refresh() has been called for, and has not begun
+  QTimer refresh_timer_;               ///< runs out when no news come
 };
 
 }  // namespace grinder

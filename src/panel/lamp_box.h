@@ -1,6 +1,6 @@
 #pragma once
 
-#include "panel/grinder_link.h"
+#include "flute_grinder/client/grinder_client.h"
 
 #include <QLabel>
 #include <QWidget>

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/network/master_watch.h"
-#include "panel/grinder_link.h"
 
 #include <QLabel>
 #include <QProgressBar>

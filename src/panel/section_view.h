@@ -1,7 +1,7 @@
 #pragma once
 
+#include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/job/valid_job.h"
-#include "panel/grinder_link.h"
 #include "panel/number_box.h"
 #include "panel/section_drawing.h"
 

@@ -75,7 +75,7 @@ MESSAGES = {
                                   'Choose which grinder this panel shows',
                                   'Look at the tool',
                                   "Turn rviz's view back to the tool; it does so by itself when another tool is shown"),
-    'src/panel/grinder_link.cpp': (),
+    'src/client/grinder_client.cpp': (),
     'src/panel/plain_words.cpp': ('To start it:', 'Swivel set to', 'Swivel at', 'The feed is never reached.', '; no axis limits it.', ', limited by',
                                   r'\nThe first pass cuts', 'mm more than its infeed out of the shank.',
                                   ', at tooth', 'enable: the power is on', 'home: the drive is homing the axes',

@@ -9,6 +9,8 @@
 #include "flute_grinder/Need.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/base/axes.h"
+#include "flute_grinder/client/latest.h"
+#include "flute_grinder/client/requests.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/motion/work_offsets.h"
 #include "flute_grinder/network/service_call.h"
@@ -48,10 +50,12 @@ struct GrinderView {
 
 /// The client of a grinder's node for a user interface. No function blocks; deliver() calls the callbacks. Uses the
 /// action's topics directly, to show and cancel the jobs of other clients too. Not thread safe.
-class GrinderLink {
+class GrinderClient {
  public:
   /// @param refusal why the request was not carried out; empty if it was.
   using OnAnswer = std::function<void(const std::string& refusal)>;
+  /// @param needs what must be answered before the request is carried out.
+  using OnNeeds = std::function<void(const std::string& refusal, const std::vector<flute_grinder::Need>& needs)>;
   /// @param id id of the goal, as returned by send().
   using OnResult = std::function<void(const std::string& id, const flute_grinder::GrindResult& result)>;
 
@@ -60,11 +64,13 @@ class GrinderLink {
 
   /// @param node name of the grinder's node; without a leading slash, relative to this program's namespace.
   /// @param on_result called when a goal sent by this object, or the job shown, ends.
+  /// @param on_news called in another thread when a state, offsets or an answer have come: it is worth to look.
   /// @throw ros::InvalidNameException
-  GrinderLink(const std::string& node, OnResult on_result, OnJogRefusal on_jog_refusal);
-  GrinderLink(const GrinderLink&) = delete;
-  GrinderLink& operator=(const GrinderLink&) = delete;
-  ~GrinderLink();
+  GrinderClient(const std::string& node, OnResult on_result, OnJogRefusal on_jog_refusal,
+                std::function<void()> on_news);
+  GrinderClient(const GrinderClient&) = delete;
+  GrinderClient& operator=(const GrinderClient&) = delete;
+  ~GrinderClient();
 
   const std::string& name() const { return nh_.getNamespace(); }  ///< resolved name of the node
   GrinderView view() const;
@@ -78,16 +84,12 @@ class GrinderLink {
   void setFeedOverride(double fraction, const OnAnswer& on_answer);
   /// Reports that a tool was clamped.
   void sayReclamped(const OnAnswer& on_answer);
-  /// Sets the work offset of an axis from its present position. @param position in work coordinates [m], A [rad].
-  /// @param basis job and wheel for which it is set. @param answers answers to the needs of a refusal before.
-  /// @param on_answer see OnAnswer; also gets what must be answered first.
-  void touchOff(
-      int axis, double position, const OffsetBasis& basis, const std::vector<std::string>& answers,
-      const std::function<void(const std::string& refusal, const std::vector<flute_grinder::Need>& needs)>& on_answer);
-  /// Sets an axis' work offset, however much it changes. @param value [m], A [rad].
-  void setOffset(int axis, double value, const OffsetBasis& basis, const OnAnswer& on_answer);
-  /// Moves an axis by a distance. @param distance signed [m], A [rad]. @param speed [m/s], A [rad/s].
-  void jogStep(int axis, double distance, double speed, const OnAnswer& on_answer);
+  /// Sets the work offset of an axis from its present position.
+  void touchOff(const flute_grinder::TouchOff::Request& request, const OnNeeds& on_answer);
+  /// Sets the work offset of an axis.
+  void setOffset(const flute_grinder::SetOffset::Request& request, const OnAnswer& on_answer);
+  /// Moves an axis by a distance.
+  void jogStep(const flute_grinder::JogStep::Request& request, const OnAnswer& on_answer);
   /// Moves an axis for as long as this function is called repeatedly. Uses a connection that survives the ROS master.
   /// @param velocity signed velocity [m/s], A [rad/s]; 0 stops.
   void jog(int axis, double velocity);
@@ -103,10 +105,9 @@ class GrinderLink {
   bool stopsConnected() const { return stops_.getNumSubscribers() > 0; }
 
  private:
-  /// A message with its time of arrival.
-  template <typename Message>
-  struct Received {
-    Message message;
+  /// Feedback with its time of arrival.
+  struct Feedback {
+    flute_grinder::GrindActionFeedback message;
     ros::SteadyTime time;
   };
 
@@ -118,19 +119,14 @@ class GrinderLink {
   };
 
   void sendStops();
-  void onMachine(const flute_grinder::MachineInfo::ConstPtr& machine);
-  void onState(const flute_grinder::GrinderState::ConstPtr& state);
+  bool forgetAfterSilence();
   void onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback);
   void onJob(const flute_grinder::GrindActionGoal::ConstPtr& job);
   void onResult(const flute_grinder::GrindActionResult::ConstPtr& result);
   void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
-  void onOffsets(const flute_grinder::WorkOffsets::ConstPtr& offsets);
-  void onLegend(const flute_grinder::Legend::ConstPtr& legend);
-  void onJointState(const sensor_msgs::JointState::ConstPtr& joints);
   void post(std::function<void()> answer);
   template <typename Service, typename OnResponse>
-  void call(const std::string& service, const typename Service::Request& request, double timeout,
-            OnResponse on_response);
+  void call(const std::string& service, const typename Service::Request& request, OnResponse on_response);
   /// Calls a service. @param name name of the request, for a missing answer. @param refused text before a refusal.
   template <typename Service>
   void ask(const std::string& service, const typename Service::Request& request, const std::string& name,
@@ -143,13 +139,15 @@ class GrinderLink {
   const OnJogRefusal on_jog_refusal_;
   actionlib::GoalIDGenerator ids_;
 
+  const std::function<void()> on_news_;
+  Latest<flute_grinder::MachineInfo> machine_;
+  Latest<flute_grinder::WorkOffsets> offsets_;
+  Latest<flute_grinder::Legend> legend_;
+  Latest<sensor_msgs::JointState> joints_;
+  Latest<flute_grinder::GrinderState> state_;
+
   mutable std::mutex mutex_;  ///< guards the members that the callbacks write
-  flute_grinder::MachineInfo::ConstPtr machine_;
-  std::optional<Received<flute_grinder::GrinderState>> state_;
-  std::optional<Received<Axes>> position_;
-  std::optional<flute_grinder::WorkOffsets> offsets_;
-  std::optional<flute_grinder::Legend> legend_;
-  std::optional<Received<flute_grinder::GrindActionFeedback>> feedback_;
+  std::optional<Feedback> feedback_;
   flute_grinder::GrindActionGoal::ConstPtr job_;  ///< goal of the job started last
   std::string sent_;                              ///< id of the last goal sent by this object
   std::deque<std::function<void()>> answers_;

@@ -242,7 +242,7 @@ bool limitToPath(Random& random, RideJob& ride) {
   }
   Axes::Map(ride.asked.low.data()) = limits.min_position;
   Axes::Map(ride.asked.high.data()) = limits.max_position;
-  return stream.finished();
+  return stream.rest() == Rest::kEnd;
 }
 
 std::optional<RideJob> draw(Random& random) {

@@ -13,19 +13,19 @@ int main() {
   constexpr double kPeriod = 0.001;  // of the control cycle [s]
   constexpr double kFeed = 0.010;    // along the edge: 600 mm/min [m/s]
 
-  CutterGeometry geometry;
-  geometry.end_diameter = 10 * units::kMillimetre;
-  geometry.cone_angle = 5 * units::kDegree;
-  geometry.spiral_angle = 30 * units::kDegree;
-  geometry.rake_angle = 8 * units::kDegree;
-  geometry.flute_length = 30 * units::kMillimetre;
-  const ConicalCutter cutter(geometry);
+  Cone cone;
+  cone.end_diameter = 10 * units::kMillimetre;
+  cone.cone_angle = 5 * units::kDegree;
+  cone.spiral_angle = 30 * units::kDegree;
+  cone.rake_angle = 8 * units::kDegree;
+  cone.flute_length = 30 * units::kMillimetre;
+  const ConicalCutter cutter(cone);
   const LogCurve curve(cutter);
   OddEvenInterpolator interpolator(curve, units::kMillimetrePerRadian, EvenStepRule::kThirdOrder, 0);
 
   // On a cone of constant spiral angle, a constant feed along the edge is a constant speed of X.
   const double speed = kFeed / cutter.edgePerTravel();
-  SCurveProfile law({speed, 0.5, 50}, geometry.flute_length, speed);  // m/s, m/s^2, m/s^3
+  SCurveProfile law({speed, 0.5, 50}, cone.flute_length, speed);  // m/s, m/s^2, m/s^3
 
   unsigned long cycle = 0;
   const auto print = [&](const CurvePoint& point) {

@@ -146,7 +146,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   using second_opinion::Real;
   for (int i = 0; i < job.teeth(); ++i) {
     const StrokeLaw& law = job.strokeLaw(i);
-    const CutterGeometry& c = law.cutter;
+    const Cone& c = law.cutter;
     second_opinion::Tooth tooth;
     tooth.growth = std::tan(Real(c.cone_angle));
     tooth.b = 2 * tooth.growth / Real(c.end_diameter);

@@ -88,7 +88,7 @@ int settleOffset(ros::NodeHandle& nh, int axis, const flute_grinder::ProbeGoal& 
                      : result.message.empty() ? 0
                                               : fail(result.message);
   if (status == 0 && goal.set_offset)
-    std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis], shown(result.offset, axis == kA).c_str());
+    std::printf("%-15s %c %s\n", "work offset", axisLetter(axis), shown(result.offset, axis == kA).c_str());
   return status;
 }
 

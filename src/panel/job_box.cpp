@@ -450,7 +450,7 @@ void JobBox::showZeroPoints() {
     text = job_ ? "Zero points: " + said.join(";\n") : "Zero points";
     for (int axis = 0; axis < kAxisCount; ++axis) {
       const std::string basis = basisText(axis, offsets_->axes[static_cast<std::size_t>(axis)]);
-      hint += QString("XYZA"[axis]) + ": " + QString::fromStdString(basis) + "\n";
+      hint += QString(axisLetter(axis)) + ": " + QString::fromStdString(basis) + "\n";
     }
     hint += "Wheel: " + QString::fromStdString(mountedText(offsets_->wheel)) + "\n";
     hint += "Tool: " + QString::fromStdString(toolText(offsets_->tool));

@@ -21,8 +21,8 @@ done
 # What streams a flute, and plans a job, in a package without catkin. The curve brings neither ROS nor OpenSSL.
 { cmake -S "$root/examples/plain" -B "$folder/plain" && cmake --build "$folder/plain"; } >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
 "$folder/plain/stream_a_flute" | grep -q '^3502,0.030000000,'
-[ -z "$(grep -E 'ros|crypto|yaml' "$folder/plain/CMakeFiles/stream_a_flute.dir/link.txt")" ]
-grep -q crypto "$folder/plain/CMakeFiles/stream_a_job.dir/link.txt"
+[ -z "$(grep -E 'roscpp|libcrypto|libyaml' "$folder/plain/CMakeFiles/stream_a_flute.dir/link.txt")" ]
+grep -q libcrypto "$folder/plain/CMakeFiles/stream_a_job.dir/link.txt"
 (cd share/flute_grinder && "$folder/plain/stream_a_job") | grep -q '^planned: 8587 setpoints$'
 
 # What a drive plugin includes, and not the drives' own headers.

@@ -8,16 +8,16 @@
 using namespace grinder;
 
 int main() {
-  CutterGeometry geometry;
-  geometry.end_diameter = 10 * units::kMillimetre;
-  geometry.cone_angle = 5 * units::kDegree;
-  geometry.spiral_angle = 30 * units::kDegree;
-  geometry.rake_angle = 8 * units::kDegree;
-  geometry.flute_length = 30 * units::kMillimetre;
+  Cone cone;
+  cone.end_diameter = 10 * units::kMillimetre;
+  cone.cone_angle = 5 * units::kDegree;
+  cone.spiral_angle = 30 * units::kDegree;
+  cone.rake_angle = 8 * units::kDegree;
+  cone.flute_length = 30 * units::kMillimetre;
 
   // The paper measures X in mm and A in rad, so that one radian counts for a millimetre.
-  const StepTable table = interpolateBySteps(ConicalCutter(geometry), units::kMillimetrePerRadian,
-                                             EvenStepRule::kPublished, 0.2 * units::kMillimetre);
+  const StepTable table = interpolateBySteps(ConicalCutter(cone), units::kMillimetrePerRadian, EvenStepRule::kPublished,
+                                             0.2 * units::kMillimetre);
 
   std::printf("point   X [mm]  A [rad]  error [1e-4 rad]\n");
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

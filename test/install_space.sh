@@ -18,10 +18,12 @@ for file in urdf/grinder.urdf rviz/grinder.rviz config/grinder.yaml drive_plugin
   [ -f "share/flute_grinder/$file" ]
 done
 
-# What plans and streams a job, without ROS.
-g++ -std=c++17 -I include -I /usr/include/eigen3 "$root/examples/4_stream_a_job.cpp" -o "$folder/stream" \
-  -L lib -lflute_grinder_motion -lflute_grinder_job -lflute_grinder_curve -lyaml-cpp -lcrypto
-(cd share/flute_grinder && "$folder/stream") | grep -q '^planned: 8587 setpoints$'
+# What streams a flute, and plans a job, in a package without catkin. The curve brings neither ROS nor OpenSSL.
+{ cmake -S "$root/examples/plain" -B "$folder/plain" && cmake --build "$folder/plain"; } >"$folder/log" 2>&1 || { cat "$folder/log"; exit 1; }
+"$folder/plain/stream_a_flute" | grep -q '^3502,0.030000000,'
+[ -z "$(grep -E 'roscpp|libcrypto|libyaml' "$folder/plain/CMakeFiles/stream_a_flute.dir/link.txt")" ]
+grep -q libcrypto "$folder/plain/CMakeFiles/stream_a_job.dir/link.txt"
+(cd share/flute_grinder && "$folder/plain/stream_a_job") | grep -q '^planned: 8587 setpoints$'
 
 # What a drive plugin includes, and not the drives' own headers.
 [ -f include/flute_grinder/drive/drive.h ]

@@ -74,6 +74,6 @@ Unit unitOf(int axis, int derivative) noexcept {
   return static_cast<Unit>(static_cast<int>(position) + derivative);
 }
 
-std::string axisName(int axis) { return std::string("axis ") + "XYZA"[axis]; }
+std::string axisName(int axis) { return std::string("axis ") + axisLetter(axis); }
 
 }  // namespace grinder

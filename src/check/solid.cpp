@@ -40,7 +40,10 @@ void farthestOf(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* poi
   for (int i = 0; i < 3; ++i) point->v[i] = p[i];
 }
 
-/// The vector from a body's nearest point to the other's, in the frame, by GJK.
+/// The vector from a body's nearest point to the other's, in the frame, by GJK. This is FCL's own, from its namespace
+/// detail, since no shape of its public interface has a wheel's rings: fcl::distance() would need a polyhedron, which
+/// is 15 um off with 128 corners to a ring and takes 55 us, and 1 um off with 512 corners and takes 250 us. gap() takes
+/// 14 us.
 /// @return nothing if GJK finds no distance.
 std::optional<Eigen::Vector3d> wayBetween(View& first, View& second) {
   double distance = 0;

@@ -105,7 +105,7 @@ void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const WorkOffsets all = offsets ? fromMessage(*offsets) : WorkOffsets();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string basis = basisText(axis, all.axes[static_cast<std::size_t>(axis)]);
-    printLine(format("zero point %c", "XYZA"[axis]).c_str(), offsets ? basis : "not known");
+    printLine(format("zero point %c", axisLetter(axis)).c_str(), offsets ? basis : "not known");
   }
   printLine("wheel", offsets ? mountedText(all.wheel) : "not known");
   printLine("tool", offsets ? toolText(all.tool) : "not known");
@@ -352,7 +352,7 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   if (watch.newest().state == flute_grinder::GrinderState::FAULT) return fail(watch.newest().fault);
   await(kSettling, [&] { return position.settled(); });
   const double there = *position.newest();
-  std::printf("%c %.4f %s\n", "XYZA"[axis], there / unit, rotary ? "deg" : "mm");
+  std::printf("%c %.4f %s\n", axisLetter(axis), there / unit, rotary ? "deg" : "mm");
   return std::abs(there - end) <= kJogTolerance ? 0 : fail("the jog was stopped before its end");
 }
 

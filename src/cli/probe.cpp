@@ -90,7 +90,7 @@ int settleOffset(ros::NodeHandle& nh, int axis, flute_grinder::ProbeGoal goal,
     status = setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
   }
   if (status == 0 && goal.set_offset)
-    std::printf("%-15s %c %s\n", "work offset", "XYZA"[axis], shown(result.offset, axis == kA).c_str());
+    std::printf("%-15s %c %s\n", "work offset", axisLetter(axis), shown(result.offset, axis == kA).c_str());
   return status;
 }
 

@@ -426,7 +426,7 @@ bool ControlLoop::allReachedAxes() { return sample_.drive.commands_waiting <= re
 void ControlLoop::restJob() {
   const bool all_reached = allReachedAxes();
   const bool on_the_way = state_ == MachineState::kRunning || state_ == MachineState::kResuming;
-  if (on_the_way && !stream_->finished()) return;  // the feed override is 0
+  if (on_the_way && stream_->rest() != Rest::kEnd) return;
   if (!all_reached) return;
   if (on_the_way) {
     endJob(JobEnd::kDone);

@@ -50,7 +50,7 @@ Refusal ControlLoop::beginJog(const JogRequest& jog, Answer& answer) {
   const bool wheel_turns = spindle_ || sample_.spindle_commanded || sample_.drive.spindle_at_speed;
   if (jog.for_client && wheel_turns) return Refusal::kWheelTurns;
   if (jog.to_touch && sample_.drive.probe_contact) return Refusal::kTouches;
-  if (stream_ && !stream_->lifted()) return Refusal::kJobOver;
+  if (stream_ && stream_->rest() != Rest::kLifted) return Refusal::kJobOver;
   if (!sample_.drive.homed) return Refusal::kInterlock;
   if (const Refusal refusal = refusalOfSpeed(jog, answer); refusal != Refusal::kNone) return refusal;
   if (const Refusal refusal = refusalOfPosition(answer); refusal != Refusal::kNone) return refusal;

@@ -21,21 +21,21 @@ void require(bool good, const char* name, double value, const char* allowed) {
 
 }  // namespace
 
-ConicalCutter::ConicalCutter(const CutterGeometry& geometry)
-    : geometry_(geometry),
-      tan_cone_(std::tan(geometry.cone_angle)),
-      tan_spiral_(std::tan(geometry.spiral_angle)),
-      z_per_y_(std::sin(geometry.cut == CutDirection::kLeftHand ? -geometry.rake_angle : geometry.rake_angle)),
+ConicalCutter::ConicalCutter(const Cone& cone)
+    : cone_(cone),
+      tan_cone_(std::tan(cone.cone_angle)),
+      tan_spiral_(std::tan(cone.spiral_angle)),
+      z_per_y_(std::sin(cone.cut == CutDirection::kLeftHand ? -cone.rake_angle : cone.rake_angle)),
       edge_per_travel_(std::sqrt(1 + tan_cone_ * tan_cone_ + tan_spiral_ * tan_spiral_)),
-      cos_helix_to_generatrix_(1 / std::hypot(1, tan_spiral_ * std::cos(geometry.cone_angle))) {
+      cos_helix_to_generatrix_(1 / std::hypot(1, tan_spiral_ * std::cos(cone.cone_angle))) {
   const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
   const auto acute = [](double v) { return std::abs(v) < units::kPi / 2; };
-  require(positive(geometry.end_diameter), "end_diameter", geometry.end_diameter, "finite and positive [m]");
-  require(acute(geometry.cone_angle), "cone_angle", geometry.cone_angle, "within (-pi/2, pi/2) [rad]");
-  require(acute(geometry.spiral_angle), "spiral_angle", geometry.spiral_angle, "within (-pi/2, pi/2) [rad]");
-  require(acute(geometry.rake_angle), "rake_angle", geometry.rake_angle, "within (-pi/2, pi/2) [rad]");
-  require(positive(geometry.flute_length), "flute_length", geometry.flute_length, "finite and positive [m]");
-  require(radius(geometry.flute_length) > 0, "cone_angle", geometry.cone_angle,
+  require(positive(cone.end_diameter), "end_diameter", cone.end_diameter, "finite and positive [m]");
+  require(acute(cone.cone_angle), "cone_angle", cone.cone_angle, "within (-pi/2, pi/2) [rad]");
+  require(acute(cone.spiral_angle), "spiral_angle", cone.spiral_angle, "within (-pi/2, pi/2) [rad]");
+  require(acute(cone.rake_angle), "rake_angle", cone.rake_angle, "within (-pi/2, pi/2) [rad]");
+  require(positive(cone.flute_length), "flute_length", cone.flute_length, "finite and positive [m]");
+  require(radius(cone.flute_length) > 0, "cone_angle", cone.cone_angle,
           "a cone that does not close before the flute ends");
 }
 

@@ -19,7 +19,7 @@ constexpr double kNearby = 1e-4;       ///< distance behind the edge, as a fract
 constexpr double kFarthestSine = 0.9;  ///< largest sine of the angle around the rim at which the blank is touched
 constexpr int kPlacesOfWidth = 32;     ///< intervals of the rim's width for finding the first contact
 
-double handOf(const ConicalCutter& cutter) { return cutter.geometry().cut == CutDirection::kLeftHand ? -1 : 1; }
+double handOf(const ConicalCutter& cutter) { return cutter.cone().cut == CutDirection::kLeftHand ? -1 : 1; }
 
 [[noreturn]] void refuse(const char* name, double value, const char* unit, const std::string& allowed) {
   std::ostringstream text;
@@ -76,16 +76,16 @@ HeightLaw heightLaw(const Contact& c, const ReliefStart& start, double radius, d
           std::cos(swivel) + rise * std::sin(swivel)};
 }
 
-ConicalCutter withRake(CutterGeometry geometry, double sine) {
-  geometry.rake_angle = std::asin(sine);
-  return ConicalCutter(geometry);
+ConicalCutter withRake(Cone cone, double sine) {
+  cone.rake_angle = std::asin(sine);
+  return ConicalCutter(cone);
 }
 
 }  // namespace
 
 ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, const ReliefWheel& wheel)
     : start_(start),
-      radius_(cutter.geometry().end_diameter / 2),
+      radius_(cutter.cone().end_diameter / 2),
       tan_cone_(cutter.tanCone()),
       tan_spiral_(handOf(cutter) * cutter.tanSpiral()),
       wheel_radius_(wheel.nominal_radius - wheel.wear),
@@ -109,13 +109,13 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
     range << low << " to " << high << " mm, with the edge on the wheel's rim";
     refuse("setup.height", wheel.height / units::kMillimetre, " mm", range.str());
   }
-  path_cutter_ = withRake(cutter.geometry(), start.radius_part * std::sin(phi_));
+  path_cutter_ = withRake(cutter.cone(), start.radius_part * std::sin(phi_));
   x_shift_ = wheel_radius_ * normal_x_ + contact_ * sin_;
   taper_ = tan_cone_ * (start.radius_part * std::cos(phi_) - 1);
   const double p_y = start.radius_part * std::cos(phi_) * (radius_ - x_shift_ * tan_cone_);
   y_ = p_y + wheel_radius_ * normal_y_ - radius_ - wheel.nominal_radius;
   a_ = hand * (start.behind - phi_);
-  const double length = cutter.geometry().flute_length;
+  const double length = cutter.cone().flute_length;
   side_ = surfaceOf(0, kNearby * radius_).behind > start.behind ? 1 : -1;
   // If the end of the rim forms no surface (NaN), no overtravel is needed.
   const double end = side_ * half_width_ - contact_;
@@ -124,15 +124,15 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
 }
 
 double ReliefPath::depth() const noexcept {
-  return std::max(touchDepth(-beyond_end_), touchDepth(path_cutter_.geometry().flute_length + beyond_shank_));
+  return std::max(touchDepth(-beyond_end_), touchDepth(path_cutter_.cone().flute_length + beyond_shank_));
 }
 
 double ReliefPath::heightFor(const ConicalCutter& cutter, const ReliefStart& start, const ReliefWheel& wheel,
                              double contact) {
   const double hand = handOf(cutter), swivel = hand * wheel.swivel;
   const Contact c = contactOf(start, cutter.tanCone(), hand * cutter.tanSpiral(), swivel);
-  const HeightLaw law = heightLaw(c, start, cutter.geometry().end_diameter / 2, cutter.tanCone(),
-                                  wheel.nominal_radius - wheel.wear, swivel);
+  const HeightLaw law =
+      heightLaw(c, start, cutter.cone().end_diameter / 2, cutter.tanCone(), wheel.nominal_radius - wheel.wear, swivel);
   return hand * (law.at_middle - contact * law.per_contact);
 }
 

@@ -21,7 +21,7 @@ StepTable interpolateBySteps(const ConicalCutter& cutter, double rotary_scale, E
   OddEvenInterpolator interpolator(curve, rotary_scale, rule, 0);
   StepTable table;
   add(table, curve, interpolator.position());
-  const double end = cutter.geometry().flute_length * (1 - kRounding);
+  const double end = cutter.cone().flute_length * (1 - kRounding);
   while (interpolator.position().x < end) {
     const double x = interpolator.position().x;
     const OddEvenPair pair = interpolator.next(step_length);

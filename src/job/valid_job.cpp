@@ -67,7 +67,7 @@ std::vector<StrokeLaw> lawsOf(const GrindJob& job, const std::vector<CutterGeome
   for (std::size_t i = 0; i < cutters.size(); ++i) {
     laws.push_back({cutters[i], x.from, x.to, p.setup_x_shift, job.tooth_angles[i]});
     if (reliefs.empty()) continue;
-    laws[i].cutter = reliefs[i].cutter().geometry();
+    laws[i].cutter = reliefs[i].cutter().cone();
     laws[i].x_shift = reliefs[i].xShift();
     laws[i].a += reliefs[i].a() + edges[i].ahead;
   }

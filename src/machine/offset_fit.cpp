@@ -78,7 +78,7 @@ std::optional<double> changeFor(int axis, const OffsetBasis& was, const OffsetBa
   return change;
 }
 
-std::string nameOf(int axis) { return {"XYZA"[axis]}; }
+std::string nameOf(int axis) { return {axisLetter(axis)}; }
 
 std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, const OffsetBasis& job) {
   const Dependence& on = dependenceOf(axis);

@@ -75,7 +75,7 @@ void requireParkClear(double clearance_y, double park, double offset) {
 }
 
 std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
-  const auto same = [&](const Helix& h) { return h.edge.cutter.geometry().spiral_angle == spiral_angle; };
+  const auto same = [&](const Helix& h) { return h.edge.cutter.cone().spiral_angle == spiral_angle; };
   return static_cast<std::size_t>(std::find_if(helices.begin(), helices.end(), same) - helices.begin());
 }
 

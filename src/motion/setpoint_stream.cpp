@@ -89,7 +89,7 @@ void SetpointStream::resume() noexcept {
 }
 
 void SetpointStream::retract() noexcept {
-  if (mid_pair_ || lost_ || !law_.resting() || finished()) return;
+  if (mid_pair_ || lost_ || !law_.resting() || rest() == Rest::kEnd) return;
   holding_ = false;
   stay_lifted_ = true;
   if (leg_ == Leg::kLift) {
@@ -107,7 +107,7 @@ void SetpointStream::retract() noexcept {
 }
 
 void SetpointStream::adopt(Setpoint& setpoint) noexcept {
-  if (!lifted()) return;
+  if (rest() != Rest::kLifted) return;
   current_.position = setpoint.position;
   current_.velocity = setpoint.velocity;
   current_.feed = setpoint.feed;
@@ -149,8 +149,12 @@ std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles, std::uint64_t at_
   return count;
 }
 
-bool SetpointStream::finished() const noexcept {
-  return !lost_ && onPath() && next_move_ == program_->moves().size() && law_.finished() && !mid_pair_;
+Rest SetpointStream::rest() const noexcept {
+  if (!started_ || mid_pair_ || lost_ || !law_.resting()) return Rest::kNone;
+  if (law_.finished() && onPath() && next_move_ == program_->moves().size()) return Rest::kEnd;
+  if (law_.finished() && leg_ == Leg::kLift && stay_lifted_) return Rest::kLifted;
+  if (holding_) return Rest::kHeld;
+  return law_.finished() ? Rest::kNone : Rest::kNoFeed;
 }
 
 bool SetpointStream::beginPair() noexcept {
@@ -158,7 +162,8 @@ bool SetpointStream::beginPair() noexcept {
   slow_down_ = 1;
   law_.setTarget(targetSpeed());
   while (!lost_ && law_.resting()) {
-    if (holding_ || !law_.finished() || !beginNext()) return false;
+    if (rest() != Rest::kNone) return false;
+    beginNext();
   }
   return true;
 }
@@ -168,41 +173,28 @@ bool SetpointStream::beginPair() noexcept {
 //              |    kPlunge            kLift     kPlunge: at feed, down to the stroke
 //              |       v                 |       kPath:   on, at feed again where it was left
 //   stroke  ---+-------+== kPath =====>  x  left here
-bool SetpointStream::beginNext() noexcept {
+void SetpointStream::beginNext() noexcept {
   const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
   switch (leg_) {
-    case Leg::kPath:
-      if (next_move_ == program_->moves().size()) return false;
-      beginMove(program_->moves()[next_move_++]);
-      return true;
+    case Leg::kPath: return beginMove(program_->moves()[next_move_++]);
     case Leg::kLift:
-      if (stay_lifted_) return false;
-      if ((current_.position != lifted_).any()) {
-        beginWayBack();
-        return true;
-      }
+      if ((current_.position != lifted_).any()) return beginWayBack();
       if (left_stroke) {
         leg_ = Leg::kBack;
-        beginReturn();
-        return true;
+        return beginReturn();
       }
       // A straight move is restarted: from above, it moves to its original target.
       leg_ = Leg::kPath;
       if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
-      return true;
+      return;
     case Leg::kBack: {
       leg_ = Leg::kPlunge;
       Axes on_path = current_.position;
       on_path[kY] = strokeY(on_path[kX]);
-      beginStraight(MoveKind::kInfeed, on_path);
-      return true;
+      return beginStraight(MoveKind::kInfeed, on_path);
     }
-    case Leg::kPlunge:
-      leg_ = Leg::kPath;
-      beginStroke(reentry_);
-      return true;
+    case Leg::kPlunge: leg_ = Leg::kPath; return beginStroke(reentry_);
   }
-  return false;
 }
 
 void SetpointStream::beginMove(const Move& move) noexcept {

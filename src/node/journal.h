@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/control/loop_status.h"
-#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/job/cutter_geometry.h"
 #include "flute_grinder/job/tooth_pass.h"
 #include "node/state_file.h"
 

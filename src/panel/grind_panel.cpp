@@ -88,7 +88,7 @@ Comparison change(int axis, const WorkOffset& before, double after) {
   };
   const bool known = before.wasSet() && std::isfinite(before.value);
   const QString was = known ? shown(before.value) : "never set", by = known ? shown(after - before.value) : "";
-  return {{"now", "then", "change"}, {{QString("%1").arg("XYZA"[axis]), was, shown(after), by}}};
+  return {{"now", "then", "change"}, {{QString("%1").arg(axisLetter(axis)), was, shown(after), by}}};
 }
 
 /// The object shared by all panels of the process.

@@ -81,7 +81,7 @@ JogBox::JogBox(QWidget* parent)
 }
 
 QPushButton* JogBox::addButton(int axis, int direction) {
-  const QChar name = "XYZA"[axis];
+  const QChar name = axisLetter(axis);
   const bool up = direction > 0;
   auto* button = new PanelButton(QString("jog_%1_%2").arg(name.toLower()).arg(up ? "plus" : "minus"),
                                  QString("%1 %2").arg(name).arg(up ? "+" : QString::fromUtf8("\xe2\x88\x92")),

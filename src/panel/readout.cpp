@@ -45,7 +45,7 @@ constexpr int kFewestDecimals = 3, kMaxDecimals = 4;
 /// A distance to go in mm or deg, short enough for four in a line. @param to_go [m], A [rad].
 QString toGoText(int axis, double to_go) {
   const double shown = to_go / (axis == kA ? kDegree : kMillimetre);
-  return QString("%1 %2").arg("XYZA"[axis]).arg(shown, 0, 'f', std::abs(shown) < 99.9995 ? kFewestDecimals : 1);
+  return QString("%1 %2").arg(axisLetter(axis)).arg(shown, 0, 'f', std::abs(shown) < 99.9995 ? kFewestDecimals : 1);
 }
 
 /// A feed in mm/min with three digits, so that the feed of a small tool shows too. @param feed [m/s].
@@ -252,7 +252,7 @@ void PositionBox::show(const GrinderView& view) {
     QLabel& label = *values_[static_cast<std::size_t>(axis)];
     const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
-    label.setText(QString("%1 %2 %3").arg("XYZA"[axis]).arg(shown(work), decimals_ + 6).arg(unit));
+    label.setText(QString("%1 %2 %3").arg(axisLetter(axis)).arg(shown(work), decimals_ + 6).arg(unit));
     const double to_go = view.state ? view.state->distance_to_go[static_cast<std::size_t>(axis)] : 0;
     to_go_[static_cast<std::size_t>(axis)]->setText(moves ? toGoText(axis, to_go) : "");
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")

@@ -100,7 +100,7 @@ void TouchOffBox::showQuestion() {
 
 void TouchOffBox::offerBack(int axis) {
   back_axis_ = axis;
-  back_->setText(axis < kAxisCount ? QString("Back, %1").arg("XYZA"[axis]) : "Back");
+  back_->setText(axis < kAxisCount ? QString("Back, %1").arg(axisLetter(axis)) : "Back");
 }
 
 void TouchOffBox::chooseAxis() {

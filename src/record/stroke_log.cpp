@@ -45,7 +45,7 @@ void StrokeLog::add(const Setpoint& setpoint, double time) {
   if (setpoint.tooth < edges_.size()) {
     const FormedEdge& edge = edges_[setpoint.tooth];
     const double along = x - starts_[setpoint.tooth];
-    in_flute = along >= 0 && along <= edge.cutter.geometry().flute_length;
+    in_flute = along >= 0 && along <= edge.cutter.cone().flute_length;
     const double deviation = edge.deviation(x, std::abs(setpoint.path_error));
     if (!(deviation <= stroke.deviation)) stroke.deviation_x = x;
     updateMax(stroke.deviation, deviation);

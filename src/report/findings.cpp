@@ -139,7 +139,7 @@ Json Survey::axesJson(const Json& machine) const {
   Json rows = Json::array();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const double unit = axis == kA ? kDegree : kMillimetre;
-    Json row{{"axis", std::string(1, "XYZA"[axis])}};
+    Json row{{"axis", std::string(1, axisLetter(axis))}};
     const auto limit = [&](const char* key) {
       return machine.empty() ? Json(nullptr) : Json(std::next(machine.at(key).begin(), axis).value());
     };

@@ -269,7 +269,8 @@ GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
     reliefs.push_back(before->reliefs(i));
     if (!swept.empty()) reliefs.back().push_back(std::move(swept));
   }
-  return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth), std::move(reliefs)};
+  return {ConicalCutter(job->cutter), std::move(flutes), std::move(teeth), std::move(reliefs),
+          job->cutter.chordal_rake_depth};
 }
 
 MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const char* ns,

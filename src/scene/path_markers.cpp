@@ -42,7 +42,7 @@ double pathStep(const GrindProgram& program) {
   double turning = 0;  // turning of the steepest helix
   for (const Helix& helix : program.helices()) {
     const ConicalCutter& cutter = helix.edge.cutter;
-    const double radius = std::min(cutter.radius(0), cutter.radius(cutter.geometry().flute_length));
+    const double radius = std::min(cutter.radius(0), cutter.radius(cutter.cone().flute_length));
     turning =
         std::max(turning, std::abs(cutter.tanSpiral()) * std::hypot(cutter.tanSpiral(), cutter.tanCone()) / radius);
   }

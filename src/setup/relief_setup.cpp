@@ -89,7 +89,7 @@ Land landOf(const GroundCutter& cutter, const GroundSection& section, std::size_
 }
 
 std::vector<Land> landsOf(const GroundCutter& cutter) {
-  const double length = cutter.cutter().geometry().flute_length;
+  const double length = cutter.cutter().cone().flute_length;
   std::vector<Land> lands;
   for (int i = 0; i < kSectionsOfFlute; ++i) {
     const GroundSection section = cutter.section(length * i / (kSectionsOfFlute - 1));

@@ -24,7 +24,7 @@ constexpr double kBeyond = 1e-5;   ///< addition to the overtravel, for the prec
 
 /// Measures the stroke that the flute needs, and where it is then complete by the plan's check.
 void measureReach(const SetupTrial& trial, const SetupPoint& point, SolvedSetup& solved) {
-  const double length = trial.cutter().geometry().flute_length;
+  const double length = trial.cutter().cone().flute_length;
   const WheelSweep longest = trial.sweep(point);
   for (const double x : {0.0, length / 2, length}) {
     const auto reach = trial.reach(longest, x);

@@ -100,7 +100,7 @@ bool isSame(const SetupPoint& a, const SetupPoint& b, double difference, double 
 
 /// The point with a shift along X: the distance of the wheel's centre ahead of the edge that it forms at mid-flute.
 std::optional<SetupPoint> withShift(const SetupTrial& trial, SetupPoint point) {
-  const double x = trial.cutter().geometry().flute_length / 2;
+  const double x = trial.cutter().cone().flute_length / 2;
   const auto wall = trial.sweep(point).wall(x, trial.cutter().radius(x), true);
   if (!wall) return std::nullopt;
   point.x_shift = wall->axis_x - x;
@@ -377,7 +377,7 @@ Fitted fitted(const SetupTrial& trial, const SetupRequest& request, bool everywh
 
 /// The nearest set-up with a changed request, if it is suitable; it is then the start for the next change.
 std::optional<SolvedSetup> changed(const SetupRequest& request, SetupPoint& nearest) {
-  const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
+  const SetupTrial trial(request.cutter, request.wheel, request.nominal_radius, request.y_per_x);
   const auto fit = nearestSetup(trial, request, nearest);
   if (!fit) return std::nullopt;
   nearest = evenedSetup(trial, request, *fit);
@@ -428,7 +428,7 @@ SetupRefusal::Mend mendOf(const SetupRequest& request, const SetupPoint& nearest
   even.core_diameter_end.reset();
   even.y_per_x = 0;
   even.accepts = {};
-  const Fitted all = fitted(SetupTrial(ConicalCutter(even.cutter), even.wheel, even.nominal_radius, 0), even, false);
+  const Fitted all = fitted(SetupTrial(even.cutter, even.wheel, even.nominal_radius, 0), even, false);
   if (!all.best || all.best->problem) return {};
   return {0, 0, {all.best->solved.core_diameter, all.best->solved.core_diameter_end}};
 }
@@ -476,7 +476,7 @@ std::variant<SolvedSetup, SetupRefusal> solveSetup(const SetupRequest& request) 
     }
     return result;
   }
-  const SetupTrial trial(ConicalCutter(request.cutter), request.wheel, request.nominal_radius, request.y_per_x);
+  const SetupTrial trial(request.cutter, request.wheel, request.nominal_radius, request.y_per_x);
   const auto beyond = [&](double swivel) {
     return SetupRefusal{SetupProblem::kSwivel, swivel, request.min_swivel, request.max_swivel};
   };

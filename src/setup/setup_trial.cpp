@@ -23,14 +23,14 @@ constexpr double kOnFace = 1e-8;    ///< distance below the edge that still coun
 
 }  // namespace
 
-SetupTrial::SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, double y_per_x)
-    : cutter_(cutter),
+SetupTrial::SetupTrial(const CutterGeometry& asked, const WheelProfile& wheel, double nominal_radius, double y_per_x)
+    : cutter_(asked),
       wheel_(wheel),
       nominal_radius_(nominal_radius),
       y_per_x_(y_per_x),
-      deepest_(std::min(cutter.radius(0),
-                        cutter.radius(cutter.geometry().flute_length) + y_per_x * cutter.geometry().flute_length)),
-      far_(4 * wheel.maxRadius() + wheel.upperFace() - wheel.lowerFace() + cutter.geometry().flute_length),
+      chordal_rake_depth_(asked.chordal_rake_depth),
+      deepest_(std::min(cutter_.radius(0), cutter_.radius(asked.flute_length) + y_per_x * asked.flute_length)),
+      far_(4 * wheel.maxRadius() + wheel.upperFace() - wheel.lowerFace() + asked.flute_length),
       face_from_(wheel.maxPlace().to) {}
 
 bool SetupTrial::isCylinder() const noexcept {
@@ -38,7 +38,7 @@ bool SetupTrial::isCylinder() const noexcept {
 }
 
 bool SetupTrial::isSound(const SetupPoint& p) const noexcept {
-  const double length = cutter_.geometry().flute_length;
+  const double length = cutter_.cone().flute_length;
   const double at_end = p.depth - (y_per_x_ + p.taper) * length;
   return p.depth > kMinDepth && p.depth < cutter_.radius(0) && at_end > kMinDepth && at_end < cutter_.radius(length);
 }
@@ -52,7 +52,7 @@ WheelSweep SetupTrial::sweep(const SetupPoint& p) const {
   if (cutter_.tanCone() > 0) ends[0] = std::max(-far_, kOfApex * apex);
   if (cutter_.tanCone() < 0) ends[1] = std::min(far_, kOfApex * apex);
   WheelSweep longest = sweep(p, ends);
-  const double nearest = opens ? 0 : cutter_.geometry().flute_length;
+  const double nearest = opens ? 0 : cutter_.cone().flute_length;
   const auto spoils = longest.overcutStart(nearest, cutter_.radius(nearest));
   if (!spoils) return longest;
   ends[opens ? 0 : 1] = *spoils + kShortOf * (nearest - *spoils);
@@ -80,7 +80,7 @@ double SetupTrial::spiral(const WheelSweep& sweep, double x) const {
 
 double SetupTrial::chordalRake(const WheelSweep& sweep, double x, double edge, double core) const {
   const double r = cutter_.radius(x);
-  const double inner = r - chordDepth(cutter_.geometry(), r - core);
+  const double inner = r - chordDepth(chordal_rake_depth_, r - core);
   const auto face = sweep.wall(x, inner, true);
   return face ? chordAngle(r, inner, face->angle - edge) : kNowhere;
 }

@@ -20,7 +20,7 @@ class SetupTrial {
  public:
   /// @param nominal_radius radius of the wheel that touches the small end at Y = 0 [m].
   /// @param y_per_x slope of a core taper, added to the cone's.
-  SetupTrial(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius, double y_per_x);
+  SetupTrial(const CutterGeometry& asked, const WheelProfile& wheel, double nominal_radius, double y_per_x);
 
   const ConicalCutter& cutter() const noexcept { return cutter_; }
   const WheelProfile& wheel() const noexcept { return wheel_; }
@@ -28,7 +28,7 @@ class SetupTrial {
   static constexpr int kSections = 8;
 
   /// X of the sections in which a flute is judged, from 0 at the small end to kSections at the flute's end [m].
-  double section(int i) const noexcept { return cutter_.geometry().flute_length * i / kSections; }
+  double section(int i) const noexcept { return cutter_.cone().flute_length * i / kSections; }
 
   /// Whether the flute is the same everywhere: the radius changes by less than a millionth of the length.
   bool isCylinder() const noexcept;
@@ -77,9 +77,10 @@ class SetupTrial {
   ConicalCutter cutter_;
   WheelProfile wheel_;
   double nominal_radius_, y_per_x_;
-  double deepest_;    ///< [m]
-  double far_;        ///< distance beyond the flute's ends at which a wheel reaches it at no depth [m]
-  double face_from_;  ///< w on the wheel from which its profile belongs to the upper face [m]
+  double chordal_rake_depth_;  ///< as in CutterGeometry [m]
+  double deepest_;             ///< [m]
+  double far_;                 ///< distance beyond the flute's ends at which a wheel reaches it at no depth [m]
+  double face_from_;           ///< w on the wheel from which its profile belongs to the upper face [m]
 };
 
 }  // namespace grinder

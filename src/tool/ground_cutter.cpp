@@ -49,16 +49,14 @@ double covered(std::vector<Arc>& arcs) {
 
 }  // namespace
 
-double chordDepth(const CutterGeometry& cutter, double flute_depth) noexcept {
-  return cutter.chordal_rake_depth > 0 ? cutter.chordal_rake_depth : kChordalDepth * flute_depth;
-}
+double chordDepth(double asked, double flute_depth) noexcept { return asked > 0 ? asked : kChordalDepth * flute_depth; }
 
 double chordAngle(double outer, double inner, double turn) noexcept {
   return std::atan2(inner * std::sin(turn), outer - inner * std::cos(turn));
 }
 
 double meanSpiral(const ConicalCutter& cutter, double from, double to, double turn) noexcept {
-  const double diameter = cutter.geometry().end_diameter;
+  const double diameter = cutter.cone().end_diameter;
   const LogCurve at_45_deg(2 * cutter.tanCone() / diameter, 2 / diameter);
   return std::atan(turn / (at_45_deg.a(to) - at_45_deg.a(from)));
 }
@@ -80,8 +78,12 @@ double leastRadius(const std::vector<WheelSweep>& strokes, double x, double radi
 }
 
 GroundCutter::GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth,
-                           std::vector<Reliefs> reliefs)
-    : cutter_(cutter), flutes_(std::move(flutes)), teeth_(std::move(teeth)), reliefs_(std::move(reliefs)) {
+                           std::vector<Reliefs> reliefs, double chordal_rake_depth)
+    : cutter_(cutter),
+      flutes_(std::move(flutes)),
+      teeth_(std::move(teeth)),
+      reliefs_(std::move(reliefs)),
+      chordal_rake_depth_(chordal_rake_depth) {
   if (reliefs_.empty()) reliefs_.resize(flutes_.size());
   if (reliefs_.size() != flutes_.size()) {
     throw std::invalid_argument("reliefs of " + std::to_string(reliefs_.size()) + " flutes; allowed: none, or of " +
@@ -117,7 +119,7 @@ void GroundCutter::measureRake(const Flute& flute, double x, double r, ToothSect
   if (!edge) return;
   section.rake = std::atan(-hand * r * edge->slope);
   if (section.spiral) section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));
-  const double inner = r - chordDepth(cutter_.geometry(), section.depth);
+  const double inner = r - chordDepth(chordal_rake_depth_, section.depth);
   section.chordal_rake.reset();
   if (const auto face = rakeFace(flute, x, inner)) {
     section.chordal_rake = chordAngle(r, inner, hand * (face->angle - edge->angle));

@@ -217,7 +217,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, i
       own.push_back({sweepOf(relief, number, wear[tooth], strokeOf(relief, number, relief.deepest(), wear[tooth]))});
     }
   }
-  return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs));
+  return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs), flutes.chordalRakeDepth());
 }
 
 /// @param same_wear maximum difference of the wheel's wear for teeth to share a flute [m].
@@ -235,7 +235,8 @@ GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
     const int tooth = static_cast<int>(i);
     flutes.push_back({sweepOf(job, tooth, wear[i], strokeOf(job, tooth, job.deepest(), wear[i]))});
   }
-  return GroundCutter(ConicalCutter(job->cutter), std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job->cutter), std::move(flutes), std::move(teeth), {},
+                      job->cutter.chordal_rake_depth);
 }
 
 }  // namespace

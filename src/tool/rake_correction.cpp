@@ -66,7 +66,7 @@ class Correction {
     const WheelSweep sweep(cutter_, wheel_, nominal_radius_, setup_, stroke);
     Eigen::VectorXd errors(kCorrectedSections + 1);
     for (int i = 0; i <= kCorrectedSections; ++i) {
-      const double x = cutter_.geometry().flute_length * i / kCorrectedSections;
+      const double x = cutter_.cone().flute_length * i / kCorrectedSections;
       const double r = cutter_.radius(x);
       const auto wall = sweep.wall(x, r, true);
       errors[i] = wall ? std::atan(-r * wall->slope) - rake_ : std::nan("");
@@ -111,8 +111,8 @@ class Correction {
 std::optional<RakeCorrection> correctRake(const ConicalCutter& cutter, const WheelProfile& wheel, double nominal_radius,
                                           const WheelSetup& setup, const GrindStroke& stroke, double rake,
                                           const PlanWatch& watch) {
-  if (cutter.geometry().cut == CutDirection::kLeftHand) {
-    CutterGeometry right = cutter.geometry();
+  if (cutter.cone().cut == CutDirection::kLeftHand) {
+    Cone right = cutter.cone();
     right.cut = CutDirection::kRightHand;
     right.spiral_angle *= -1;
     GrindStroke right_stroke = stroke;

@@ -260,7 +260,8 @@ GroundCutter RunStrokes::relieved(const std::vector<const RunStroke*>& kept) con
     }
     if (!own.empty()) reliefs.back().push_back(std::move(own));
   }
-  return GroundCutter(before.cutter(), std::move(flutes), std::move(teeth), std::move(reliefs));
+  return GroundCutter(before.cutter(), std::move(flutes), std::move(teeth), std::move(reliefs),
+                      before.chordalRakeDepth());
 }
 
 GroundCutter RunStrokes::cutter() const {
@@ -282,7 +283,8 @@ GroundCutter RunStrokes::cutter() const {
     if (flutes[i].empty()) flutes[i].push_back(sweepOf(job_, static_cast<int>(i), 0, GrindStroke{}));
     teeth.push_back({job_->tooth_angles[i], i});
   }
-  return GroundCutter(ConicalCutter(job_->cutter), std::move(flutes), std::move(teeth));
+  return GroundCutter(ConicalCutter(job_->cutter), std::move(flutes), std::move(teeth), {},
+                      job_->cutter.chordal_rake_depth);
 }
 
 }  // namespace grinder

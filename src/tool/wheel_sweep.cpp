@@ -62,7 +62,7 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
       height_(setup.height),
       sin_(std::sin(setup.swivel)),
       cos_(std::cos(setup.swivel)),
-      radius_(cutter.geometry().end_diameter / 2),
+      radius_(cutter.cone().end_diameter / 2),
       centre_(radius_ + nominal_radius + stroke.y),
       tan_cone_(cutter.tanCone()),
       y_per_x_(tan_cone_ + stroke.y_per_x),

@@ -73,7 +73,7 @@ std::vector<FaultCase> faultCases() {
         {"axis A following error 360", " deg", "limit 2.86479 deg"}, [=](FakeDrive& d) { d.position[kA] += turn; }, kA);
   }
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const std::string letter(1, "XYZA"[axis]);
+    const std::string letter(1, axisLetter(axis));
     const std::string name = "axis " + letter;
     const auto n = static_cast<std::size_t>(axis);
     add(

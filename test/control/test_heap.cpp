@@ -87,7 +87,7 @@ TEST(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
     for (const MoveKind move : {MoveKind::kPosition, MoveKind::kStroke, MoveKind::kReturn}) {
       SCOPED_TRACE(std::string(toString(rule)) + " " + toString(move));
       SetpointStream stream(program);
-      bool finished = false;
+      Rest rest = Rest::kNone;
       const HeapUse use = heapUse([&] {
         Setpoint setpoint;
         const auto run = [&](int most) {
@@ -105,10 +105,10 @@ TEST(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
         run(100000);
         stream.resume();
         run(100000);
-        finished = stream.finished();
+        rest = stream.rest();
       });
       EXPECT_FALSE(use.any());
-      EXPECT_TRUE(finished);
+      EXPECT_EQ(rest, Rest::kEnd);
     }
   }
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "any_tool.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
@@ -48,49 +47,41 @@ inline rc::Gen<double> spiralAngle() {
 
 /// Length from X = 0 toward the shank (+1) or beyond the end (-1) over which the radius keeps a fifth of what it is at
 /// X = 0; at most `limit`. [m]
-inline double openLength(const CutterGeometry& g, int side, double limit) {
+inline double openLength(const Cone& g, int side, double limit) {
   const double closing = -side * std::tan(g.cone_angle);
   return closing > 0 ? std::min(limit, 0.8 * g.end_diameter / 2 / closing) : limit;
 }
 
 /// dZ/dY of the published law: a left-hand cutter is a right-hand one in the mirror.
-inline long double zPerY(const CutterGeometry& g) {
+inline long double zPerY(const Cone& g) {
   return (g.cut == CutDirection::kLeftHand ? -1 : 1) * std::sin(static_cast<long double>(g.rake_angle));
 }
 
-inline rc::Gen<CutterGeometry> cutterGeometry() {
+inline rc::Gen<Cone> cone() {
   return rc::gen::exec([] {
-    CutterGeometry g;
+    Cone g;
     g.end_diameter = *logUniform(0.3e-3, 30e-3);
     g.cone_angle = *coneAngle();
     g.spiral_angle = *spiralAngle();
     g.rake_angle = *uniform(-20 * units::kDegree, 20 * units::kDegree);
     g.flute_length = openLength(g, 1, *logUniform(1e-3, 60e-3));
     g.cut = *rc::gen::arbitrary<bool>() ? CutDirection::kLeftHand : CutDirection::kRightHand;
-    g.rake_tolerance = 0.5 * units::kDegree;
-    askForRakeAlone(g);
-    g.shank_diameter = 10e-3;
     return g;
   });
 }
 
-inline double edgePerTravel(const CutterGeometry& g) {
+inline double edgePerTravel(const Cone& g) {
   return std::sqrt(1 + std::pow(std::tan(g.cone_angle), 2) + std::pow(std::tan(g.spiral_angle), 2));
 }
 
 /// The paper's cutter: D1 10 mm, S 30 deg, C 5 deg, r 8 deg, 30 mm.
-inline CutterGeometry paperCutter() {
-  CutterGeometry g{10e-3, 5 * units::kDegree,       30 * units::kDegree,  8 * units::kDegree,
-                   30e-3, CutDirection::kRightHand, 0.5 * units::kDegree, 16e-3};
-  askForRakeAlone(g);
-  return g;
-}
+inline Cone paperCone() { return {10e-3, 5 * units::kDegree, 30 * units::kDegree, 8 * units::kDegree, 30e-3}; }
 
 }  // namespace grinder::test_support
 
 namespace grinder {
 
-inline std::ostream& operator<<(std::ostream& out, const CutterGeometry& g) {
+inline std::ostream& operator<<(std::ostream& out, const Cone& g) {
   return out << "D1 " << g.end_diameter / units::kMillimetre << " mm, C " << g.cone_angle / units::kDegree << " deg, S "
              << g.spiral_angle / units::kDegree << " deg, r " << g.rake_angle / units::kDegree << " deg, L "
              << g.flute_length / units::kMillimetre << " mm";

@@ -16,7 +16,7 @@ struct ReferenceCurve {
   Real b, k, x_shift = 0;
 
   ReferenceCurve(Real b_, Real k_) : b(b_), k(k_) {}
-  explicit ReferenceCurve(const CutterGeometry& g, Real x_shift_ = 0)
+  explicit ReferenceCurve(const Cone& g, Real x_shift_ = 0)
       : b(2 * std::tan(Real(g.cone_angle)) / Real(g.end_diameter)),
         k(2 * std::tan(Real(g.spiral_angle)) / Real(g.end_diameter)),
         x_shift(x_shift_) {}

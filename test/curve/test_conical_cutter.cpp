@@ -22,7 +22,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// What is wrong with a cutter; empty where nothing is.
-std::string errorOf(const CutterGeometry& geometry) {
+std::string errorOf(const Cone& geometry) {
   try {
     ConicalCutter cutter(geometry);
   } catch (const std::invalid_argument& error) {
@@ -32,7 +32,7 @@ std::string errorOf(const CutterGeometry& geometry) {
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
-  const CutterGeometry g = *test_support::cutterGeometry();
+  const Cone g = *test_support::cone();
   const ConicalCutter cutter(g);
   const double x = *uniform(-2e-3, g.flute_length);
   const Real tan_cone = std::tan(Real(g.cone_angle));
@@ -49,7 +49,7 @@ RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, ()) {
-  const CutterGeometry g = *test_support::cutterGeometry();
+  const Cone g = *test_support::cone();
   const ConicalCutter cutter(g);
   // The edge at X: R(X) (cos A, sin A) about the axis; its length over a short piece of the axis, by Simpson-free
   // chords.
@@ -67,7 +67,7 @@ RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, 
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, HelixStandsToTheGeneratrixAtItsAngle, ()) {
-  const CutterGeometry g = *test_support::cutterGeometry();
+  const Cone g = *test_support::cone();
   const Real angle = std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle)));
   RC_ASSERT(std::abs(ConicalCutter(g).cosHelixToGeneratrix() - std::cos(angle)) <= 8 * kEps);
 }
@@ -78,16 +78,16 @@ TEST(ConicalCutter, TakesFinitePositiveLengthsAndAnglesBelowARightAngle) {
   const std::vector<double> no_angles{kNan, kInf, -kInf, kRight, -kRight, 2, -2, 100};
   const struct {
     const char* name;
-    double CutterGeometry::*figure;
+    double Cone::*figure;
     const std::vector<double>& bad;
-  } rows[]{{"end_diameter", &CutterGeometry::end_diameter, no_lengths},
-           {"flute_length", &CutterGeometry::flute_length, no_lengths},
-           {"cone_angle", &CutterGeometry::cone_angle, no_angles},
-           {"spiral_angle", &CutterGeometry::spiral_angle, no_angles},
-           {"rake_angle", &CutterGeometry::rake_angle, no_angles}};
+  } rows[]{{"end_diameter", &Cone::end_diameter, no_lengths},
+           {"flute_length", &Cone::flute_length, no_lengths},
+           {"cone_angle", &Cone::cone_angle, no_angles},
+           {"spiral_angle", &Cone::spiral_angle, no_angles},
+           {"rake_angle", &Cone::rake_angle, no_angles}};
   for (const auto& row : rows) {
     for (const double bad : row.bad) {
-      CutterGeometry g = paperCutter();
+      Cone g = paperCone();
       g.*row.figure = bad;
       const std::string error = errorOf(g);
       EXPECT_NE(error.find(std::string("cutter.") + row.name + " = "), std::string::npos) << bad << ": " << error;
@@ -98,7 +98,7 @@ TEST(ConicalCutter, TakesFinitePositiveLengthsAndAnglesBelowARightAngle) {
 
 TEST(ConicalCutter, StaysOpenUpToTheFlutesEnd) {
   // D1 2 mm at -3 deg closes at X = 19.08 mm.
-  CutterGeometry g{2e-3, -3 * units::kDegree, 0.5, 0, 19.08e-3};
+  Cone g{2e-3, -3 * units::kDegree, 0.5, 0, 19.08e-3};
   EXPECT_EQ(errorOf(g), "");
   g.flute_length = 19.09e-3;
   EXPECT_NE(errorOf(g).find("cutter.cone_angle"), std::string::npos) << errorOf(g);

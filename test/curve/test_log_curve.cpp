@@ -23,7 +23,7 @@ struct Curves {
   double shortest, longest;  ///< X over which it exists with a fifth of its radius
 
   static Curves draw() {
-    const CutterGeometry g = *test_support::cutterGeometry();
+    const Cone g = *test_support::cone();
     const LogCurve curve{ConicalCutter(g)};
     return {curve, ReferenceCurve(curve.b(), curve.k()), -test_support::openLength(g, -1, 10e-3), g.flute_length};
   }
@@ -31,10 +31,10 @@ struct Curves {
 
 // Closed form, with the curve's own constants: A(X - shift).
 TEST(LogCurve, WithAShiftItIsTheCurveThere) {
-  CutterGeometry back = test_support::paperCutter(), cylinder = back;
+  Cone back = test_support::paperCone(), cylinder = back;
   back.cone_angle = -3 * units::kDegree;
   cylinder.cone_angle = 0;
-  for (const CutterGeometry& geometry : {test_support::paperCutter(), back, cylinder}) {
+  for (const Cone& geometry : {test_support::paperCone(), back, cylinder}) {
     const LogCurve curve{ConicalCutter(geometry)};
     for (const double x_shift : {-8e-3, 0.0, 11.847e-3}) {
       const LogCurve ahead(ConicalCutter(geometry), x_shift);
@@ -54,7 +54,7 @@ RC_GTEST_PROP(LogCurveProperty, IsTheLogarithmInLongDouble, ()) {
 }
 
 RC_GTEST_PROP(LogCurveProperty, HasTheConstantsOfTheCutter, ()) {
-  const CutterGeometry g = *test_support::cutterGeometry();
+  const Cone g = *test_support::cone();
   const LogCurve curve{ConicalCutter(g)};
   const ReferenceCurve reference(g);
   RC_ASSERT(std::abs(curve.b() - reference.b) <= 4 * kEps * std::abs(reference.b));

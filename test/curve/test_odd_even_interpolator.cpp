@@ -19,16 +19,16 @@ constexpr double kPaperScale = 1e-3;  ///< X in mm, A in rad
 constexpr double kMm = units::kMillimetre;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
-LogCurve curveOf(const CutterGeometry& g) { return LogCurve(ConicalCutter(g)); }
+LogCurve curveOf(const Cone& g) { return LogCurve(ConicalCutter(g)); }
 
 /// A cutter on which the rules differ: D1 2 mm, S 45 deg, C 15 deg, 20 mm.
-CutterGeometry steepCutter() { return {2e-3, 15 * units::kDegree, 45 * units::kDegree, 0, 20e-3}; }
+Cone steepCutter() { return {2e-3, 15 * units::kDegree, 45 * units::kDegree, 0, 20e-3}; }
 
 /// Theory minus commanded, theory in long double. [rad]
 double errorOf(const ReferenceCurve& curve, const CurvePoint& p) { return static_cast<double>(curve.a(p.x) - p.a); }
 
 /// Of the even points of a path of fixed steps from X = 0 on. [rad]
-double maxEvenError(const CutterGeometry& g, EvenStepRule rule, double step, double end) {
+double maxEvenError(const Cone& g, EvenStepRule rule, double step, double end) {
   const ReferenceCurve curve(g);
   OddEvenInterpolator interpolator(curveOf(g), kPaperScale, rule, 0);
   double max = 0;
@@ -37,7 +37,7 @@ double maxEvenError(const CutterGeometry& g, EvenStepRule rule, double step, dou
 }
 
 TEST(OddEvenInterpolator, TheEvenErrorFallsWithTheSquareOrTheCubeOfTheStep) {
-  for (const CutterGeometry& cutter : {paperCutter(), steepCutter()}) {
+  for (const Cone& cutter : {paperCone(), steepCutter()}) {
     SCOPED_TRACE(::testing::PrintToString(cutter.end_diameter));
     const auto even = [&](EvenStepRule rule, double step) { return maxEvenError(cutter, rule, step * kMm, 20 * kMm); };
     EXPECT_NEAR(even(EvenStepRule::kPublished, 0.01) / even(EvenStepRule::kPublished, 0.005), 4, 0.2);
@@ -53,14 +53,14 @@ double advanceOfGrowth(const LogCurve& curve, double x, double growth) {
 
 /// A curve of a random cutter, a place on it and a step that turns the path by no more than a few degrees.
 struct Place {
-  CutterGeometry cutter;
+  Cone cutter;
   LogCurve curve;
   ReferenceCurve reference;
   double scale;
   double x;
 
   static Place draw() {
-    const CutterGeometry g = *test_support::cutterGeometry();
+    const Cone g = *test_support::cone();
     const double x = *uniform(-test_support::openLength(g, -1, 2e-3), g.flute_length);
     return {g, curveOf(g), ReferenceCurve(g), *test_support::logUniform(0.1e-3, 10e-3), x};
   }

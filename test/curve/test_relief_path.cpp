@@ -15,8 +15,8 @@ namespace test_relief_path {
 using units::kDegree;
 using units::kMillimetre;
 
-CutterGeometry cutterOf(double diameter, double cone, double spiral, CutDirection cut = CutDirection::kRightHand) {
-  CutterGeometry g;
+Cone cutterOf(double diameter, double cone, double spiral, CutDirection cut = CutDirection::kRightHand) {
+  Cone g;
   g.end_diameter = diameter * kMillimetre;
   g.cone_angle = cone * kDegree;
   g.spiral_angle = spiral * kDegree;
@@ -41,13 +41,13 @@ struct BruteForce {
   const ReliefWheel& wheel;
   double lowered = 0;  ///< Y against the path's
 
-  double hand() const { return cutter.geometry().cut == CutDirection::kLeftHand ? -1 : 1; }
+  double hand() const { return cutter.cone().cut == CutDirection::kLeftHand ? -1 : 1; }
   double edge(double x) const { return LogCurve(cutter).a(x); }
 
   double ray(double x, double behind, double axis_x) const {
     const double w_x = -std::sin(wheel.swivel), w_z = std::cos(wheel.swivel),
                  radius = wheel.nominal_radius - wheel.wear;
-    const double c_y = cutter.geometry().end_diameter / 2 + wheel.nominal_radius + path.y() + lowered +
+    const double c_y = cutter.cone().end_diameter / 2 + wheel.nominal_radius + path.y() + lowered +
                        axis_x * (cutter.tanCone() + path.taper());
     const double c_z = wheel.height + axis_x * cutter.tanCone() * path.cutter().zPerY();
     const double a = LogCurve(cutter, path.xShift()).a(axis_x) + path.a();
@@ -128,7 +128,7 @@ Case drawn() {
   const auto within = [](double from, double to) { return from + (to - from) * *rc::gen::inRange(0, 10001) / 1e4; };
   const bool left = *rc::gen::arbitrary<bool>();
   const double hand = left ? -1 : 1, spiral = within(0, 45);
-  CutterGeometry g =
+  Cone g =
       cutterOf(within(3, 20), within(-1, 10), hand * spiral, left ? CutDirection::kLeftHand : CutDirection::kRightHand);
   g.flute_length = within(0.5, 1.5) * g.end_diameter;
   const ConicalCutter cutter(g);
@@ -146,8 +146,8 @@ RC_GTEST_PROP(ReliefPath, TheSurfaceIsWhatTheWheelLeaves, ()) {
     return left.radius(x, c.start.behind) - c.start.radius_part * c.cutter.radius(x);
   };
   // Far from the spiral angle, a large wheel takes the start of the relief with another place of its rim.
-  RC_PRE(start_off(0) > -1e-9 && start_off(c.cutter.geometry().flute_length) > -1e-9);
-  for (const double x : {0.0, c.cutter.geometry().flute_length}) {
+  RC_PRE(start_off(0) > -1e-9 && start_off(c.cutter.cone().flute_length) > -1e-9);
+  for (const double x : {0.0, c.cutter.cone().flute_length}) {
     RC_ASSERT(start_off(x) < 1e-9);
     for (const double part : {0.0, 0.3, 0.8}) {
       const ReliefPath::Place at = path.surface(x, part * rim_end);
@@ -232,10 +232,10 @@ RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
   const ReliefPath path(c.cutter, c.start, c.wheel);
   const double w_x = -std::sin(c.wheel.swivel), w_z = std::cos(c.wheel.swivel), radius = c.wheel.nominal_radius;
   double highest = -1;
-  for (const double s : {-path.beyondEnd(), c.cutter.geometry().flute_length + path.beyondShank()}) {
+  for (const double s : {-path.beyondEnd(), c.cutter.cone().flute_length + path.beyondShank()}) {
     const double axis_x = s + path.xShift();
     const double c_y =
-        c.cutter.geometry().end_diameter / 2 + radius + path.y() + axis_x * (c.cutter.tanCone() + path.taper());
+        c.cutter.cone().end_diameter / 2 + radius + path.y() + axis_x * (c.cutter.tanCone() + path.taper());
     const double c_z = c.wheel.height + axis_x * c.cutter.tanCone() * path.cutter().zPerY();
     for (int i = 0; i <= 100; ++i) {
       const double w = (i / 100.0 - 0.5) * c.wheel.width;

@@ -15,11 +15,11 @@ using namespace test_support;
 constexpr double kMm = units::kMillimetre;
 
 /// As the paper counts: X in mm, A in rad.
-StepTable tableOf(const CutterGeometry& cutter, EvenStepRule rule, double step_length) {
+StepTable tableOf(const Cone& cutter, EvenStepRule rule, double step_length) {
   return interpolateBySteps(ConicalCutter(cutter), units::kMillimetrePerRadian, rule, step_length);
 }
 
-StepTable papersTable(double step_length) { return tableOf(paperCutter(), EvenStepRule::kPublished, step_length); }
+StepTable papersTable(double step_length) { return tableOf(paperCone(), EvenStepRule::kPublished, step_length); }
 
 /// A row of the paper's Table 1, as printed.
 struct TableRow {
@@ -55,7 +55,7 @@ double printed(double value) { return std::round(value * 1e4) / 1e4; }
 
 TEST(StepTable, GivesThePapersTable1ToThePrintedDigit) {
   const StepTable table = papersTable(0.2 * kMm);
-  const ReferenceCurve curve(paperCutter());
+  const ReferenceCurve curve(paperCone());
   for (const TableRow& printed_row : kTable1) {
     SCOPED_TRACE(printed_row.point);
     ASSERT_LT(static_cast<std::size_t>(printed_row.point), table.rows.size());
@@ -81,14 +81,14 @@ TEST(StepTable, HasThePapersFiguresForTheLongerStep) {
 }
 
 TEST(StepTable, TakesTheRuleThatItIsGiven) {
-  const StepTable exact = tableOf(paperCutter(), EvenStepRule::kExact, 0.2 * kMm);
+  const StepTable exact = tableOf(paperCone(), EvenStepRule::kExact, 0.2 * kMm);
   EXPECT_TRUE(exact.complete);
   EXPECT_LE(exact.max_even_error, 2e-15);
 }
 
 // The sum of its steps is less than the length of the flute by the last bit.
 TEST(StepTable, EndsWithThePairThatEndsAtTheFlutesEnd) {
-  const CutterGeometry straight{10 * kMm, 0, 0, 0, 9.4 * kMm};
+  const Cone straight{10 * kMm, 0, 0, 0, 9.4 * kMm};
   const StepTable table = tableOf(straight, EvenStepRule::kPublished, 0.05 * kMm);
   EXPECT_EQ(table.rows.size() - 1, 188u);
   EXPECT_NEAR(table.rows.back().point.x, 9.4 * kMm, 1e-15);
@@ -96,7 +96,7 @@ TEST(StepTable, EndsWithThePairThatEndsAtTheFlutesEnd) {
 
 TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
   // A back taper whose cone closes within the first step.
-  const CutterGeometry back{10 * kMm, -3 * units::kDegree, 30 * units::kDegree, 0, 30 * kMm};
+  const Cone back{10 * kMm, -3 * units::kDegree, 30 * units::kDegree, 0, 30 * kMm};
   const StepTable table = tableOf(back, EvenStepRule::kPublished, 100 * kMm);
   EXPECT_FALSE(table.complete);
   ASSERT_EQ(table.rows.size(), 1u);

@@ -214,7 +214,7 @@ TEST(SimulatedDriveFault, DriveFaultOutlastsAResetWhileItsCauseIsThere) {
 
 TEST(SimulatedDriveFault, AStuckAxisStandsAlone) {
   for (int stuck = 0; stuck < kAxisCount; ++stuck) {
-    SCOPED_TRACE("XYZA"[stuck]);
+    SCOPED_TRACE(axisLetter(stuck));
     MovingBench bench;
     const Axes before = bench.positions();
     bench.drive.inject(Fault::kStuckAxis, stuck);
@@ -244,7 +244,7 @@ TEST(SimulatedDriveFault, StaleFeedbackStandsWhileTheAxesGoOn) {
 
 TEST(SimulatedDriveFault, NanFeedbackIsOfOneAxisAndGoesWhenTakenBack) {
   for (int failing = 0; failing < kAxisCount; ++failing) {
-    SCOPED_TRACE("XYZA"[failing]);
+    SCOPED_TRACE(axisLetter(failing));
     MovingBench bench;
     bench.drive.inject(Fault::kNanFeedback, failing);
     bench.run(1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "any_tool.h"
 #include "curve/generators.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/motion/axis_limits.h"
@@ -44,7 +45,7 @@ inline rc::Gen<double> x_shift(const GrindJob& j) {
 inline rc::Gen<GrindJob> job() {
   return rc::gen::exec([] {
     GrindJob j;
-    j.cutter = *cutterGeometry();
+    j.cutter = anyToolOf(*cone(), 10e-3);
     // Some turns at the most, or else the way back takes most of the time.
     const double turns = 8 * j.cutter.end_diameter / 2 / std::max(0.01, std::abs(std::tan(j.cutter.spiral_angle)));
     j.cutter.flute_length = std::min(j.cutter.flute_length, std::max(0.2e-3, turns));
@@ -137,7 +138,7 @@ inline rc::Gen<Work> toothedWork(double cycles) {
 /// The paper's cutter at 600 mm/min in one pass.
 inline GrindJob paperJob() {
   GrindJob j;
-  j.cutter = paperCutter();
+  j.cutter = anyToolOf(paperCone(), 16e-3);
   j.tooth_angles = {0};
   j.process().feed = 0.01;
   j.process().depth = 0.5e-3;

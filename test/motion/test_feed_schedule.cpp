@@ -20,7 +20,7 @@ using namespace test_support;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 /// A cutter that comes to a thin end: a 1 mm tip on a 12 deg cone.
-CutterGeometry thinCutter() { return {1e-3, 12 * units::kDegree, 45 * units::kDegree, 8 * units::kDegree, 20e-3}; }
+Cone thinCutter() { return {1e-3, 12 * units::kDegree, 45 * units::kDegree, 8 * units::kDegree, 20e-3}; }
 
 /// Limits that hinder nothing.
 Machine boundless() {
@@ -35,13 +35,13 @@ FeedSchedule::Stroke plainStroke(double feed = 0.01) { return {-0.5e-3, 20e-3, f
 
 /// A cutter, a stroke along it either way, and a machine.
 struct Case {
-  CutterGeometry cutter;
+  Cone cutter;
   FeedSchedule::Stroke stroke;
   Machine machine;
 
   static Case draw() {
     Case c;
-    c.cutter = *test_support::cutterGeometry();
+    c.cutter = *test_support::cone();
     c.machine = *test_support::machine();
     double from = -test_support::openLength(c.cutter, -1, *uniform(0, 2e-3));
     double to = c.cutter.flute_length;
@@ -58,7 +58,7 @@ struct Pose {
   Real axis[kAxisCount];
 };
 
-Pose poseAt(const CutterGeometry& g, const ReferenceCurve& curve, Real x) {
+Pose poseAt(const Cone& g, const ReferenceCurve& curve, Real x) {
   const Real y = x * std::tan(Real(g.cone_angle));
   return {{x, y, y * test_support::zPerY(g), curve.a(x)}};
 }

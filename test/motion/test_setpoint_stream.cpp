@@ -90,10 +90,10 @@ RC_GTEST_PROP(SetpointStreamProperty, StrokesFollowThePapersConstructionAndRepor
 TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
   SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   Setpoint p;
-  EXPECT_FALSE(stream.finished());
+  EXPECT_EQ(stream.rest(), Rest::kNone);
   while (stream.next(p))
-    EXPECT_EQ(stream.finished(), p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
-  EXPECT_TRUE(stream.finished());
+    EXPECT_EQ(stream.rest() == Rest::kEnd, p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
+  EXPECT_EQ(stream.rest(), Rest::kEnd);
   const Setpoint last = p;
   stream.resume();
   EXPECT_FALSE(stream.next(p));

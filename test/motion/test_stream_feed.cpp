@@ -145,7 +145,7 @@ TEST(SetpointStream, NoFeedRestsOnThePathUntilThereIsFeedAgain) {
   const Setpoint rest = ride.last();
   EXPECT_EQ(rest.move, MoveKind::kStroke);
   EXPECT_LT(rest.position[kX], 11e-3);
-  EXPECT_FALSE(ride.stream().finished());
+  EXPECT_EQ(ride.stream().rest(), Rest::kNoFeed);
   EXPECT_TRUE(ride.stream().onPath());
   EXPECT_FALSE(ride.next());
   ride.stream().resume();  // which is for holds
@@ -155,7 +155,7 @@ TEST(SetpointStream, NoFeedRestsOnThePathUntilThereIsFeedAgain) {
   EXPECT_EQ(ride.last().cycle, rest.cycle + 1);
   ride.stream().setFeedOverride(1);
   ride.runToRest();
-  EXPECT_TRUE(ride.stream().finished());
+  EXPECT_EQ(ride.stream().rest(), Rest::kEnd);
 }
 
 TEST(SetpointStream, AFeedThatThereIsNotIsNotTaken) {

@@ -24,6 +24,7 @@ TEST(SetpointStream, HeldBeforeItBeginsDoesNotMove) {
   stream.hold();
   const auto setpoints = all(stream);
   ASSERT_EQ(setpoints.size(), 1u);
+  EXPECT_EQ(stream.rest(), Rest::kHeld);
   EXPECT_TRUE((setpoints[0].position == plainMachine().park).all());
 }
 
@@ -111,7 +112,7 @@ TEST(SetpointStream, WithoutFeedItComesBackAboveTheWorkOnly) {
   EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15);
   ride.stream().setFeedOverride(1);
   ride.runToRest();
-  EXPECT_TRUE(ride.stream().finished());
+  EXPECT_EQ(ride.stream().rest(), Rest::kEnd);
 }
 
 /// Moves an axis by a distance, as by hand.
@@ -148,12 +149,12 @@ Jogged jogRetracted(const Work& work) {
   stream.hold();
   while (stream.next(p)) {
   }
-  RC_PRE(!stream.finished());
-  RC_ASSERT(!stream.lifted());
+  RC_PRE(stream.rest() != Rest::kEnd);
+  RC_ASSERT(stream.rest() == Rest::kHeld);
   stream.retract();
   while (stream.next(p)) {
   }
-  RC_ASSERT(stream.lifted());
+  RC_ASSERT(stream.rest() == Rest::kLifted);
   result.lifted = p.position;
   result.seen.push_back(p);
   SetpointStream plain = stream;
@@ -163,14 +164,14 @@ Jogged jogRetracted(const Work& work) {
     const double lowest = axis == kY ? -1e-9 : -0.01;
     jog(stream, work.machine, p, axis, (axis == kA ? 30 : 1) * *uniform(lowest, 0.01), &result.seen);
     RC_ASSERT(!stream.next(p));
-    RC_ASSERT(stream.lifted());
+    RC_ASSERT(stream.rest() == Rest::kLifted);
   }
   result.resumed = result.seen.size() - 1;
   for (SetpointStream* s : {&stream, &plain}) {
     s->resume();
     auto& into = s == &plain ? result.undisturbed : result.seen;
     while (s->next(p)) into.push_back(p);
-    RC_ASSERT(s->finished());
+    RC_ASSERT(s->rest() == Rest::kEnd);
   }
   return result;
 }
@@ -210,7 +211,7 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
   PaperStroke ride(10e-3);
   const auto expectIgnored = [&](const char* when) {
     SetpointStream a = ride.stream(), b = ride.stream();
-    EXPECT_FALSE(a.lifted()) << when;
+    EXPECT_NE(a.rest(), Rest::kLifted) << when;
     Setpoint other;
     other.cycle = 77;
     other.position << 0.1, 0.1, 0.1, 0.1;
@@ -237,7 +238,7 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
   expectIgnored("held in the lift");
   ride.stream().retract();
   ride.runToRest();
-  EXPECT_TRUE(ride.stream().lifted());
+  EXPECT_EQ(ride.stream().rest(), Rest::kLifted);
   ride.stream().resume();
   expectIgnored("resumed");
 }
@@ -264,12 +265,12 @@ TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
     const Axes held = ride.last().position;
     stream.retract();
     ride.runToRest();
-    ASSERT_TRUE(stream.lifted());
+    ASSERT_EQ(stream.rest(), Rest::kLifted);
     ASSERT_TRUE((ride.last().position == held).all()) << "it is off the work";
   }
   stream.resume();
   ride.runToRest();
-  EXPECT_TRUE(stream.finished());
+  EXPECT_EQ(stream.rest(), Rest::kEnd);
   EXPECT_TRUE((ride.last().position == plainMachine().park).all());
 }
 
@@ -287,7 +288,7 @@ TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
   stream.resume();
   while (stream.next(p)) {
   }
-  EXPECT_TRUE(stream.finished());
+  EXPECT_EQ(stream.rest(), Rest::kEnd);
   EXPECT_TRUE((p.position == plainMachine().park).all());
 }
 

@@ -146,7 +146,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   using second_opinion::Real;
   for (int i = 0; i < job.teeth(); ++i) {
     const StrokeLaw& law = job.strokeLaw(i);
-    const CutterGeometry& c = law.cutter;
+    const Cone& c = law.cutter;
     second_opinion::Tooth tooth;
     tooth.growth = std::tan(Real(c.cone_angle));
     tooth.b = 2 * tooth.growth / Real(c.end_diameter);
@@ -242,7 +242,7 @@ bool limitToPath(Random& random, RideJob& ride) {
   }
   Axes::Map(ride.asked.low.data()) = limits.min_position;
   Axes::Map(ride.asked.high.data()) = limits.max_position;
-  return stream.finished();
+  return stream.rest() == Rest::kEnd;
 }
 
 std::optional<RideJob> draw(Random& random) {

@@ -62,7 +62,11 @@ GroundCutter ground(const SetupRequest& r, const SolvedSetup& s, double from, do
   const GrindStroke stroke{from, to, -s.depth, r.y_per_x, 0};
   std::vector<GroundTooth> teeth;
   for (const double angle : r.tooth_angles) teeth.push_back({angle, 0});
-  return {cutter, {{WheelSweep(cutter, r.wheel, r.nominal_radius, s.setup, stroke)}}, teeth};
+  return {cutter,
+          {{WheelSweep(cutter, r.wheel, r.nominal_radius, s.setup, stroke)}},
+          teeth,
+          {},
+          r.cutter.chordal_rake_depth};
 }
 
 GroundCutter ground(const SetupRequest& r, const SolvedSetup& s) {

@@ -17,7 +17,7 @@ struct Case {
   CutDirection cut = CutDirection::kRightHand;
 
   ConicalCutter cutter() const {
-    CutterGeometry g;
+    Cone g;
     g.end_diameter = diameter * kMillimetre;
     g.cone_angle = cone * kDegree;
     g.spiral_angle = spiral * kDegree;

@@ -149,7 +149,7 @@ double bruteEnd(const RandomCase& k, double r, bool high, int fineness) {
   const int poses = 1500 * fineness, places = 200 * fineness;
   const Case& c = k.c;
   SetupRequest request;
-  request.cutter = c.cutter().geometry();
+  request.cutter = {c.cutter().cone()};
   request.wheel = k.wheel;
   request.nominal_radius = c.wheel / 2 * kMillimetre;
   const brute::Bench bench{request, c.setup().swivel, c.setup().height, c.depth * kMillimetre, poses, places};
@@ -204,9 +204,12 @@ bool compare(const RandomCase& k, double rake_off = 0.005 * kDegree) {
   EXPECT_LT(off, rake_off);
   EXPECT_NEAR(*tooth.edge, edge, 0.001 * kDegree);
   EXPECT_NEAR(*tooth.flute, hand * (edge - back), 0.001 * kDegree);
-  const double inner = k.outer - tooth.depth / 10, inward = hand * (face(inner) - edge);
-  const double chord = std::atan(inner * std::sin(inward) / (k.outer - inner * std::cos(inward)));
-  EXPECT_NEAR(*tooth.chordal_rake, chord, 0.01 * kDegree);
+  for (const double asked : {0.0, tooth.depth / 4}) {
+    const GroundCutter ground(k.c.cutter(), {{sweep}}, {{0, 0}}, {}, asked);
+    const double inner = k.outer - (asked > 0 ? asked : tooth.depth / 10), inward = hand * (face(inner) - edge);
+    const double chord = std::atan(inner * std::sin(inward) / (k.outer - inner * std::cos(inward)));
+    EXPECT_NEAR(*ground.section(k.x).teeth.at(0).chordal_rake, chord, 0.01 * kDegree);
+  }
   for (const double part : {0.2, 0.5, 0.8}) {
     const double r = k.outer - part * (k.outer - section.core_radius);
     const auto arc = sweep.arc(k.x, r);

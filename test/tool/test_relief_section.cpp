@@ -93,7 +93,7 @@ Stroke strokeOf(const ValidJob& job, int tooth) {
 WheelSweep sweepOf(const ConicalCutter& cutter, const ReliefPath& path, const ReliefWheel& wheel, double edge) {
   GrindStroke stroke;
   stroke.from = path.xShift() - path.beyondEnd();
-  stroke.to = cutter.geometry().flute_length + path.xShift() + path.beyondShank();
+  stroke.to = cutter.cone().flute_length + path.xShift() + path.beyondShank();
   stroke.y = path.y();
   stroke.y_per_x = path.taper();
   stroke.a = path.a() + edge;

@@ -114,7 +114,8 @@ bool removed(const GroundCutter& cutter, double x, double r, double theta) {
 double coreAt(const GroundCutter& cutter, double x) { return cutter.section(x).core_radius; }
 
 TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
-  const GrindJob job = roughing();
+  GrindJob job = roughing();
+  job.cutter.chordal_rake_depth = 0.3e-3;
   const RunStrokes strokes = runOf(job, kExact);
   ASSERT_EQ(strokes.strokes().size(), passDepths(job.process()).size());
   for (const RunStroke& stroke : strokes.strokes()) {
@@ -124,6 +125,8 @@ TEST(RunStrokes, AnExactRunIsThePlanAndKeepsEveryStroke) {
   }
   const GroundCutter cutter = strokes.cutter(), planned = groundCutterOf(ValidJob(job));
   EXPECT_EQ(cutter.flutes().front().size(), 1u);
+  EXPECT_EQ(cutter.chordalRakeDepth(), 0.3e-3);
+  EXPECT_EQ(planned.chordalRakeDepth(), 0.3e-3);
   for (const double x : {0.0, 0.011, 0.022}) {
     const ToothSection one = cutter.section(x).teeth.front(), other = planned.section(x).teeth.front();
     EXPECT_NEAR(one.depth, other.depth, 1e-8);

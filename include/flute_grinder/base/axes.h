@@ -24,6 +24,9 @@ using Axes = Eigen::Array<double, kAxisCount, 1, Eigen::DontAlign>;
 /// The joint names of the axes, as in the URDF.
 constexpr std::array<const char*, kAxisCount> kJointNames{"axis_x", "axis_y", "axis_z", "axis_a"};
 
+/// The name of an axis: X, Y, Z or A.
+constexpr char axisLetter(int axis) { return "XYZA"[axis]; }
+
 /// The text that refuses a request for an axis that does not exist.
 inline std::string axisRefusal(int axis) {
   return "axis = " + std::to_string(axis) + "; allowed: 0 to 3 for X, Y, Z, A";

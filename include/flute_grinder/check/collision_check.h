@@ -26,7 +26,7 @@ struct CollisionJob {
   WheelProfile wheel;
   double nominal_radius = 0;  ///< radius of the wheel that touches the small end's circle at Y = 0 [m]
   WheelSetup setup;
-  CutterGeometry cutter;
+  Cone cutter;
   double shank_diameter = 0;         ///< [m]
   std::optional<double> shank_from;  ///< X where the shank begins; absent: where the run-out ends, see runOutEnd() [m]
   Axes stroke_end = Axes::Zero();    ///< position at the shank's end of the deepest stroke

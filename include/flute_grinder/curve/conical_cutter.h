@@ -15,27 +15,14 @@ inline constexpr EnumRow<CutDirection> kCutDirections[]{
 };
 constexpr auto& rowsOf(CutDirection) noexcept { return kCutDirections; }
 
-/// The dimensions of a conical end mill as given in a job file or goal, unchecked.
-struct CutterGeometry {
+/// The figures of a conical end mill that the curve follows from, unchecked.
+struct Cone {
   double end_diameter = 0;  ///< D1, diameter at the small end, X = 0 [m]
   double cone_angle = 0;    ///< C, half angle between axis and generatrix; negative for a back taper [rad]
   double spiral_angle = 0;  ///< S, from the axial direction: tan S = R dA/dX; negative for a left-hand helix [rad]
-  double rake_angle = 0;    ///< r, radial rake angle [rad]
+  double rake_angle = 0;    ///< r in Z = X tan C sin r [rad]
   double flute_length = 0;  ///< length of the flutes along the cutter's axis [m]
   CutDirection cut = CutDirection::kRightHand;
-  double rake_tolerance = 0;     ///< maximum allowed difference of the ground rake from the asked one [rad]
-  double shank_diameter = 0;     ///< [m]
-  double core_diameter = 0;      ///< asked diameter of the core at the small end [m]
-  double neck_length = 0;        ///< length from the flute's end to the shank; 0: unknown [m]
-  double core_diameter_end = 0;  ///< asked diameter of the core at the flute's end [m]
-  double core_tolerance = 0;     ///< maximum allowed difference of the ground core's diameter from the asked one [m]
-  double spiral_tolerance = 0;   ///< maximum error of the edge's spiral angle [rad]
-  double chordal_rake_tolerance = 0;  ///< maximum error of the ground chordal rake against the asked rake [rad]
-  double chordal_rake_depth = 0;      ///< depth of the chord's end below the edge; 0: a tenth of the flute's depth [m]
-  double clearance = 0;               ///< asked radial clearance of the primary relief at the edge; 0: no reliefs [rad]
-  double clearance_tolerance = 0;     ///< maximum allowed difference of the ground clearances from the asked ones [rad]
-  double land = 0;                    ///< asked width of the primary relief at the small end; 0: up to the heel [m]
-  double second_clearance = 0;        ///< asked clearance of the secondary relief at its start; 0: none [rad]
 };
 
 /// A closed interval, in the unit of what it describes.
@@ -46,15 +33,14 @@ struct Range {
 /// A conical end mill with constant rake and spiral angle (paper, section 2).
 class ConicalCutter {
  public:
-  /// @param geometry the cutter's dimensions; tolerances, core, neck and shank are not checked.
   /// @throw std::invalid_argument naming the bad value unless end diameter and flute length are finite and positive,
   ///        the three angles lie within (-pi/2, pi/2), and the radius stays positive up to the flute's end.
-  explicit ConicalCutter(const CutterGeometry& geometry);
+  explicit ConicalCutter(const Cone& cone);
 
-  const CutterGeometry& geometry() const noexcept { return geometry_; }
+  const Cone& cone() const noexcept { return cone_; }
 
   /// Local radius R(X) = D1/2 + X tan C [m].
-  double radius(double x) const noexcept { return geometry_.end_diameter / 2 + x * tan_cone_; }
+  double radius(double x) const noexcept { return cone_.end_diameter / 2 + x * tan_cone_; }
 
   /// Radial position of the surface relative to X = 0: Y = X tan C, the paper's equation 1 [m].
   double y(double x) const noexcept { return x * tan_cone_; }
@@ -75,7 +61,7 @@ class ConicalCutter {
   double cosHelixToGeneratrix() const noexcept { return cos_helix_to_generatrix_; }
 
  private:
-  CutterGeometry geometry_;
+  Cone cone_;
   double tan_cone_;
   double tan_spiral_;
   double z_per_y_;

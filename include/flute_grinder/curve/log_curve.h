@@ -16,8 +16,8 @@ class LogCurve {
   /// cone moved by `x_shift`, with another A at X = 0. See FormedEdge.
   /// @param x_shift shift along X, finite; the cone's radius must be positive at X = -shift [m].
   LogCurve(const ConicalCutter& cutter, double x_shift) noexcept
-      : LogCurve(2 * cutter.tanCone() / cutter.geometry().end_diameter,
-                 2 * cutter.tanSpiral() / cutter.geometry().end_diameter) {
+      : LogCurve(2 * cutter.tanCone() / cutter.cone().end_diameter,
+                 2 * cutter.tanSpiral() / cutter.cone().end_diameter) {
     if (x_shift == 0) return;
     a0_ = a(-x_shift);
     const double at_shift = u(-x_shift);

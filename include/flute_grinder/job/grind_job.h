@@ -2,9 +2,9 @@
 
 #include "flute_grinder/base/enum_table.h"
 #include "flute_grinder/base/units.h"
-#include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
 #include "flute_grinder/curve/z_correction.h"
+#include "flute_grinder/job/cutter_geometry.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/job/tooth_pass.h"
 #include "flute_grinder/job/wheel_shape.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/curve/conical_cutter.h"
+#include "flute_grinder/job/cutter_geometry.h"
 
 #include <cstddef>
 #include <string>

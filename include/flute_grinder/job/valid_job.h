@@ -37,7 +37,7 @@ struct DepthLaw {
 
 /// The strokes of a tooth: the travel of X, and the laws by which A and Z follow it.
 struct StrokeLaw {
-  CutterGeometry cutter;    ///< cutter whose helix A follows, and whose rake Z follows
+  Cone cutter;              ///< cutter whose helix A follows, and whose rake Z follows
   double from = 0, to = 0;  ///< X of the stroke's ends, in the direction of travel [m]
   double x_shift = 0;       ///< shift of A's curve along X [m]
   double a = 0;             ///< angle added to A [rad]

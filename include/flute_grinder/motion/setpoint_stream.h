@@ -19,6 +19,15 @@ struct MoveShape {
   bool operator<(const MoveShape& other) const noexcept;
 };
 
+/// Why a SetpointStream gives no setpoint; the axes are then at rest.
+enum class Rest : std::uint8_t {
+  kNone,    ///< there is a next setpoint
+  kHeld,    ///< stopped by hold()
+  kLifted,  ///< off the workpiece after retract(), so that something else may move the axes
+  kNoFeed,  ///< the feed override is 0
+  kEnd,     ///< the program has ended
+};
+
 /// The only source of setpoints: planning, dry runs and the machine all use it, so the previewed and the streamed
 /// setpoints are bit-identical. Every move takes an even number of cycles, so even cycles always end a pair. The motion
 /// can be held anywhere, slowed down, lifted off the workpiece and brought back; each request takes effect at the next
@@ -34,9 +43,11 @@ class SetpointStream {
   explicit SetpointStream(std::shared_ptr<const GrindProgram> program);
 
   /// The next setpoint; the first is the program's start position, at rest. Real-time safe.
-  /// @return false while the axes are at rest: at the end of the program, after hold(), lifted after retract(), or at a
-  ///        feed override of 0; `setpoint` is then unchanged.
+  /// @return false while the axes are at rest, see rest(); `setpoint` is then unchanged.
   bool next(Setpoint& setpoint) noexcept;
+
+  /// Why the axes rest. A request that ends the rest may count only from the next call of next(). Real-time safe.
+  Rest rest() const noexcept;
 
   /// Changes the speed of the moves at feed, which are infeed and stroke; rapids keep their speed. Real-time safe.
   /// @param fraction of the job's feed, 0 to kMaxFeedOverride; other values are ignored. Above 1 the feed is raised as
@@ -63,18 +74,12 @@ class SetpointStream {
   /// the program. Real-time safe.
   void retract() noexcept;
 
-  /// Whether the wheel rests lifted after retract(), so that something else may move the axes.
-  bool lifted() const noexcept { return leg_ == Leg::kLift && stay_lifted_ && !mid_pair_ && !lost_ && law_.finished(); }
-
   /// Takes over a setpoint from another source of motion, and numbers it as the stream's own. Such setpoints must come
   /// in pairs and end at rest. After resume() the stream first returns to the position to which retract() lifted the
   /// wheel: up to at least that height, across, then down; from there it continues as if the axes had not been moved.
-  /// Ignored unless lifted(). Real-time safe.
+  /// Ignored unless the rest is Rest::kLifted. Real-time safe.
   /// @param setpoint changed except for position, velocity, feed and kind of move.
   void adopt(Setpoint& setpoint) noexcept;
-
-  /// Whether the program has ended.
-  bool finished() const noexcept;
 
   /// Whether the axes are on the program's path, rather than on a detour after retract().
   bool onPath() const noexcept { return leg_ == Leg::kPath; }
@@ -103,7 +108,7 @@ class SetpointStream {
   enum class Leg : std::uint8_t { kPath, kLift, kBack, kPlunge };
 
   bool beginPair() noexcept;
-  bool beginNext() noexcept;
+  void beginNext() noexcept;
   void beginMove(const Move& move) noexcept;
   void beginWayBack() noexcept;
   void beginReturn() noexcept;

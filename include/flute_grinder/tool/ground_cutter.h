@@ -40,8 +40,9 @@ struct ToothSection {
 };
 
 /// Depth below the edge of the end of a rake face's chord [m].
+/// @param asked as CutterGeometry::chordal_rake_depth [m].
 /// @param flute_depth depth of the flute [m].
-double chordDepth(const CutterGeometry& cutter, double flute_depth) noexcept;
+double chordDepth(double asked, double flute_depth) noexcept;
 
 /// The radial angle of a chord of a right-hand rake face.
 /// @param outer,inner radii of its ends [m].
@@ -93,9 +94,10 @@ class GroundCutter {
   /// @param flutes the distinct flutes, for a tooth at angle 0.
   /// @param teeth teeth in ascending angles within one turn.
   /// @param reliefs the reliefs behind each flute's edge, for a tooth at angle 0; empty if there are none.
+  /// @param chordal_rake_depth as in CutterGeometry [m].
   /// @throw std::invalid_argument if a flute has no strokes, a tooth's flute does not exist, or only some have reliefs.
   GroundCutter(const ConicalCutter& cutter, std::vector<Flute> flutes, std::vector<GroundTooth> teeth,
-               std::vector<Reliefs> reliefs = {});
+               std::vector<Reliefs> reliefs = {}, double chordal_rake_depth = 0);
 
   /// @param x X of the section, where the blank's radius is positive [m].
   GroundSection section(double x) const;
@@ -115,7 +117,8 @@ class GroundCutter {
   std::optional<Arc> arc(const Flute& flute, double x, double r) const;
 
   const ConicalCutter& cutter() const noexcept { return cutter_; }
-  CutDirection direction() const noexcept { return cutter_.geometry().cut; }
+  double chordalRakeDepth() const noexcept { return chordal_rake_depth_; }  ///< as in CutterGeometry [m]
+  CutDirection direction() const noexcept { return cutter_.cone().cut; }
   const std::vector<Flute>& flutes() const noexcept { return flutes_; }
   const std::vector<GroundTooth>& teeth() const noexcept { return teeth_; }
   /// The reliefs of a tooth, as if it were at angle 0.
@@ -152,6 +155,7 @@ class GroundCutter {
   std::vector<Flute> flutes_;
   std::vector<GroundTooth> teeth_;
   std::vector<Reliefs> reliefs_;
+  double chordal_rake_depth_;
 };
 
 }  // namespace grinder

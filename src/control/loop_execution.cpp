@@ -117,6 +117,7 @@ Refusal ControlLoop::switchByHand(MachineEvent event) {
 }
 
 void ControlLoop::awaitPower() {
+  if (!power_.isAwaited()) return;
   const auto refusal = power_.await(now_.sample, link_.isSettled());
   if (!refusal) return;
   if (*refusal == Refusal::kNone) {

@@ -25,7 +25,6 @@ Refusal Power::begin(const CycleSample& sample) noexcept {
 }
 
 std::optional<Refusal> Power::await(const CycleSample& sample, bool settled) noexcept {
-  if (!awaited_) return std::nullopt;
   waited_ += sample.period;
   // While two readings disagree, the position of the axes is unknown, and no power is commanded.
   commanded_ &= settled;

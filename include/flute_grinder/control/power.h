@@ -39,8 +39,8 @@ class Power {
   Refusal begin(const CycleSample& sample) noexcept;
   /// Whether the power is being switched on.
   bool isAwaited() const noexcept { return awaited_; }
-  /// Commands the power awaited. @param settled see DriveLink::isSettled(). @return how the wait has ended; kNone if
-  /// the power is on.
+  /// To be called in every cycle in which the power is awaited: commands it. @param settled see DriveLink::isSettled().
+  /// @return how the wait has ended, if it has; kNone if the power is on.
   std::optional<Refusal> await(const CycleSample& sample, bool settled) noexcept;
   /// Gives up the power awaited. @return whether there was any.
   bool withdraw() noexcept { return std::exchange(awaited_, false); }

@@ -24,18 +24,13 @@ ros::Time after(const ros::Time& time, const ros::Duration& period) noexcept {
 
 ControlLoop::ControlLoop(Drive& drive, const LoopConfig& config, const Wheel& wheel)
     : RequestBox(config.enable_timeout),
-      drive_(drive),
-      capabilities_(drive.capabilities()),
-      config_(config),
-      axis_move_(config.machine),
-      dead_man_(config.jog_timeout),
-      client_(config.jog_timeout),
-      limit_check_(config.machine.limits, config.machine.period, LimitCheck::kUnplannedRoundings),
-      drive_checks_(config_),
-      wheel_(wheel) {
-  if (capabilities_.prepares) preparation_.emplace(drive);
-  next_status_.wheel = wheel;
-  status_.store(next_status_);
+      now_(config, wheel),
+      link_(drive, now_.config),
+      drive_checks_(now_.config),
+      power_(drive, capabilities().prepares, now_.config, drive_checks_),
+      job_(now_, *this),
+      jog_(now_, *this, job_) {
+  status_.store(now_.status);
 }
 
 ControlLoop::~ControlLoop() { stopThread(); }
@@ -59,17 +54,20 @@ void ControlLoop::run() {
   // The system clock, because ROS time may stay at 0 until a simulation publishes it.
   const ros::WallTime wall = ros::WallTime::now();
   // The first wait returns the nominal period at once; no stamp may be ahead of the clock.
-  const ros::Duration nominal(config_.machine.period);
+  using Clock = DriveLink::Clock;
+  const ros::Duration nominal(config().machine.period);
   ros::Time time = ros::Time(wall.sec, wall.nsec) - nominal;
   Clock::time_point begin = Clock::now() - std::chrono::nanoseconds(nominal.toNSec());
   while (running_) {
-    const ros::Duration period = awaitCycle(begin);
+    const ros::Duration period = link_.wait(begin);
     begin = Clock::now();
     time = after(time, period);
     cycle(time, period);
-    sample_.busy = std::chrono::duration<double>(Clock::now() - begin).count();
+    now_.sample.busy = std::chrono::duration<double>(Clock::now() - begin).count();
   }
-  writeOff({time, nominal, nominal});
+  DriveCommand off;
+  Eigen::Map<Axes>(off.position.data()) = now_.sample.command;
+  link_.write({time, nominal, nominal}, off);
   ended_ = true;
 }
 

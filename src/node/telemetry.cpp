@@ -1,13 +1,11 @@
 #include "node/telemetry.h"
 
-#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/reasons.h"
 
 #include <sensor_msgs/JointState.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <utility>
 
@@ -20,27 +18,6 @@ constexpr double kRestPeriod = 0.02;         ///< time between looks for a chang
 const ros::WallDuration kRestDelay(1);       ///< time without a change until less is published
 constexpr std::uint64_t kTicksPerBatch = 5;  ///< ticks between setpoints, state and feedback; at rest, joint states too
 constexpr std::uint64_t kTicksPerScene = 10;  ///< ticks between updates of the job in rviz
-
-double fraction(double done, double all) { return all == 0 ? 0 : std::clamp(done / all, 0.0, 1.0); }
-
-/// How far a job has come, in cycles of its plan.
-double plannedCycles(const Setpoint& p, const std::vector<std::uint64_t>& move_ends) {
-  const auto begin = static_cast<double>(p.move_index == 0 ? 0 : move_ends[p.move_index - 1]);
-  return begin + p.move_fraction * (static_cast<double>(move_ends[p.move_index]) - begin);
-}
-
-/// X reached in the stroke that the axes make, or from which the wheel was lifted [m].
-double strokeX(const Setpoint& p, const GrindProgram& program) {
-  if (p.move == MoveKind::kStroke) return p.position[kX];
-  const FeedSchedule& schedule = program.schedule(p.tooth);
-  return schedule.x(p.move_fraction * schedule.length());
-}
-
-double strokeFraction(const Setpoint& p, const GrindProgram& program) {
-  const MoveKind move = program.moves()[p.move_index].kind;
-  if (move != MoveKind::kStroke) return phaseOf(move) == PassPhase::kAfter ? 1 : 0;
-  return fraction(strokeX(p, program) - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
-}
 
 flute_grinder::JobProgress toMessage(const Progress& progress) {
   flute_grinder::JobProgress m;
@@ -91,115 +68,71 @@ Telemetry::Telemetry(const ros::NodeHandle& nh, const ros::NodeHandle& private_n
       recorder_watch_(recorderOf(nh, private_nh)),
       robot_status_(nh),
       frames_(model, first_view),
-      scene_(private_nh, first_view),
-      recorder_(private_nh.getNamespace(), machine, tolerances, history),
+      jobs_(private_nh, loop.config().machine.period, machine, tolerances, history, first_view, frames_,
+            [this] { publishState(); }),
       thread_(kTickPeriod, [this] { tick(); }) {
   ros::NodeHandle node(nh), own(private_nh);
   joint_states_ = node.advertise<sensor_msgs::JointState>("joint_states", 10);
   state_ = own.advertise<flute_grinder::GrinderState>("state", 10, true);
   own.setCallbackQueue(thread_.queue());
-  setpoints_ = own.advertise<flute_grinder::SetpointBatch>(
-      "setpoints", 1000, [this](const auto& peer) { recorder_watch_.connect(peer.getSubscriberName()); },
-      [this](const auto& peer) { recorder_watch_.disconnect(peer.getSubscriberName()); });
+  jobs_.advertise(own, recorder_watch_);
   diagnostic_updater_.setHardwareID(own.param<std::string>("hardware/type", ""));
   diagnostics_.addTo(diagnostic_updater_);
   recorder_watch_.addTo(diagnostic_updater_);
   diagnostics_period_ = ros::WallDuration(std::clamp(diagnostic_updater_.getPeriod(), kTickPeriod, 3600.0));
   next_diagnostics_ = ros::SteadyTime::now() + diagnostics_period_;
-  batch_.period = loop.config().machine.period;
 }
 
 Telemetry::~Telemetry() {
   thread_.stop();
-  // Its subscribers are reported to the thread's queue.
-  setpoints_.shutdown();
+  jobs_.shutDown();
 }
 
 void Telemetry::show(std::shared_ptr<const PlannedJob> plan, const std::string& job_name) {
   thread_.post([this, plan = std::move(plan), job_name, offsets = offsets_.offsets()] {
-    // While a job runs, that job is shown.
-    if (!jobs_.empty() || scene_cleared_) return;
-    showJob(*plan, job_name, false);
-    shown_with_ = offsets;
+    if (jobs_.showPlan(*plan, job_name, offsets)) last_change_ = ros::SteadyTime::now();
   });
 }
 
 void Telemetry::announceJob(std::uint64_t number, const std::string& goal_id, const std::string& job_name,
                             std::shared_ptr<const PlannedJob> plan, std::shared_ptr<JobRecord> record) {
   thread_.post([this, number, goal_id, job_name, plan = std::move(plan), record = std::move(record)] {
-    jobs_.push_back({number, goal_id, job_name, plan});
-    recorder_.announce(number, record);
+    jobs_.announce(number, goal_id, job_name, plan, record);
   });
 }
 
 void Telemetry::withdrawJob(std::uint64_t number) {
-  thread_.post([this, number] {
-    if (jobs_.empty() || jobs_.back().number != number) return;
-    jobs_.pop_back();
-    recorder_.withdraw(number);
-  });
+  thread_.post([this, number] { jobs_.withdraw(number); });
 }
 
 void Telemetry::concludeJob(std::uint64_t number, const JobConclusion& conclusion) {
-  thread_.post([this, number, conclusion] { recorder_.conclude(number, conclusion); });
+  thread_.post([this, number, conclusion] { jobs_.conclude(number, conclusion); });
 }
 
 void Telemetry::clearScene() {
-  thread_.post([this] {
-    scene_cleared_ = true;
-    for (Job& job : jobs_) job.shown = false;
-    shown_with_.reset();
-    scene_.clear();
-  });
-}
-
-/// @param ground whether the plan's job begins; if not, it is only planned.
-void Telemetry::showJob(const PlannedJob& plan, const std::string& name, bool ground) {
-  const GrindJob& job = *plan.program->job();
-  const std::string operation = job.operationText();
-  last_change_ = ros::SteadyTime::now();
-  shown_with_.reset();
-  frames_.show(plan.program, plan.edges);
-  scene_.show(plan.program, plan.edges, plan.program->job().digest(), plan.program->run().first,
-              (ground ? "Ground: " : "Planned: ") + jobText(name, operation, job.cutter, job.tooth_angles.size()));
-}
-
-/// Removes the plan from rviz once its zero points or the wheel have changed: it would be shown in the wrong place.
-void Telemetry::discardStalePlan() {
-  if (!shown_with_ || !jobs_.empty()) return;
-  const WorkOffsets offsets = offsets_.offsets();
-  const Axes now = offsets.values(), then = shown_with_->values();
-  if ((now == then).all() && offsets.wheel.mounting == shown_with_->wheel.mounting) return;
-  shown_with_.reset();
-  scene_.discard();
+  thread_.post([this] { jobs_.clearScene(); });
 }
 
 void Telemetry::tick() {
-  readRecords();
+  readSamples();
   logHang();
   if (samples_read_ == 0) return;
   recorder_watch_.look(ros::SteadyTime::now());
-  Job* job = running();
-  if (job && !job->shown && !scene_cleared_) {
-    showJob(*job->plan, job->name, true);
-    job->shown = true;
-  }
+  jobs_.showRunning();
   const bool begins = setPace();
   const bool batch_due = ++ticks_ % kTicksPerBatch == 0 || begins;
   if (batch_due || !resting_) {
     publishJointStates();
-    frames_.publish(sample_.position, offsets_.offsets().values(), job ? job->last.tooth : 0, ros::Time(sample_.time));
+    const Setpoint* last = jobs_.last();
+    frames_.publish(sample_.position, offsets_.offsets().values(), last ? last->tooth : 0, ros::Time(sample_.time));
   }
   if (batch_due) {
-    discardStalePlan();
-    publishBatch();
+    jobs_.discardStalePlan(offsets_.offsets());
+    jobs_.publishBatch();
     publishState();
-    makeFeedback();
+    jobs_.makeFeedback(sample_);
   }
-  if (ticks_ % kTicksPerScene == 0 && !scene_cleared_) {
-    scene_.greet();
-    if (job && job->shown) scene_.update();
-  }
+  if (ticks_ % kTicksPerScene == 0) jobs_.updateScene();
   publishDiagnostics();
 }
 
@@ -228,21 +161,13 @@ void Telemetry::publishDiagnostics() {
   diagnostic_updater_.force_update();
 }
 
-Telemetry::Job* Telemetry::running() { return jobs_.empty() ? nullptr : &jobs_.front(); }
-
-void Telemetry::readRecords() {
+void Telemetry::readSamples() {
   while (loop_.pop(sample_)) {
     ++samples_read_;
-    processRecord();
+    diagnostics_.add(sample_);
+    logFault();
+    jobs_.add(sample_, samples_read_ + sample_.samples_lost);
   }
-}
-
-void Telemetry::processRecord() {
-  diagnostics_.add(sample_);
-  logFault();
-  // If the sample of a job's end was lost, a sample of a later job ends that job.
-  while (jobs_.size() > 1 && sample_.job > jobs_.front().number) endJob(jobs_.front());
-  if (!jobs_.empty() && sample_.job == jobs_.front().number) trackJob(jobs_.front());
 }
 
 void Telemetry::logHang() {
@@ -280,54 +205,6 @@ void Telemetry::logFault() {
   in_fault_ = in_fault;
 }
 
-void Telemetry::trackJob(Job& job) {
-  JobRecord& job_record = recorder_.of(job.number);
-  job_record.addCycle(sample_);
-  if (sample_.has_setpoint) job.buffered.push_back({cycle(), sample_.period, sample_.setpoint});
-  // A drive may buffer commands: publish a setpoint with the positions of the cycle before it reaches the axes.
-  auto& buffered = job.buffered;
-  while (!buffered.empty() && buffered.front().cycle + sample_.drive.commands_waiting <= cycle()) {
-    job.last = buffered.front().setpoint;
-    if (job.shown) scene_.add(job.last, workPosition(job));
-    job_record.addSetpoint(job.last, sample_);
-    addToBatch(job, buffered.front());
-    buffered.pop_front();
-  }
-  if (sample_.job_ended) endJob(job);
-}
-
-void Telemetry::addToBatch(Job& job, const Buffered& written) {
-  const Setpoint& setpoint = written.setpoint;
-  const std::uint64_t lost = setpoint.cycle - job.next_cycle;
-  job.next_cycle = setpoint.cycle + 1;
-  recorder_.of(job.number).addLost(lost);
-  if (lost > 0) publishBatch();
-  if (batch_.setpoints.empty()) {
-    batch_.header.stamp = ros::Time(sample_.time);
-    batch_.goal_id = job.goal_id;
-    batch_.lost = lost;
-  }
-  batch_.setpoints.push_back(toMessage(setpoint, workPosition(job), written.period));
-  batch_.end_stamp = ros::Time(sample_.time);
-  job.max_error = std::max(job.max_error, std::abs(setpoint.path_error));
-}
-
-/// The position read, in the job's work coordinates.
-Axes Telemetry::workPosition(const Job& job) const { return sample_.position - job.plan->program->run().offset; }
-
-void Telemetry::endJob(Job& job) {
-  // Setpoints that were written but never reached the axes.
-  for (const Buffered& unplayed : job.buffered) addToBatch(job, unplayed);
-  publishBatch();
-  makeFeedback();
-  if (job.shown) scene_.end();
-  const std::uint64_t number = job.number;
-  recorder_.end(number);
-  jobs_.pop_front();
-  publishState();
-  jobs_published_ = number;
-}
-
 void Telemetry::publishJointStates() {
   sensor_msgs::JointState message;
   message.header.stamp = ros::Time(sample_.time);
@@ -337,12 +214,6 @@ void Telemetry::publishJointStates() {
     message.velocity.push_back(sample_.velocity[i]);
   }
   joint_states_.publish(message);
-}
-
-void Telemetry::publishBatch() {
-  if (batch_.setpoints.empty()) return;
-  setpoints_.publish(batch_);
-  batch_.setpoints.clear();
 }
 
 void Telemetry::publishState() {
@@ -376,11 +247,10 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
     message.distance_to_go[static_cast<std::size_t>(axis)] = sample_.distance_to_go[axis];
     message.work_position[static_cast<std::size_t>(axis)] = sample_.position[axis] - offset[axis];
   }
-  if (!jobs_.empty()) {
-    const Setpoint& last = jobs_.front().last;
-    message.feed = last.feed;
-    message.tooth = last.tooth;
-    message.pass = last.pass;
+  if (const Setpoint* last = jobs_.last()) {
+    message.feed = last->feed;
+    message.tooth = last->tooth;
+    message.pass = last->pass;
   }
   const Reason fault = reasonOf(sample_.fault);
   message.fault = text(fault);
@@ -392,39 +262,6 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.journal_error = journal.error;
   message.journal_damaged = static_cast<std::uint8_t>(!journal.damage.empty());
   return message;
-}
-
-void Telemetry::makeFeedback() {
-  Job* job = running();
-  if (!job) return;
-  const Setpoint& p = job->last;
-  const PlannedJob& plan = *job->plan;
-  const double done = plannedCycles(p, plan.move_ends);
-  const auto all = static_cast<double>(plan.move_ends.back());
-  flute_grinder::GrindFeedback feedback;
-  feedback.state = toString(sample_.state);
-  feedback.planned = 1;
-  feedback.tooth = p.tooth;
-  feedback.pass = p.pass;
-  feedback.x = p.position[kX];
-  feedback.stroke_fraction = strokeFraction(p, *plan.program);
-  feedback.job_fraction = fraction(done, all);
-  feedback.remaining_time = std::max(0.0, all - done) * batch_.period;
-  feedback.feed = p.feed;
-  feedback.path_error = job->max_error;
-  job->max_error = 0;
-  const std::lock_guard<std::mutex> lock(feedback_mutex_);
-  if (feedback_ && feedback_number_ == job->number) {
-    feedback.path_error = std::max(feedback.path_error, feedback_->path_error);
-  }
-  feedback_number_ = job->number;
-  feedback_ = std::move(feedback);
-}
-
-std::optional<flute_grinder::GrindFeedback> Telemetry::takeFeedback(std::uint64_t number) {
-  const std::lock_guard<std::mutex> lock(feedback_mutex_);
-  if (feedback_number_ != number) return std::nullopt;
-  return std::exchange(feedback_, std::nullopt);
 }
 
 }  // namespace grinder

@@ -1,14 +1,11 @@
 #pragma once
 
-#include "flute_grinder/GrindFeedback.h"
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/SetpointBatch.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/control/loop_watchdog.h"
-#include "flute_grinder/scene/scene.h"
 #include "node/diagnostics.h"
 #include "node/frames.h"
-#include "node/job_recorder.h"
+#include "node/job_feed.h"
 #include "node/journal.h"
 #include "node/offset_store.h"
 #include "node/recorder_watch.h"
@@ -18,20 +15,16 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
-#include <atomic>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace grinder {
 
-/// Publishes what the control loop does: joint states, `~state`, `~setpoints`, the frames and markers for rviz, and
-/// diagnostics; computes a goal's feedback, which GoalServer publishes; and gathers the records of jobs for the
-/// history. Its own thread reads the loop's samples; nothing blocks on it. If it falls too far behind, samples are
-/// lost, and it reports how many. While nothing changes, it publishes less often.
+/// Publishes what the control loop does: joint states, `~state`, the frames for rviz, and diagnostics; JobFeed does
+/// what concerns a job. Its own thread reads the loop's samples; nothing blocks on it. If it falls too far behind,
+/// samples are lost, and it reports how many. While nothing changes, it publishes less often.
 class Telemetry {
  public:
   /// @param nh the node's namespace, for joint_states.
@@ -57,7 +50,7 @@ class Telemetry {
   void announceJob(std::uint64_t number, const std::string& goal_id, const std::string& job_name,
                    std::shared_ptr<const PlannedJob> plan, std::shared_ptr<JobRecord> record);
   /// The feedback of a job that was computed since the last call, if there is one. Thread safe; never blocks.
-  std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number);
+  std::optional<flute_grinder::GrindFeedback> takeFeedback(std::uint64_t number) { return jobs_.takeFeedback(number); }
   /// Withdraws the job announced last, because it will not start. Thread safe; never blocks.
   void withdrawJob(std::uint64_t number);
   /// Hands over the result of a job, for its record. Thread safe; never blocks.
@@ -66,49 +59,20 @@ class Telemetry {
   void clearScene();
 
   /// Number of the last job whose setpoints have all been published. Thread safe.
-  std::uint64_t jobsPublished() const { return jobs_published_; }
+  std::uint64_t jobsPublished() const { return jobs_.published(); }
 
  private:
-  /// A setpoint in the drive's buffer.
-  struct Buffered {
-    std::uint64_t cycle;  ///< the loop's cycle that generated the setpoint
-    double period;        ///< measured period of that cycle [s]
-    Setpoint setpoint;
-  };
-
-  struct Job {
-    std::uint64_t number;
-    std::string goal_id, name;
-    std::shared_ptr<const PlannedJob> plan;
-    bool shown = false;
-    Setpoint last{};                  ///< the last setpoint that reached the axes
-    double max_error = 0;             ///< largest error since the last feedback [rad]
-    std::uint64_t next_cycle = 0;     ///< cycle of the next setpoint to publish
-    std::deque<Buffered> buffered{};  ///< setpoints written but not yet published
-  };
-
-  void showJob(const PlannedJob& plan, const std::string& name, bool ground);
-  void discardStalePlan();
   void tick();
   bool setPace();
   flute_grinder::GrinderState stateMessage() const;
-  void readRecords();
-  void processRecord();
+  void readSamples();
   void logFault();
   void logHang();
   LoopFault hang() const;
   void replaceByHang(flute_grinder::GrinderState& message) const;
-  void trackJob(Job& job);
-  void addToBatch(Job& job, const Buffered& written);
-  Axes workPosition(const Job& job) const;
-  void endJob(Job& job);
   void publishJointStates();
   void publishDiagnostics();
-  void publishBatch();
   void publishState();
-  void makeFeedback();
-  Job* running();
-  std::uint64_t cycle() const { return samples_read_ + sample_.samples_lost; }  ///< the loop's cycles since its start
 
   ControlLoop& loop_;
   const Journal& journal_;
@@ -116,32 +80,23 @@ class Telemetry {
   const History& history_;
   Diagnostics diagnostics_;
   diagnostic_updater::Updater diagnostic_updater_;
-  ros::Publisher joint_states_, state_, setpoints_;
+  ros::Publisher joint_states_, state_;
   RecorderWatch recorder_watch_;
   RobotStatus robot_status_;
   Frames frames_;
-  Scene scene_;
-  std::optional<WorkOffsets> shown_with_;  ///< work offsets of the plan shown; nothing if no plan is shown
+  JobFeed jobs_;
 
   CycleSample sample_;  ///< the latest sample
   std::uint64_t samples_read_ = 0;
   bool in_fault_ = false;  ///< the previous sample was in state kFault
   const LoopWatchdog* watchdog_ = nullptr;
   LoopWatchdog::Finding finding_ = LoopWatchdog::Finding::kRuns;  ///< last finding of the watchdog
-  std::deque<Job> jobs_;                                          ///< jobs announced; the first may be running
-  JobRecorder recorder_;
-  std::mutex feedback_mutex_;  ///< guards the next two members
-  std::uint64_t feedback_number_ = 0;
-  std::optional<flute_grinder::GrindFeedback> feedback_;  ///< feedback of job feedback_number_, not taken yet
-  bool scene_cleared_ = false;
-  flute_grinder::SetpointBatch batch_;
   std::uint64_t ticks_ = 0;
   ros::SerializedMessage last_state_;  ///< last state published, without its stamp
   ros::SteadyTime last_change_;        ///< time of the last change of anything published
   bool resting_ = false;
   ros::WallDuration diagnostics_period_;
   ros::SteadyTime next_diagnostics_;
-  std::atomic<std::uint64_t> jobs_published_{0};
 
   ServedQueue thread_;  ///< last member, so that it stops before the others are destroyed
 };

@@ -1,19 +1,14 @@
 #pragma once
 
 #include "flute_grinder/control/command_history.h"
-#include "flute_grinder/control/cycle_sample.h"
 #include "flute_grinder/control/drive_checks.h"
-#include "flute_grinder/control/drive_preparation.h"
-#include "flute_grinder/control/jog.h"
-#include "flute_grinder/control/loop_config.h"
-#include "flute_grinder/control/loop_status.h"
+#include "flute_grinder/control/drive_link.h"
+#include "flute_grinder/control/job_run.h"
+#include "flute_grinder/control/jogging.h"
+#include "flute_grinder/control/loop_state.h"
+#include "flute_grinder/control/power.h"
 #include "flute_grinder/control/request_box.h"
 #include "flute_grinder/control/seq_lock.h"
-#include "flute_grinder/control/wheel_watch.h"
-#include "flute_grinder/drive/drive.h"
-#include "flute_grinder/motion/axis_move.h"
-#include "flute_grinder/motion/limit_check.h"
-#include "flute_grinder/motion/setpoint_stream.h"
 
 #include <boost/lockfree/policies.hpp>
 #include <boost/lockfree/spsc_queue.hpp>
@@ -21,9 +16,7 @@
 #include <pthread.h>
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
-#include <optional>
 #include <thread>
 
 namespace grinder {
@@ -50,10 +43,10 @@ class ControlLoop : public RequestBox {
 
   /// For the watchdog, to be called before and after the drive's powerOff(). If the loop runs again after all, it
   /// reports a drive fault, and gives no power until powerOff() has returned. Thread safe; never waits.
-  void beginPowerOff() noexcept { power_off_ = PowerOff::kCalled; }
-  void endPowerOff() noexcept { power_off_ = PowerOff::kReturned; }
+  void beginPowerOff() noexcept { power_.beginPowerOff(); }
+  void endPowerOff() noexcept { power_.endPowerOff(); }
   /// Whether the drive's powerOff() is in progress. Thread safe.
-  bool isPoweringOff() const noexcept { return power_off_ == PowerOff::kCalled; }
+  bool isPoweringOff() const noexcept { return power_.isPoweringOff(); }
 
   /// The status of the most recent cycle. For any thread; never waits.
   LoopStatus status() const noexcept { return status_.load(); }
@@ -75,37 +68,16 @@ class ControlLoop : public RequestBox {
   bool isOwnThread() const noexcept { return pthread_equal(own_thread_, pthread_self()) != 0; }
   bool realtimeScheduling() const { return realtime_scheduling_; }
   bool memoryLocked() const { return memory_locked_; }
-  const LoopConfig& config() const { return config_; }
+  const LoopConfig& config() const { return now_.config; }
   /// Whether the drive's prepare() is in progress. Thread safe.
-  bool isPreparing() const noexcept {
-    return preparation_ && preparation_->state() == DrivePreparation::State::kPreparing;
-  }
-  const DriveCapabilities& capabilities() const { return capabilities_; }  ///< capabilities of the drive
+  bool isPreparing() const noexcept { return power_.isPreparing(); }
+  const DriveCapabilities& capabilities() const { return link_.capabilities(); }  ///< capabilities of the drive
 
  private:
-  using Clock = std::chrono::steady_clock;
-  using AxisFlags = Eigen::Array<bool, kAxisCount, 1>;
-
-  /// Progress of the drive's powerOff() since the loop last looked.
-  enum class PowerOff : std::uint8_t { kNotCalled, kCalled, kReturned };
-
   void run();
 
-  /// Calls the drive; an exception becomes a drive fault in the next readDrive().
-  template <typename Call>
-  void callDrive(const char* function, const Call& call) noexcept;
-  /// Waits for the next cycle. If the drive's own wait fails, this is a drive fault, and the monotonic clock is used.
-  /// @param last start of the last cycle. @return time since then.
-  ros::Duration awaitCycle(Clock::time_point last) noexcept;
-  /// Tells the drive to switch the power off, after the last cycle.
-  void writeOff(const DriveCycle& cycle) noexcept;
-
   void readDrive(const DriveCycle& cycle);
-  void boundCommandsWaiting();
-  void observeHang();
-  void readSwivel();
-  AxisFlags credibleFrom(const Axes& last, double elapsed) const;
-  void judgeY(bool credible);
+  void judgeY();
   void trackMotion();
   void checkDrive();
   void writeDrive(const DriveCycle& cycle);
@@ -116,106 +88,42 @@ class ControlLoop : public RequestBox {
   Refusal execute(MachineEvent event);
   bool driveCan(MachineEvent event) const;
   Refusal executeStop(MachineEvent event);
+  Answer executeJog(const JogRequest& jog);
   Answer answerTo(MachineEvent event, Refusal refusal) const;
-  Refusal enable();
   void awaitPower();
-  Refusal commandPower();
-  Refusal refusalWithoutPower() const;
-  void answerEnable(Refusal refusal);
   void switchOff();
   Refusal reset();
   Refusal home();
-  Refusal beginJob(const JobStart& job);
-  Refusal resume();
-  Refusal retract();
   Refusal lift();
   double liftTarget() const;
-  Refusal refusalOfWheel() const;
   Refusal setSwivel(double angle);
-  Refusal spindleOn();
-  Refusal switchByHand(bool& commanded, bool on);
-  Axes distanceToGo() const;
-  Interlock openInterlock() const;
-  Answer executeJog(const JogRequest& jog);
-  Refusal jogOn(const JogRequest& jog, Answer& answer);
-  Refusal beginJog(const JogRequest& jog, Answer& answer);
-  Refusal refusalOfSpeed(const JogRequest& jog, Answer& answer) const;
-  Refusal refusalOfPosition(Answer& answer) const;
-  double lowestJog(int axis) const;
+  Refusal switchByHand(MachineEvent event);
 
   void awaitHoming();
-  bool awaitInterlocks();
   void advance();
-  void slowDownIfLate();
   void advanceJob();
-  void advanceLift();
-  void advanceJog();
-  void watchClients();
-  void hearClient();
-  void stopJogWithoutClient();
-  void stopJogOnContact();
-  void endJog();
   bool advanceAxisMove();
-  void checkInterlocks();
-  void commandOfJob();
   void command(const Axes& offset = Axes::Zero());
   bool allReachedAxes();
-  void restJob();
-  bool beginLiftOff();
   void comeToRest();
-  void endJob(JobEnd end);
   void fail(const LoopFault& fault);
-  void apply(MachineEvent event);
 
-  Drive& drive_;
-  const DriveCapabilities capabilities_;
-  const LoopConfig config_;
-  std::optional<DrivePreparation> preparation_;  ///< present if the drive has a prepare()
-
-  // Used only by the control thread.
-  MachineState state_ = MachineState::kDisabled;
-  SetpointStream* stream_ = nullptr;
-  double job_swivel_ = 0;           ///< swivel that the stream's job needs [rad]
-  Axes job_offset_ = Axes::Zero();  ///< machine position - position of the stream's setpoints [m], A [rad]
-  bool in_journal_ = true;          ///< the journal contained the job when it was started
-  AxisMove axis_move_;              ///< motion of the lift or jog
-  bool jogging_ = false;     ///< a jog is in progress; in the middle of a job the job's stream adopts its setpoints
-  bool continuous_ = false;  ///< the jog is continuous
-  bool touched_ = false;     ///< the probe was in contact in the previous cycle
-  bool for_client_ = false;  ///< the jog stops when its client is silent
-  DeadMansSwitch dead_man_;
-  SilenceTimer client_;  ///< silence of a series' client
-  std::uint32_t keep_alives_seen_ = 0;
-  LimitCheck limit_check_;
+  // Used only by the control thread, except for the capabilities and what Power offers to any thread.
+  LoopState now_;
+  DriveLink link_;
   DriveChecks drive_checks_;
-  WheelWatch wheel_;
-  FaultText thrown_;            ///< text of the drive's exception, since the last readDrive()
-  bool has_thrown_ = false;     ///< the drive has thrown since the last readDrive()
-  bool has_hung_ = false;       ///< the drive hung until this cycle
-  bool settled_ = false;        ///< the last two readings agree: every axis can have moved from one to the other
-  bool has_positions_ = false;  ///< all positions have been finite at least once
-  bool y_homed_ = false;        ///< the drive reports the reference, and is not homing
-  DriveFeedback feedback_;
-  Axes command_ = Axes::Zero();
+  Power power_;
+  JobRun job_;
+  Jogging jog_;
   CommandHistory history_;
-  JobTrack written_;                ///< setpoints written for the running job, or else the last one
+  bool y_homed_ = false;            ///< the drive reports the reference, and is not homing
   bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer is empty
-  bool may_lift_off_ = true;        ///< a canceled job lifts the wheel once it has stopped
-  bool power_off_next_ = false;     ///< the power goes off once the axes are at rest
+  bool resets_ = false;             ///< the drive is commanded to clear its fault
   std::uint64_t rested_ = 0;        ///< cycles since the last setpoint
-  DriveCommand drive_command_;
-  bool spindle_ = false;           ///< the spindle is commanded, by a job or by hand
-  bool coolant_ = false;           ///< the coolant is commanded, by a job or by hand
-  bool switched_by_hand_ = false;  ///< spindle or coolant, since the job began or was resumed
-  double waited_ = 0;              ///< time waited for power, the reference, or a job's interlocks [s]
-  bool awaiting_power_ = false;
-  bool preparation_begun_ = false;  ///< prepare() was called for the power awaited
-  double unwanted_power_ = 0;       ///< time for which the drive has reported power that is commanded off [s]
+  double waited_ = 0;               ///< time waited for the reference [s]
   bool homing_seen_ = false;        ///< the drive has reported the homing requested
   bool homing_of_before_ = false;   ///< the drive still reports a homing from before the request
   bool homing_over_ = false;        ///< homing has ended, and the axes were read since
-  CycleSample sample_;
-  LoopStatus next_status_;  ///< published at the end of the cycle
 
   SeqLock<LoopStatus> status_;
   boost::lockfree::spsc_queue<CycleSample, boost::lockfree::capacity<8192>> samples_;
@@ -224,7 +132,6 @@ class ControlLoop : public RequestBox {
   std::atomic<double> feed_override_{1};
   std::atomic<bool> running_{false};
   std::atomic<bool> ended_{false};
-  std::atomic<PowerOff> power_off_{PowerOff::kNotCalled};
   std::atomic<pthread_t> own_thread_{};
   std::atomic<bool> realtime_scheduling_{false};
   std::atomic<bool> memory_locked_{false};

@@ -95,14 +95,16 @@ class RequestBox {
   /// Reports that the client of a series is alive. Thread safe.
   void keepAlive() noexcept { keep_alives_.fetch_add(1, std::memory_order_relaxed); }
 
+  // For the loop and its parts. Real-time safe.
+  std::uint64_t jobInJournal() const noexcept { return job_in_journal_.load(std::memory_order_acquire); }
+  std::uint32_t keepAlives() const noexcept { return keep_alives_.load(std::memory_order_relaxed); }
+
  protected:
   /// @param enable_timeout longest allowed time from an enable to its answer [s].
   explicit RequestBox(double enable_timeout) noexcept : enable_timeout_(enable_timeout) {}
   ~RequestBox() = default;
 
   // For the loop, which takes the requests and answers them. Real-time safe.
-  std::uint64_t jobInJournal() const noexcept { return job_in_journal_.load(std::memory_order_acquire); }
-  std::uint32_t keepAlives() const noexcept { return keep_alives_.load(std::memory_order_relaxed); }
   StopRequests stops_;
   RequestSlot<JobStart> job_starts_;
   RequestSlot<JogRequest> jogs_;

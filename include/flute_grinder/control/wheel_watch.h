@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/control/loop_requests.h"
 #include "flute_grinder/control/loop_status.h"
 
 #include <optional>
@@ -13,6 +14,11 @@ class WheelWatch {
   explicit WheelWatch(const Wheel& wheel) noexcept : wheel_(wheel) {}
 
   const Wheel& wheel() const noexcept { return wheel_; }
+  /// Why only a lift may move the wheel; kNone if any motion may.
+  Refusal refusal() const noexcept {
+    if (!wheel_.in_work) return Refusal::kNone;
+    return wheel_.known ? Refusal::kInWork : Refusal::kMayBeInWork;
+  }
 
   /// To be called when a job starts.
   void startJob(const Wheel& wheel) noexcept {

@@ -276,7 +276,7 @@ class TestDamagedJournal(JournalTest):
         self.assertRegex(self.said('status'), r'(?m)^wheel in work +no$')
         with open(self.journal, 'rb') as file:
             self.assertEqual(file.read(), b'nothing of a journal', 'it is left as it is until the next job')
-        self.assertRegex(self.client.send(self.job, answers=['ignore-offsets']).wait().text, 'its checksum is missing; .*, or discard it$')
+        self.assertRegex(self.client.send(self.job, answers=['ignore-offsets']).wait().text, 'its checksum is missing; .*, or discard it; answer: discard$')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
         self.check_reported(self.wait_finished())
 

@@ -578,7 +578,7 @@ class TestRecordOfTheGrinder(ReportCase):
         # Nothing was touched off, and the check was ignored.
         self.assertEqual(page.rows['flute'][:3], ['straight', '100', '0'])
         self.assertIn(['flute', *['never set'] * 4, ''], page.tables['Operations'])
-        self.assertIn('Ground without the check of the zero points (--ignore-offset-check): flute.', page.text)
+        self.assertIn('Ground without the check of the zero points (--answer ignore-offsets): flute.', page.text)
 
     def test_last_is_the_newest(self):
         done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder']})

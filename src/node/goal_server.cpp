@@ -148,7 +148,7 @@ std::vector<Need> GoalServer::needsOf(const Goal& goal, const WorkOffsets& offse
     if (need) needs.push_back(std::move(*need));
   };
   add(tracker_.need(digest, firstOf(asked)));
-  if (!gives(asked.answers, NeedAnswer::kDiscard)) add(tracker_.offsetNeed(digest, firstOf(asked), offsets));
+  add(tracker_.offsetNeed(digest, firstOf(asked), offsets));
   // A job that is continued needs only the offsets with which it began; a relief also needs edges that are still where
   // they were.
   const bool placed = asked.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
@@ -184,6 +184,7 @@ void GoalServer::carryOutAnswers() {
   if (!unknown.empty()) return refuse(result(flute_grinder::GrindResult::NOT_READY, unknown));
   const std::vector<Need> needs = needsOf(*goal_, offsets);
   for (const Need& need : needs) {
+    if (need.kind == NeedKind::kSwivel) goal_->swivel_confirmed = isAnswered(need, asked.answers);
     for (const NeedAnswer answer : need.answers) {
       if (!rowOf(answer).changes_plan || !isAnswered(need, answer, asked.answers)) continue;
       goal_->answered = offsets_.carryOut(answer, basisOf(asked, OffsetMethod::kUnknown), asked.sent_by);
@@ -275,8 +276,7 @@ void GoalServer::startJob() {
       goal_->number, handle.getGoalID().id, asked.job_name, goal_->plan,
       std::make_shared<JobRecord>(plan, JobNames{asked.job_name, asked.wheel_name, asked.wheel_dressed}, goal_->offsets,
                                   gives(asked.answers, NeedAnswer::kIgnoreOffsets)));
-  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false,
-                       gives(asked.answers, NeedAnswer::kConfirmSwivel)};
+  const JobStart start{goal_->stream.get(), wheelOf(*plan.program), false, goal_->swivel_confirmed};
   bool posted = false;
   const bool started = gate_.start([&](bool held) {
     posted = loop_.startJob(start);

@@ -49,6 +49,7 @@ class GoalServer {
     Phase phase = Phase::kAnswering;
     std::future<std::string> answered{};  ///< why an answer was not carried out, once it has been tried
     WorkOffsets offsets{};                ///< those of the plan; from then to the end of the goal they cannot change
+    bool swivel_confirmed = false;        ///< an answer confirms the swivel, which the loop is to take with the start
     std::vector<Need> needs{};            ///< what a start needs and the goal does not answer
     std::shared_ptr<const PlannedJob> plan{};
     std::unique_ptr<SetpointStream> stream{};  ///< setpoints of the goal's job

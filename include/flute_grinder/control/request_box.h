@@ -20,8 +20,8 @@ struct JobStart {
   /// Whether the journal contains the job. If not, the job waits for confirmJournal() before it moves, as for any other
   /// interlock.
   bool in_journal = true;
-  bool swivel_confirmed =
-      false;  ///< an operator has set the swivel to the job's angle; without effect if the drive measures it
+  /// Whether an operator has set the swivel to the job's angle; without effect if the drive measures it.
+  bool swivel_confirmed = false;
 };
 
 /// Holds other threads' requests to the control loop, and the answers. Stops, job starts, jogs, confirmations of the

@@ -1,7 +1,7 @@
 #include "flute_grinder/check/collision_check.h"
 
 #include "check/closest_search.h"
-#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/require.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,12 +31,6 @@ MachinePart fastened(MachinePart link, Solid solid) {
   solid.pose = link.solid.pose * solid.pose;
   link.solid = std::move(solid);
   return link;
-}
-
-void require(bool good, const char* name, double value, const char* allowed) {
-  if (!good) {
-    throw std::invalid_argument(format("%s = %g; allowed: %s", name, value, allowed));
-  }
 }
 
 CollisionCheck::Pair pairOf(const MachinePart& first, const MachinePart& second) {

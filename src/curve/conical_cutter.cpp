@@ -1,25 +1,11 @@
 #include "flute_grinder/curve/conical_cutter.h"
 
+#include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
 
 #include <cmath>
-#include <limits>
-#include <sstream>
-#include <stdexcept>
 
 namespace grinder {
-
-namespace {
-
-void require(bool good, const char* name, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text.precision(std::numeric_limits<double>::max_digits10);
-  text << "cutter." << name << " = " << value << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
-}
-
-}  // namespace
 
 ConicalCutter::ConicalCutter(const Cone& cone)
     : cone_(cone),
@@ -30,12 +16,12 @@ ConicalCutter::ConicalCutter(const Cone& cone)
       cos_helix_to_generatrix_(1 / std::hypot(1, tan_spiral_ * std::cos(cone.cone_angle))) {
   const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
   const auto acute = [](double v) { return std::abs(v) < units::kPi / 2; };
-  require(positive(cone.end_diameter), "end_diameter", cone.end_diameter, "finite and positive [m]");
-  require(acute(cone.cone_angle), "cone_angle", cone.cone_angle, "within (-pi/2, pi/2) [rad]");
-  require(acute(cone.spiral_angle), "spiral_angle", cone.spiral_angle, "within (-pi/2, pi/2) [rad]");
-  require(acute(cone.rake_angle), "rake_angle", cone.rake_angle, "within (-pi/2, pi/2) [rad]");
-  require(positive(cone.flute_length), "flute_length", cone.flute_length, "finite and positive [m]");
-  require(radius(cone.flute_length) > 0, "cone_angle", cone.cone_angle,
+  require(positive(cone.end_diameter), "cutter.end_diameter", cone.end_diameter, "finite and positive [m]");
+  require(acute(cone.cone_angle), "cutter.cone_angle", cone.cone_angle, "within (-pi/2, pi/2) [rad]");
+  require(acute(cone.spiral_angle), "cutter.spiral_angle", cone.spiral_angle, "within (-pi/2, pi/2) [rad]");
+  require(acute(cone.rake_angle), "cutter.rake_angle", cone.rake_angle, "within (-pi/2, pi/2) [rad]");
+  require(positive(cone.flute_length), "cutter.flute_length", cone.flute_length, "finite and positive [m]");
+  require(radius(cone.flute_length) > 0, "cutter.cone_angle", cone.cone_angle,
           "a cone that does not close before the flute ends");
 }
 

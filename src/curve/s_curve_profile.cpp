@@ -1,9 +1,9 @@
 #include "flute_grinder/curve/s_curve_profile.h"
 
+#include "flute_grinder/base/require.h"
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace grinder {
 
@@ -21,21 +21,20 @@ std::array<Figure, 5> figures(const MotionLimits& limits, double distance, doubl
   const auto limit = [](const char* name, double v) {
     return Figure{v > 0 && std::isfinite(v), name, v, "finite and positive"};
   };
-  return {limit("velocity limit", limits.velocity), limit("acceleration limit", limits.acceleration),
-          limit("jerk limit", limits.jerk),
-          Figure{distance >= 0 && std::isfinite(distance), "distance", distance, "finite, not negative"},
-          Figure{target >= 0 && target <= limits.velocity, "target speed", target, "0 to the velocity limit"}};
+  return {
+      limit("feed law: velocity limit", limits.velocity), limit("feed law: acceleration limit", limits.acceleration),
+      limit("feed law: jerk limit", limits.jerk),
+      Figure{distance >= 0 && std::isfinite(distance), "feed law: distance", distance, "finite, not negative"},
+      Figure{target >= 0 && target <= limits.velocity, "feed law: target speed", target, "0 to the velocity limit"}};
 }
 
 }  // namespace
 
 SCurveProfile::SCurveProfile(const MotionLimits& limits, double distance, double target) {
   if (begin(limits, distance, target)) return;
-  const auto all = figures(limits, distance, target);
-  const Figure& bad = *std::find_if(all.begin(), all.end(), [](const Figure& f) { return !f.good; });
-  std::ostringstream text;
-  text << "feed law: " << bad.name << " = " << bad.value << "; allowed: " << bad.allowed;
-  throw std::invalid_argument(text.str());
+  for (const Figure& figure : figures(limits, distance, target)) {
+    require(figure.good, figure.name, figure.value, figure.allowed);
+  }
 }
 
 bool SCurveProfile::begin(const MotionLimits& limits, double distance, double target) noexcept {

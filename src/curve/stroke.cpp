@@ -1,10 +1,9 @@
 #include "flute_grinder/curve/stroke.h"
 
-#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/require.h"
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace grinder {
 
@@ -19,26 +18,15 @@ double speedOfX(const ConicalCutter& cutter, const LogCurve& curve, double from,
   const auto open = [&](double x) { return positive(curve.u(x)); };
   const double speed = feed.feed / cutter.edgePerTravel();
   const double longest = kMaxOfApex * std::min(curve.u(from), curve.u(to));
-  const struct {
-    bool good;
-    const char* name;
-    double value;
-    const char* allowed;
-  } figures[]{
-      {open(from), "from", from, "where the cone is open"},
-      {open(to), "to", to, "where the cone is open"},
-      {positive(feed.feed), "feed", feed.feed, "finite and positive"},
-      {positive(feed.acceleration), "acceleration", feed.acceleration, "finite and positive"},
-      {positive(feed.jerk), "jerk", feed.jerk, "finite and positive"},
-      {positive(feed.period), "period", feed.period, "finite and positive"},
-      {positive(feed.rotary_scale), "rotary_scale", feed.rotary_scale, "finite and positive"},
-      {std::abs(curve.b()) * speed * feed.period <= longest, "feed", feed.feed,
-       "less, for steps of at most an eighth of the distance to the cone's apex"},
-  };
-  for (const auto& figure : figures) {
-    if (figure.good) continue;
-    throw std::invalid_argument(format("stroke: %s = %.17g; allowed: %s", figure.name, figure.value, figure.allowed));
-  }
+  require(open(from), "stroke: from", from, "where the cone is open");
+  require(open(to), "stroke: to", to, "where the cone is open");
+  require(positive(feed.feed), "stroke: feed", feed.feed, "finite and positive");
+  require(positive(feed.acceleration), "stroke: acceleration", feed.acceleration, "finite and positive");
+  require(positive(feed.jerk), "stroke: jerk", feed.jerk, "finite and positive");
+  require(positive(feed.period), "stroke: period", feed.period, "finite and positive");
+  require(positive(feed.rotary_scale), "stroke: rotary_scale", feed.rotary_scale, "finite and positive");
+  require(std::abs(curve.b()) * speed * feed.period <= longest, "stroke: feed", feed.feed,
+          "less, for steps of at most an eighth of the distance to the cone's apex");
   return speed;
 }
 

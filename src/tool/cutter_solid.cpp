@@ -1,14 +1,13 @@
 #include "flute_grinder/tool/cutter_solid.h"
 
 #include "flute_grinder/base/on_all_cores.h"
+#include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
 namespace grinder {
@@ -261,19 +260,13 @@ class Joiner {
 };
 
 void check(const SolidExtent& extent, const SolidResolution& resolution) {
-  const auto require = [](bool good, const char* name, double value, const char* allowed) {
-    if (good) return;
-    std::ostringstream text;
-    text << "solid: " << name << " = " << value << "; allowed: " << allowed;
-    throw std::invalid_argument(text.str());
-  };
-  require(std::isfinite(extent.from), "from", extent.from, "a finite X [m]");
-  require(extent.to > extent.from && std::isfinite(extent.to), "to", extent.to, "beyond `from`, finite [m]");
-  require(std::isfinite(extent.shank_to), "shank_to", extent.shank_to, "a finite X [m]");
+  require(std::isfinite(extent.from), "solid: from", extent.from, "a finite X [m]");
+  require(extent.to > extent.from && std::isfinite(extent.to), "solid: to", extent.to, "beyond `from`, finite [m]");
+  require(std::isfinite(extent.shank_to), "solid: shank_to", extent.shank_to, "a finite X [m]");
   require(!(extent.shank_to > extent.to) || (extent.shank_diameter > 0 && std::isfinite(extent.shank_diameter)),
-          "shank_diameter", extent.shank_diameter, "positive and finite [m]");
-  require(resolution.sections >= 2, "sections", static_cast<double>(resolution.sections), "from 2");
-  require(resolution.around >= 3, "around", static_cast<double>(resolution.around), "from 3");
+          "solid: shank_diameter", extent.shank_diameter, "positive and finite [m]");
+  require(resolution.sections >= 2, "solid: sections", static_cast<double>(resolution.sections), "from 2");
+  require(resolution.around >= 3, "solid: around", static_cast<double>(resolution.around), "from 3");
 }
 
 }  // namespace

@@ -1,20 +1,13 @@
 #include "flute_grinder/tool/wheel_profile.h"
 
+#include "flute_grinder/base/require.h"
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
-#include <stdexcept>
 
 namespace grinder {
 
 namespace {
-
-void require(bool good, const char* name, double value, const char* allowed) {
-  if (good) return;
-  std::ostringstream text;
-  text << "wheel." << name << " = " << value << " m; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
-}
 
 constexpr double kShortfall = 1e-6;  ///< relative amount by which the largest radius may be too small
 
@@ -22,16 +15,16 @@ constexpr double kShortfall = 1e-6;  ///< relative amount by which the largest r
 
 WheelProfile::WheelProfile(std::vector<ProfilePoint> corners, const std::array<double, 2>& corner_radii)
     : corners_(std::move(corners)), corner_radii_(corner_radii) {
-  require(corners_.size() >= 2, "points", static_cast<double>(corners_.size()), "two or more");
+  require(corners_.size() >= 2, "wheel.points", static_cast<double>(corners_.size()), "two or more");
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    require(corners_[i].radius > 0 && std::isfinite(corners_[i].radius), "radius", corners_[i].radius,
-            "positive and finite");
-    require(std::isfinite(corners_[i].w) && (i == 0 || corners_[i].w > corners_[i - 1].w), "w", corners_[i].w,
-            "finite, ascending");
+    require(corners_[i].radius > 0 && std::isfinite(corners_[i].radius), "wheel.radius", corners_[i].radius,
+            "positive and finite", " m");
+    require(std::isfinite(corners_[i].w) && (i == 0 || corners_[i].w > corners_[i - 1].w), "wheel.w", corners_[i].w,
+            "finite, ascending", " m");
   }
   fillets_ = {fillet(false, corner_radii[0]), fillet(true, corner_radii[1])};
-  require(fillets_[0].to <= fillets_[1].from, "corner_radius", std::max(corner_radii[0], corner_radii[1]),
-          "small enough for both corners to fit");
+  require(fillets_[0].to <= fillets_[1].from, "wheel.corner_radius", std::max(corner_radii[0], corner_radii[1]),
+          "small enough for both corners to fit", " m");
   findMax();
 }
 
@@ -87,7 +80,7 @@ double WheelProfile::slope(double w) const noexcept {
 }
 
 WheelProfile::Fillet WheelProfile::fillet(bool upper, double size) const {
-  require(size >= 0 && std::isfinite(size), "corner_radius", size, "0 or more");
+  require(size >= 0 && std::isfinite(size), "wheel.corner_radius", size, "0 or more", " m");
   const ProfilePoint& corner = upper ? corners_.back() : corners_.front();
   const ProfilePoint& next = upper ? corners_[corners_.size() - 2] : corners_[1];
   if (size == 0) return {corner.w, corner.w, corner.w, corner.radius, 0};
@@ -97,8 +90,9 @@ WheelProfile::Fillet WheelProfile::fillet(bool upper, double size) const {
   const double w = corner.w + inward * size;
   const double radius = corner.radius + slope * (w - corner.w) - size * std::sqrt(1 + slope * slope);
   const double touch = w - size * slope / std::sqrt(1 + slope * slope);
-  require(radius > 0, "corner_radius", size, "less than the wheel's radius allows");
-  require(upper ? touch >= next.w : touch <= next.w, "corner_radius", size, "within the profile's first line");
+  require(radius > 0, "wheel.corner_radius", size, "less than the wheel's radius allows", " m");
+  require(upper ? touch >= next.w : touch <= next.w, "wheel.corner_radius", size, "within the profile's first line",
+          " m");
   return upper ? Fillet{touch, corner.w + 1, w, radius, size} : Fillet{corner.w - 1, touch, w, radius, size};
 }
 

@@ -1,6 +1,6 @@
 #include "flute_grinder/tool/wheel_sweep.h"
 
-#include "flute_grinder/base/format.h"
+#include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
 
 #include <boost/math/tools/minima.hpp>
@@ -9,9 +9,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <stdexcept>
-#include <string>
 #include <tuple>
 
 namespace grinder {
@@ -33,12 +30,7 @@ constexpr double kSameAngle = 1e-12;   ///< angle by which a longer stroke must 
 constexpr double kNearestApex = 1e-3;  ///< distance from the apex, per end radius, where a cone turns endlessly
 constexpr double kSameEnd = 1e-7;      ///< precision with which two searches find the same end [rad]
 
-void requireFinite(const char* name, double value) {
-  if (std::isfinite(value)) return;
-  std::ostringstream text;
-  text << name << " = " << value << "; allowed: a finite number";
-  throw std::invalid_argument(text.str());
-}
+void requireFinite(const char* name, double value) { require(std::isfinite(value), name, value, "a finite number"); }
 
 }  // namespace
 
@@ -67,15 +59,9 @@ WheelSweep::WheelSweep(const ConicalCutter& cutter, const WheelProfile& wheel, d
       tan_cone_(cutter.tanCone()),
       y_per_x_(tan_cone_ + stroke.y_per_x),
       z_per_x_(tan_cone_ * cutter.zPerY()) {
-  if (!(std::abs(setup.swivel) < units::kPi / 2)) {
-    std::ostringstream text;
-    text << "setup.swivel = " << setup.swivel << " rad; allowed: within (-pi/2, pi/2)";
-    throw std::invalid_argument(text.str());
-  }
+  require(std::abs(setup.swivel) < units::kPi / 2, "setup.swivel", setup.swivel, "within (-pi/2, pi/2)", " rad");
   requireFinite("setup.height", setup.height);
-  if (!(cutter.radius(-setup.x_shift) > 0)) {
-    throw std::invalid_argument(format("setup.x_shift = %g m; allowed: less than the way to the apex", setup.x_shift));
-  }
+  require(cutter.radius(-setup.x_shift) > 0, "setup.x_shift", setup.x_shift, "less than the way to the apex", " m");
   for (const double value : {stroke.from, stroke.to, stroke.y, stroke.y_per_x, stroke.a})
     requireFinite("stroke", value);
   for (const PathDeviation& d : stroke.deviations) {
@@ -247,7 +233,8 @@ WheelSweep::Extremum WheelSweep::extremum(double x, double r, const Window& wind
   const int poses = posesOf(x, window);
   std::array<double, kMaxPoses + 1> value;
   const double step = (window.to - window.from) / poses;
-  for (int i = 0; i <= poses; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
+  value[0] = end(window.from);
+  for (int i = 1; i <= poses; ++i) value[static_cast<std::size_t>(i)] = end(window.from + i * step);
   const auto first = std::max_element(value.begin(), value.begin() + poses + 1);
   double best = *first;
   double best_at = static_cast<double>(first - value.begin());

@@ -6,6 +6,7 @@
 #include "cli/report.h"
 #include "cli/tool_output.h"
 #include "flute_grinder/base/file_error.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/record_file.h"
@@ -47,9 +48,8 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
   for (const double x_mm : options.at_mm) {
     const double x = x_mm * kMillimetre;
     if (!(x >= range.from && x <= range.to && ConicalCutter(job.cutter).radius(x) > 0)) {
-      std::ostringstream text;
-      text << "--at " << x_mm << " mm is not on the cutter; allowed: 0 to " << range.to / kMillimetre << " mm";
-      throw std::out_of_range(text.str());
+      throw std::out_of_range(
+          format("--at %g mm is not on the cutter; allowed: 0 to %g mm", x_mm, range.to / kMillimetre));
     }
     at.push_back(x);
   }

@@ -1,9 +1,9 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/motion/work_offsets.h"
 
 #include <cmath>
-#include <sstream>
 
 namespace grinder {
 
@@ -97,11 +97,10 @@ void readAxis(const MachineModel& model, const ParameterReader& p, int axis, Loo
     limits.max_position[axis] = joint.limits->upper;
   }
   if (!(limits.min_position[axis] < limits.max_position[axis])) {
-    std::ostringstream text;
-    text << "parameters " << p.name(ns + "min_position")
-         << ", max_position (or the limits of robot_description): " << limits.min_position[axis] << " to "
-         << limits.max_position[axis] << " " << axisUnit(axis) << "; allowed: the lower below the upper";
-    throw ParameterError(text.str());
+    throw ParameterError("parameters " + p.name(ns + "min_position") +
+                         format(", max_position (or the limits of robot_description): %g to %g %s; allowed: the lower "
+                                "below the upper",
+                                limits.min_position[axis], limits.max_position[axis], axisUnit(axis)));
   }
   limits.max_velocity[axis] = limit(p, name, kVelocity, joint.limits->velocity);
   limits.max_acceleration[axis] = limit(p, name, kAcceleration, 0);

@@ -1,11 +1,11 @@
 #include "flute_grinder/curve/relief_path.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 namespace grinder {
@@ -22,9 +22,7 @@ constexpr int kPlacesOfWidth = 32;     ///< intervals of the rim's width for fin
 double handOf(const ConicalCutter& cutter) { return cutter.cone().cut == CutDirection::kLeftHand ? -1 : 1; }
 
 [[noreturn]] void refuse(const char* name, double value, const char* unit, const std::string& allowed) {
-  std::ostringstream text;
-  text << name << " = " << value << unit << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
+  throw std::invalid_argument(format("%s = %g%s; allowed: %s", name, value, unit, allowed.c_str()));
 }
 
 /// The maximum of a function that rises to it and then falls.
@@ -105,9 +103,8 @@ ReliefPath::ReliefPath(const ConicalCutter& cutter, const ReliefStart& start, co
       return hand * (law.at_middle - contact * law.per_contact) / units::kMillimetre;
     };
     const auto [low, high] = std::minmax({height(rim_from_), height(rim_to_)});
-    std::ostringstream range;
-    range << low << " to " << high << " mm, with the edge on the wheel's rim";
-    refuse("setup.height", wheel.height / units::kMillimetre, " mm", range.str());
+    refuse("setup.height", wheel.height / units::kMillimetre, " mm",
+           format("%g to %g mm, with the edge on the wheel's rim", low, high));
   }
   path_cutter_ = withRake(cutter.cone(), start.radius_part * std::sin(phi_));
   x_shift_ = wheel_radius_ * normal_x_ + contact_ * sin_;

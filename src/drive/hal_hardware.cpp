@@ -1,11 +1,11 @@
 #include "drive/hal_hardware.h"
 
 #include "drive/hal_parameters.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/drive/export_drive.h"
 
 #include <cmath>
 #include <ctime>
-#include <sstream>
 
 namespace grinder {
 
@@ -73,10 +73,8 @@ void HalHardware::checkServoThread(double control_rate) const {
   // Each servo cycle plays one command; at any other rate the axes would move faster or slower than planned.
   const double rate = *pins_->servo_rate;
   if (std::abs(rate - control_rate) <= kRateError * control_rate) return;
-  std::ostringstream text;
-  text << "HAL's servo thread runs at " << rate
-       << " Hz (0 if it was not started); allowed: control_rate = " << control_rate << " Hz";
-  throw ParameterError(text.str());
+  throw ParameterError(format(
+      "HAL's servo thread runs at %g Hz (0 if it was not started); allowed: control_rate = %g Hz", rate, control_rate));
 }
 
 void HalHardware::read(const DriveCycle&, DriveFeedback& feedback) {

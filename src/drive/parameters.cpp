@@ -2,6 +2,7 @@
 
 #include "flute_grinder/base/axes.h"
 #include "flute_grinder/base/did_you_mean.h"
+#include "flute_grinder/base/format.h"
 
 #include <ros/node_handle.h>
 
@@ -102,20 +103,13 @@ std::vector<std::string> ParameterReader::asked(const std::string& begin) const 
 }
 
 double ParameterReader::number(const std::string& path, double min, double max, const About& about) const {
-  std::ostringstream range;
-  range << min << " to " << max;
-  note(path, range.str(), about);
+  const std::string range = format("%g to %g", min, max);
+  note(path, range, about);
   const XmlRpc::XmlRpcValue value = require(path, "a number");
   const std::optional<double> result = numberOf(value);
-  std::ostringstream text;
-  text << "parameter " << name(path) << " = ";
-  if (!result) {
-    text << shown(value) << "; allowed: a number";
-    throw ParameterError(text.str());
-  }
+  if (!result) throw ParameterError("parameter " + name(path) + " = " + shown(value) + "; allowed: a number");
   if (!(*result >= min && *result <= max)) {
-    text << *result << "; allowed: " << range.str();
-    throw ParameterError(text.str());
+    throw ParameterError(format("parameter %s = %g; allowed: ", name(path).c_str(), *result) + range);
   }
   return *result;
 }
@@ -124,9 +118,7 @@ int ParameterReader::whole(const std::string& path, int min, int max, const Abou
   note(path, std::to_string(min) + " to " + std::to_string(max) + ", whole", about);
   const double value = number(path, min, max);
   if (value == std::floor(value)) return static_cast<int>(value);
-  std::ostringstream text;
-  text << "parameter " << name(path) << " = " << value << "; allowed: a whole number";
-  throw ParameterError(text.str());
+  throw ParameterError(format("parameter %s = %g; allowed: a whole number", name(path).c_str(), value));
 }
 
 bool ParameterReader::flag(const std::string& path, const About& about) const {

@@ -1,12 +1,12 @@
 #include "flute_grinder/machine/machine_model.h"
 
 #include "flute_grinder/base/axes.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "machine/strict_urdf.h"
 
 #include <algorithm>
 #include <iterator>
-#include <sstream>
 #include <stdexcept>
 
 namespace grinder {
@@ -59,10 +59,8 @@ MachineModel::MachineModel(const std::string& urdf, const std::string& name) : u
   }
   const Range range = swivel();
   if (-kWidestSwivel < range.from && range.from < range.to && range.to < kWidestSwivel) return;
-  std::ostringstream text;
-  text << "limits of joint " << kSwivel << ": " << range.from << " to " << range.to
-       << " rad; allowed: the lower below the upper, both within -pi/2 to pi/2";
-  refuse(text.str());
+  refuse(format("limits of joint %s: %g to %g rad; allowed: the lower below the upper, both within -pi/2 to pi/2",
+                kSwivel, range.from, range.to));
 }
 
 Range MachineModel::swivel() const {

@@ -1,10 +1,10 @@
 #include "flute_grinder/motion/grind_program.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/reason.h"
 #include "flute_grinder/motion/work_offsets.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -136,10 +136,8 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       std::find_if(passes.begin(), passes.end(), [&](const JobPass& pass) { return pass.place == run.first; });
   if (begin == passes.end()) {
     const ToothPass& last = passes.back().place;
-    std::ostringstream text;
-    text << "first_tooth = " << run.first.tooth << ", first_pass = " << run.first.pass << "; allowed: 0 to "
-         << last.tooth << " and 0 to " << last.pass;
-    throw std::invalid_argument(text.str());
+    throw std::invalid_argument(format("first_tooth = %d, first_pass = %d; allowed: 0 to %d and 0 to %d",
+                                       run.first.tooth, run.first.pass, last.tooth, last.pass));
   }
 
   constexpr std::ptrdiff_t moves_per_pass = 6;

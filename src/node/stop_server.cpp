@@ -1,6 +1,7 @@
 #include "node/stop_server.h"
 
-#include <sstream>
+#include "flute_grinder/base/format.h"
+
 #include <utility>
 
 namespace grinder {
@@ -46,9 +47,7 @@ bool StopServer::onFeedOverride(flute_grinder::SetFeedOverride::Request& request
                                 flute_grinder::SetFeedOverride::Response& response) {
   response.success = loop_.setFeedOverride(request.fraction);
   if (!response.success) {
-    std::ostringstream text;
-    text << "feed override = " << request.fraction << "; allowed: 0 to " << kMaxFeedOverride;
-    response.message = text.str();
+    response.message = format("feed override = %g; allowed: 0 to %g", request.fraction, kMaxFeedOverride);
   }
   return true;
 }

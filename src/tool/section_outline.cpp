@@ -1,5 +1,6 @@
 #include "flute_grinder/tool/section_outline.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
 #include <boost/math/tools/toms748_solve.hpp>
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 
 namespace grinder {
@@ -88,9 +88,8 @@ class Outliner {
     for (std::size_t i = 0; i < grid.teeth; ++i) {
       if (!walls(i).empty()) cut_.push_back(i);
       if (walls(i).core() >= kMinCore) continue;
-      std::ostringstream text;
-      text << "core radius = " << walls(i).core() << " m at x = " << x << " m; allowed: from " << kMinCore << " m";
-      throw std::invalid_argument(text.str());
+      throw std::invalid_argument(
+          format("core radius = %g m at x = %g m; allowed: from %g m", walls(i).core(), x, kMinCore));
     }
   }
 
@@ -341,10 +340,9 @@ std::size_t OutlineGrid::tooth(std::size_t point, CutDirection direction) const 
 std::vector<PolarPoint> sectionOutline(const GroundCutter& cutter, double x, double blank_radius,
                                        const OutlineGrid& grid) {
   if (grid.teeth == 0 || grid.teeth != cutter.teeth().size() || grid.rings < 2 || grid.columns < 1) {
-    std::ostringstream text;
-    text << "grid of " << grid.teeth << " teeth, " << grid.rings << " rings, " << grid.columns
-         << " columns; allowed: the cutter's " << cutter.teeth().size() << " teeth, from 2 rings, from 1 column";
-    throw std::invalid_argument(text.str());
+    throw std::invalid_argument(format(
+        "grid of %zu teeth, %zu rings, %zu columns; allowed: the cutter's %zu teeth, from 2 rings, from 1 column",
+        grid.teeth, grid.rings, grid.columns, cutter.teeth().size()));
   }
   return Outliner(cutter, x, blank_radius, grid).outline();
 }

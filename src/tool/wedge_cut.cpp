@@ -1,10 +1,10 @@
 #include "flute_grinder/tool/wedge_cut.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 namespace grinder {
@@ -76,9 +76,8 @@ void append(std::vector<Polygon>& all, Polygon&& polygon) {
 WedgeCut::WedgeCut(const Wedge& wedge)
     : from_(0, -std::sin(wedge.from), std::cos(wedge.from)), to_(0, std::sin(wedge.to), -std::cos(wedge.to)) {
   if (wedge.to > wedge.from && wedge.to - wedge.from < units::kPi) return;
-  std::ostringstream text;
-  text << "wedge from " << wedge.from << " to " << wedge.to << " rad; allowed: rising, by less than half a turn";
-  throw std::invalid_argument(text.str());
+  throw std::invalid_argument(
+      format("wedge from %g to %g rad; allowed: rising, by less than half a turn", wedge.from, wedge.to));
 }
 
 std::vector<Polygon> WedgeCut::outside(const std::array<Vector3d, 3>& triangle) const {

@@ -25,6 +25,30 @@ static_assert(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
 static_assert(+flute_grinder::Reason::X == kX && +flute_grinder::Reason::Y == kY && +flute_grinder::Reason::Z == kZ &&
               +flute_grinder::Reason::A == kA);
 
+flute_grinder::Need toMessage(const Need& need) {
+  flute_grinder::Need message;
+  message.name = toString(need.kind);
+  message.text = need.text;
+  message.question = rowOf(need.kind).question;
+  for (const NeedFigure& figure : need.figures) {
+    flute_grinder::NeedFigure& row = message.figures.emplace_back();
+    row.what = figure.what;
+    row.asked = figure.asked;
+    row.set = figure.set;
+    row.difference = figure.difference;
+  }
+  for (const NeedAnswer answer : need.answers) {
+    const NeedAnswerRow& row = rowOf(answer);
+    flute_grinder::NeedAnswer& offered = message.answers.emplace_back();
+    offered.id = answerId(need, answer);
+    offered.text = row.text;
+    offered.help = row.help;
+    offered.danger = static_cast<std::uint8_t>(row.is_danger);
+    offered.changes_plan = static_cast<std::uint8_t>(row.changes_plan);
+  }
+  return message;
+}
+
 }  // namespace
 
 flute_grinder::Reason toMessage(const Reason& reason) {
@@ -52,6 +76,12 @@ std::vector<flute_grinder::Reason> toMessage(const std::vector<Reason>& reasons)
   std::vector<flute_grinder::Reason> messages;
   messages.reserve(reasons.size());
   for (const Reason& reason : reasons) messages.push_back(toMessage(reason));
+  return messages;
+}
+
+std::vector<flute_grinder::Need> toMessage(const std::vector<Need>& needs) {
+  std::vector<flute_grinder::Need> messages;
+  for (const Need& need : needs) messages.push_back(toMessage(need));
   return messages;
 }
 

@@ -1,8 +1,6 @@
 #include "node/goal_server.h"
 
 #include "flute_grinder/messages/conversions.h"
-#include "flute_grinder/messages/error_codes.h"
-#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/plan_result.h"
 #include "flute_grinder/messages/reasons.h"

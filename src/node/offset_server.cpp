@@ -2,8 +2,8 @@
 
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/base/quantity.h"
-#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/reasons.h"
 #include "node/plain_name.h"
 
 #include <cmath>

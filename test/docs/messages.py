@@ -189,7 +189,7 @@ def enumerators(path, enum):
 
 def fault_codes():
     """The result's code of each kind of fault."""
-    codes = dict(re.findall(r'case FaultClass::k(\w+): return flute_grinder::GrindResult::(\w+);', read('src/messages/error_codes.cpp')))
+    codes = dict(re.findall(r'case FaultClass::k(\w+): return flute_grinder::GrindResult::(\w+);', read('src/messages/plan_result.cpp')))
     rows = re.findall(r'\{FaultKind::k(\w+),[^}]*FaultClass::k(\w+)\}', read('include/flute_grinder/machine/loop_fault.h'))
     return {capitals(kind): codes[fault_class] for kind, fault_class in rows}
 

@@ -16,8 +16,8 @@
 #include "flute_grinder/WorkOffsets.h"
 
 #include "flute_grinder/machine/machine_state.h"
-#include "flute_grinder/messages/needs.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/messages/reasons.h"
 #include "panel_fixture.h"
 
 #include <ros/ros.h>

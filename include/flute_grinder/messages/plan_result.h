@@ -2,6 +2,7 @@
 
 #include "flute_grinder/GrindResult.h"
 #include "flute_grinder/check/planned_job.h"
+#include "flute_grinder/machine/loop_fault.h"
 #include "flute_grinder/tool/tool_figure.h"
 
 #include <string>
@@ -9,6 +10,11 @@
 /// @file
 /// A plan as the result of a goal, and the texts about it that command line and panel share.
 namespace grinder {
+
+/// The GrindResult code for a refused plan.
+int errorCode(PlanFault fault);
+/// The GrindResult code for a fault that ended a job.
+int errorCode(FaultKind fault);
 
 /// The result of a goal that is planned but not run. The caller adds offsets and warnings.
 flute_grinder::GrindResult resultOf(const PlannedJob& plan);

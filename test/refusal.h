@@ -6,12 +6,13 @@
 
 namespace grinder::test_support {
 
-/// What is said of a file where reading or editing it is refused; empty where it is not.
-template <typename Call>
+/// What is said where something is refused; empty where it is not. @tparam Error by default what a file is refused
+/// with.
+template <typename Error = FileError, typename Call>
 std::string refusalOf(const Call& call) {
   try {
     call();
-  } catch (const FileError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
   return "";

@@ -1,4 +1,5 @@
 #include "flute_grinder/base/on_all_cores.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -16,15 +17,11 @@ TEST(OnAllCores, CallsForEachOnceAndThrowsWhatTheFirstInOrderDid) {
     for (const auto& times : calls) EXPECT_EQ(times, 1);
   }
   std::atomic<int> calls{0};
-  try {
-    onAllCores(100, [&](std::size_t i) {
-      ++calls;
-      if (i >= 17) throw std::runtime_error(std::to_string(i));
-    });
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "17");
-  }
+  const auto count_and_throw = [&](std::size_t i) {
+    ++calls;
+    if (i >= 17) throw std::runtime_error(std::to_string(i));
+  };
+  EXPECT_EQ(test_support::refusalOf<std::runtime_error>([&] { onAllCores(100, count_and_throw); }), "17");
   EXPECT_EQ(calls, 100);
 }
 

@@ -2,6 +2,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/check/machine_shapes.h"
 #include "machine.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -70,12 +71,8 @@ TEST(MachineShapes, WhatTurnsWithTheCutterCountsAsWhatItSweeps) {
 
 void expectRefused(const std::string& urdf, const std::string& named) {
   ASSERT_FALSE(urdf.empty());
-  try {
-    shapesOf(urdf);
-    ADD_FAILURE() << "not refused: " << named;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
-  }
+  const std::string said = test_support::refusalOf<std::invalid_argument>([&] { shapesOf(urdf); });
+  EXPECT_NE(said.find(named), std::string::npos) << said << "\nnot: " << named;
 }
 
 TEST(MachineShapes, RefusesWhatItCannotCheckByName) {

@@ -207,15 +207,9 @@ TEST(Operations, ALandIsNotWiderThanTheRimOfThePrimaryReachesBehindTheEdge) {
   GrindJob job = reamer("secondary");
   const double reach = ValidJob(job.ofOperation(1)).relief(0)->reach();
   job.cutter.land = reach * 1.5;
-  try {
-    ValidJob{job};
-    FAIL();
-  } catch (const InvalidJob& error) {
-    const std::string said = error.what();
-    EXPECT_NE(said.find("cutter.land_mm = " + text(Quantity{job.cutter.land, Unit::kMetre})), std::string::npos)
-        << said;
-    EXPECT_NE(said.find("reaches only " + text(Quantity{reach, Unit::kMetre}, 3)), std::string::npos) << said;
-  }
+  const std::string said = refusalOf<InvalidJob>([&] { ValidJob{job}; });
+  EXPECT_NE(said.find("cutter.land_mm = " + text(Quantity{job.cutter.land, Unit::kMetre})), std::string::npos) << said;
+  EXPECT_NE(said.find("reaches only " + text(Quantity{reach, Unit::kMetre}, 3)), std::string::npos) << said;
 }
 
 /// What is ground of the shipped roughing cutter with a primary relief whose wheel, of 100 mm, has the edge at a place

@@ -3,6 +3,7 @@
 #include "cli/last_job.h"
 #include "cli/offsets.h"
 #include "cli/time_text.h"
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -162,18 +163,10 @@ TEST_F(Csv, OfNothingLeavesTheFilesAsTheyWere) {
 }
 
 TEST_F(Csv, ThatCannotBeWrittenIsNamed) {
-  try {
-    const TableCsv table(path("no/such.csv"));
-    FAIL();
-  } catch (const FileError& error) {
-    EXPECT_EQ(error.what(), path("no/such.csv") + ": cannot be written: No such file or directory");
-  }
-  try {
-    TableCsv("/dev/full").close();
-    FAIL();
-  } catch (const WriteError& error) {
-    EXPECT_STREQ(error.what(), "/dev/full: write failed: No space left on device");
-  }
+  EXPECT_EQ(test_support::refusalOf([&] { TableCsv(path("no/such.csv")); }),
+            path("no/such.csv") + ": cannot be written: No such file or directory");
+  EXPECT_EQ(test_support::refusalOf<WriteError>([] { TableCsv("/dev/full").close(); }),
+            "/dev/full: write failed: No space left on device");
 }
 
 }  // namespace test_texts

@@ -1,5 +1,6 @@
 #include "flute_grinder/control/machine_config.h"
 
+#include "refusal.h"
 #include "temp_folder.h"
 #include "yaml_parameters.h"
 
@@ -96,12 +97,7 @@ YAML::Node parameters() {
 }
 
 std::string errorOf(const std::string& urdf, const YAML::Node& p) {
-  try {
-    read(urdf, p);
-  } catch (const ParameterError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::refusalOf<ParameterError>([&] { read(urdf, p); });
 }
 
 std::string errorOf(const YAML::Node& p) { return errorOf(Description().urdf(), p); }

@@ -2,6 +2,7 @@
 
 #include "curve/generators.h"
 #include "reference.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -23,12 +24,7 @@ constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// What is wrong with a cutter; empty where nothing is.
 std::string errorOf(const Cone& geometry) {
-  try {
-    ConicalCutter cutter(geometry);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::refusalOf<std::invalid_argument>([&] { ConicalCutter cutter(geometry); });
 }
 
 RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/log_curve.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -277,12 +278,8 @@ TEST(ReliefPath, RefusesWhatItCannotGrind) {
   EXPECT_THROW(ReliefPath(cutter, start, steep), std::invalid_argument);
   ReliefWheel beside = wheelOf(cutter, start, 100, 6, 30, -3);
   beside.height += 0.01 * kMillimetre;
-  try {
-    ReliefPath(cutter, start, beside);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("setup.height"), std::string::npos) << error.what();
-  }
+  const std::string said = test_support::refusalOf<std::invalid_argument>([&] { ReliefPath(cutter, start, beside); });
+  EXPECT_NE(said.find("setup.height"), std::string::npos) << said;
 }
 
 }  // namespace test_relief_path

@@ -2,6 +2,7 @@
 
 #include "curve/generators.h"
 #include "reference.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -130,12 +131,7 @@ TEST(Stroke, HeldItRestsOnTheCurveAndGoesOnFromThere) {
 }
 
 std::string refusalOf(double from, double to, const StrokeFeed& feed) {
-  try {
-    Stroke(paperCone(), from, to, feed);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::refusalOf<std::invalid_argument>([&] { Stroke(paperCone(), from, to, feed); });
 }
 
 TEST(Stroke, RefusesWhatItCannotRun) {

@@ -1,6 +1,7 @@
 #include "drive/mode_switch.h"
 #include "drive/remote_signals.h"
 #include "drive/ros_control_parameters.h"
+#include "refusal.h"
 #include "soon.h"
 
 #include <gtest/gtest.h>
@@ -227,12 +228,7 @@ class Parameters : public testing::Test {
   }
   RosControlParameters read() const { return readRosControlParameters(ParameterReader(all, "/grinder/hardware")); }
   std::string refusal() const {
-    try {
-      read();
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::refusalOf<ParameterError>([&] { read(); });
   }
   /// Without one of them.
   void remove(const std::string& group, const std::string& name) {

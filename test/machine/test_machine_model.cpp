@@ -1,5 +1,6 @@
 #include "flute_grinder/machine/machine_model.h"
 
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -25,12 +26,9 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 void expectRefused(const std::string& urdf, const std::string& words) {
-  try {
-    MachineModel model(urdf);
-    ADD_FAILURE() << "not refused: " << words;
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what() << "\nnot: " << words;
-  }
+  const std::string said = test_support::refusalOf<std::invalid_argument>([&] { MachineModel model(urdf); });
+  EXPECT_FALSE(said.empty()) << "not refused: " << words;
+  EXPECT_NE(said.find(words), std::string::npos) << said << "\nnot: " << words;
 }
 
 /// The shipped URDF, of which one place after the other is changed.

@@ -2,6 +2,7 @@
 
 #include "curve/reference.h"
 #include "plans.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -40,15 +41,6 @@ const Move& firstOf(const GrindProgram& program, MoveKind kind) {
     if (move.kind == kind) return move;
   }
   throw std::logic_error("no such move");
-}
-
-std::string errorOf(const std::function<void()>& make) {
-  try {
-    make();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
 }
 
 /// Two teeth, three passes.
@@ -129,7 +121,7 @@ TEST(GrindProgram, ContinuesFromAPassOfATooth) {
 
 TEST(GrindProgram, RefusesAFirstPassThatIsNotThere) {
   for (const ToothPass& first : {ToothPass{-1, 0}, ToothPass{2, 0}, ToothPass{0, -1}, ToothPass{0, 3}}) {
-    const std::string error = errorOf([&] { programOf(manyPasses(), first); });
+    const std::string error = test_support::refusalOf<std::invalid_argument>([&] { programOf(manyPasses(), first); });
     EXPECT_TRUE(contains(error, "first_tooth = " + std::to_string(first.tooth))) << error;
     EXPECT_TRUE(contains(error, "first_pass = " + std::to_string(first.pass))) << error;
     EXPECT_TRUE(contains(error, "allowed: 0 to 1 and 0 to 2")) << error;
@@ -166,7 +158,8 @@ TEST(GrindProgram, RefusesAMachineOrAStartThatNoJobMayRunOn) {
     Machine machine = plainMachine();
     Axes start = machine.park;
     row.change(machine, start);
-    const std::string error = errorOf([&] { GrindProgram(ValidJob(paperJob()), machine, start); });
+    const std::string error =
+        test_support::refusalOf<std::invalid_argument>([&] { GrindProgram(ValidJob(paperJob()), machine, start); });
     EXPECT_TRUE(contains(error, row.part)) << row.part << ", got: " << error;
   }
 }

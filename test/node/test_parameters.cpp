@@ -2,6 +2,7 @@
 // overlooked where it is misspelled.
 
 #include "parameter_sections.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -30,12 +31,7 @@ YAML::Node groupOf(YAML::Node tree, const std::string& path, std::string& word) 
 class Parameters : public ::testing::TestWithParam<ParameterSection> {
  protected:
   std::string refusal(const YAML::Node& tree) const {
-    try {
-      GetParam().askedIn(tree);
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::refusalOf<ParameterError>([&] { GetParam().askedIn(tree); });
   }
 
   /// What is said without a parameter, and with another name and value for it.

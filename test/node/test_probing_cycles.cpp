@@ -4,6 +4,7 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
+#include "refusal.h"
 
 #include <cmath>
 #include <memory>
@@ -68,12 +69,7 @@ class ProbingCycles : public ::testing::Test {
   }
 
   std::string refusal(const flute_grinder::ProbeGoal& goal) {
-    try {
-      run(goal);
-    } catch (const ProbingError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::refusalOf<ProbingError>([&] { run(goal); });
   }
 
   static flute_grinder::ProbeGoal goal(std::uint8_t cycle, double within) {

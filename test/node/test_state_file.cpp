@@ -1,5 +1,6 @@
 #include "node/journal.h"
 
+#include "refusal.h"
 #include "soon.h"
 #include "state_file_fixture.h"
 
@@ -135,14 +136,9 @@ TEST_F(SealedFileTest, IsReadByWhoMayNotWriteIt) {
 
 /// That the file is refused to whoever comes now, with the one who has it.
 void expectOwned(const std::string& path, const std::string& owner, pid_t process) {
-  try {
-    SealedFile("journal", path, "/second").read();
-    ADD_FAILURE() << "it has two owners";
-  } catch (const StateFileOwned& error) {
-    EXPECT_EQ(std::string(error.what()), "journal " + path + " is in use by node " + owner + ", process " +
-                                             std::to_string(process) +
-                                             "; allowed: a journal of its own for every node");
-  }
+  EXPECT_EQ(test_support::refusalOf<StateFileOwned>([&] { SealedFile("journal", path, "/second").read(); }),
+            "journal " + path + " is in use by node " + owner + ", process " + std::to_string(process) +
+                "; allowed: a journal of its own for every node");
 }
 
 TEST_F(SealedFileTest, BelongsToOneAtATime) {

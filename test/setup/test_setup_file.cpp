@@ -4,6 +4,7 @@
 #include "flute_grinder/setup/write_setup.h"
 
 #include "jobs.h"
+#include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
@@ -33,12 +34,7 @@ void forEachOperation(const Use& use) {
 }
 
 std::string refusalOf(const std::string& text, GrindJob job) {
-  try {
-    takeSetup(text, "my.setup.yaml", job);
-  } catch (const FileError& error) {
-    return error.what();
-  }
-  return "";
+  return test_support::refusalOf([&] { takeSetup(text, "my.setup.yaml", job); });
 }
 
 RC_GTEST_PROP(SetupFile, IsReadBackToTheLastBit, ()) {
@@ -104,12 +100,7 @@ class WrittenSetup : public ::testing::Test {
   }
 
   std::string refusal(const std::string& operation) const {
-    try {
-      readJobFile(job_, operation);
-    } catch (const FileError& error) {
-      return error.what();
-    }
-    return "";
+    return test_support::refusalOf([&] { readJobFile(job_, operation); });
   }
 
   void write(const char* operation) const {
@@ -147,14 +138,8 @@ TEST_F(WrittenSetup, DoesNotReplaceWhatIsNotItsOwn) {
   for (const std::string& other :
        {std::string("job: other.yaml\nflute: {}\n"), readFile("jobs/paper.yaml"), std::string("[1]")}) {
     std::ofstream(setup_) << other;
-    try {
-      write("flute");
-      ADD_FAILURE() << "written over " << other;
-    } catch (const FileError& error) {
-      EXPECT_NE(std::string(error.what()).find("not written over; name a file of its own in mill.yaml"),
-                std::string::npos)
-          << error.what();
-    }
+    const std::string said = test_support::refusalOf([&] { write("flute"); });
+    EXPECT_NE(said.find("not written over; name a file of its own in mill.yaml"), std::string::npos) << other << said;
     EXPECT_EQ(readFile(setup_), other);
   }
 }
@@ -164,12 +149,8 @@ TEST_F(WrittenSetup, IsNotTakenFromAJobFileWithFigures) {
   const JobToSetUp asked = readJobToSetUp(path);
   ASSERT_TRUE(asked.before.has_value());
   EXPECT_EQ(asked.before->setup_swivel, asked.job.process().setup_swivel);
-  try {
-    writeSetup(asked, asked.job);
-    ADD_FAILURE() << "written";
-  } catch (const FileError& error) {
-    EXPECT_NE(std::string(error.what()).find("put setup: {file: paper.setup.yaml} in place"), std::string::npos);
-  }
+  const std::string said = test_support::refusalOf([&] { writeSetup(asked, asked.job); });
+  EXPECT_NE(said.find("put setup: {file: paper.setup.yaml} in place"), std::string::npos) << said;
   EXPECT_EQ(readFile(path), before);
 }
 

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/tool/section_outline.h"
 
+#include "refusal.h"
 #include "tool/solid_cases.h"
 
 #include <gtest/gtest.h>
@@ -129,13 +130,11 @@ TEST(SectionOutline, RefusesACoreThatIsCutThrough) {
   c.spiral = c.swivel = 0;
   c.depth = 6;
   c.face = 2;
-  try {
+  const std::string said = test_support::refusalOf<std::invalid_argument>([&] {
     outlineOf(c.ground(2), 0.01, {2, 16, 4});
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("core radius = "), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("x = 0.01"), std::string::npos) << error.what();
-  }
+  });
+  EXPECT_NE(said.find("core radius = "), std::string::npos) << said;
+  EXPECT_NE(said.find("x = 0.01"), std::string::npos) << said;
   EXPECT_THROW(outlineOf(cylinder().ground(2), 0.01, {3, 16, 4}), std::invalid_argument);
   EXPECT_THROW(outlineOf(cylinder().ground(2), 0.01, {2, 1, 4}), std::invalid_argument);
   EXPECT_THROW(outlineOf(cylinder().ground(2), 0.01, {2, 16, 0}), std::invalid_argument);

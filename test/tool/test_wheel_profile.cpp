@@ -1,5 +1,6 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/tool/wheel_profile.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -14,12 +15,7 @@ using units::kDegree;
 TEST(WheelProfile, WhatIsNoWheelIsRefusedByName) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](const auto& make, const std::string& name) {
-    try {
-      make();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what()).find(name) != std::string::npos;
-    }
-    return false;
+    return test_support::refusalOf<std::invalid_argument>(make).find(name) != std::string::npos;
   };
   EXPECT_TRUE(refused([] { WheelProfile({{0, 0.05}}); }, "points"));
   EXPECT_TRUE(refused([] { WheelProfile({{0, 0.05}, {0, 0.05}}); }, "w = "));

@@ -45,7 +45,7 @@ QString packageJobs() { return QString::fromStdString(ros::package::getPath("flu
 
 JobBox::JobBox(QWidget* parent)
     : QWidget(parent),
-      name_(new QLabel),
+      name_(namedLabel("job_file")),
       operation_(new OperationChoice),
       choose_(new PanelButton("choose", "Open...", "Choose a job file")),
       setup_(new PanelButton("setup", "Set up...", "Find out how to set the wheel for the tool that the job asks for")),
@@ -73,7 +73,6 @@ JobBox::JobBox(QWidget* parent)
 }
 
 void JobBox::layOut() {
-  name_->setObjectName("job_file");
   name_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
   continue_->setObjectName("continue");
   auto* file = new QHBoxLayout;

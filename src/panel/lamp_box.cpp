@@ -13,8 +13,7 @@ namespace {
 enum class Lamp { kOff, kHalf, kLit };
 
 QLabel* lamp(const char* name, const char* longest) {
-  auto* made = new QLabel;
-  made->setObjectName(name);
+  QLabel* made = namedLabel(name);
   QFont small = made->font();
   small.setPointSize(small.pointSize() - 1);
   made->setFont(small);

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/scene/markers.h"
+#include "panel/text_view.h"
 
 #include <QGridLayout>
 #include <QPainter>
@@ -42,15 +43,10 @@ QString timesText(double scale) {
   return " x " + QString::number(scale, 'g', 3).replace(QRegularExpression("e\\+0*"), "e");
 }
 
-QLabel* label(const char* name) {
-  auto* made = new QLabel;
-  made->setObjectName(name);
-  return made;
-}
-
 }  // namespace
 
-LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cutter")), max_(label("max_error")) {
+LegendBox::LegendBox(QWidget* parent)
+    : QWidget(parent), cutter_(namedLabel("shown_cutter")), max_(namedLabel("max_error")) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(4);
@@ -68,7 +64,7 @@ LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cu
       "Primary reliefs of the ground cutter: how far their clearance is from the one asked",
       "Arrows across the flute: path error of the setpoints, drawn this many times longer"};
   for (std::size_t i = 0; i < scales_.size(); ++i) {
-    scales_[i] = {label(names[i][0]), label(names[i][1])};
+    scales_[i] = {namedLabel(names[i][0]), namedLabel(names[i][1])};
     scales_[i].title->setToolTip(hints[i]);
     const int row = static_cast<int>(i) + 1;
     layout->addWidget(scales_[i].title, row, 0);
@@ -77,7 +73,7 @@ LegendBox::LegendBox(QWidget* parent) : QWidget(parent), cutter_(label("shown_cu
   }
   max_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
   layout->addWidget(max_, 5, 0, 1, 3);
-  auto* lines = label("line_colours");
+  auto* lines = namedLabel("line_colours");
   lines->setText("Flutes: grey planned, magenta being ground. Cyan: the wheel's path.");
   lines->setWordWrap(true);
   layout->addWidget(lines, 6, 0, 1, 3);

@@ -1,6 +1,7 @@
 #include "panel/override_box.h"
 
 #include "flute_grinder/motion/feed_schedule.h"
+#include "panel/text_view.h"
 
 #include <QHBoxLayout>
 #include <QKeyEvent>
@@ -28,14 +29,13 @@ class MouseSlider : public QSlider {
 }  // namespace
 
 OverrideBox::OverrideBox(QWidget* parent)
-    : QWidget(parent), slider_(new MouseSlider(Qt::Horizontal)), value_(new QLabel) {
+    : QWidget(parent), slider_(new MouseSlider(Qt::Horizontal)), value_(namedLabel("override_value")) {
   slider_->setObjectName("override");
   slider_->setRange(0, kMaxPercent);
   slider_->setPageStep(10);
   slider_->setTickInterval(20);
   slider_->setTickPosition(QSlider::TicksBelow);
   slider_->setToolTip("Part of the job's feed; rapids keep their speed");
-  value_->setObjectName("override_value");
   value_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   value_->setMinimumWidth(value_->fontMetrics().horizontalAdvance(QString("%1 %").arg(kMaxPercent)) + 4);
   auto* layout = new QHBoxLayout(this);

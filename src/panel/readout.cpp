@@ -58,17 +58,17 @@ QString feedText(double feed) {
 }  // namespace
 
 StateBox::StateBox(QWidget* parent)
-    : QWidget(parent), node_(new QLabel), swivel_(new QLabel), name_(new QLabel), meaning_(new QLabel) {
-  node_->setObjectName("grinder");
+    : QWidget(parent),
+      node_(namedLabel("grinder")),
+      swivel_(namedLabel("swivel")),
+      name_(namedLabel("state")),
+      meaning_(namedLabel("meaning")) {
   node_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  swivel_->setObjectName("swivel");
-  name_->setObjectName("state");
   name_->setAlignment(Qt::AlignCenter);
   QFont font = name_->font();
   font.setPointSize(font.pointSize() * 3 / 2);
   font.setBold(true);
   name_->setFont(font);
-  meaning_->setObjectName("meaning");
   meaning_->setWordWrap(true);
   meaning_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // Reserve room for the usual texts, so that the buttons below do not move.
@@ -115,13 +115,11 @@ void StateBox::show(const GrinderView& view, const QString& node, Master master)
 
 ProgressBox::ProgressBox(QWidget* parent)
     : QWidget(parent),
-      place_(new QLabel),
-      feed_(new QLabel),
+      place_(namedLabel("place")),
+      feed_(namedLabel("feed")),
       stroke_(makeBar("stroke", "stroke_text")),
       job_(makeBar("job", "job_text")) {
-  place_->setObjectName("place");
   place_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
-  feed_->setObjectName("feed");
   feed_->setAlignment(Qt::AlignRight);
   feed_->setMinimumWidth(feed_->fontMetrics().horizontalAdvance("10000 mm/min"));
   // Changing texts must not make the panel grow.
@@ -142,12 +140,11 @@ ProgressBox::ProgressBox(QWidget* parent)
 }
 
 ProgressBox::Bar ProgressBox::makeBar(const char* name, const char* text_name) {
-  const Bar made{new QProgressBar, new QLabel};
+  const Bar made{new QProgressBar, namedLabel(text_name)};
   made.bar->setObjectName(name);
   made.bar->setRange(0, 1000);
   made.bar->setTextVisible(false);
   made.bar->setFixedHeight(kBarHeight);
-  made.text->setObjectName(text_name);
   return made;
 }
 
@@ -197,15 +194,15 @@ void ProgressBox::showPlanning(double planned) {
   set(job_, "Planning %p %", planned, true);
 }
 
-PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QLabel), decimals_(kFewestDecimals) {
+PositionBox::PositionBox(QWidget* parent)
+    : QWidget(parent), to_go_title_(namedLabel("to_go")), decimals_(kFewestDecimals) {
   auto* layout = new QGridLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->setVerticalSpacing(1);
   QFont font = QFontDatabase::systemFont(QFontDatabase::FixedFont);
   font.setPointSize(font.pointSize() + 2);
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    auto* value = new QLabel;
-    value->setObjectName(QString("position_%1").arg("xyza"[axis]));
+    QLabel* value = namedLabel(QString("position_%1").arg(QChar(axisLetter(axis)).toLower()));
     value->setFont(font);
     value->setMinimumWidth(value->fontMetrics().horizontalAdvance("A -0000.0000 deg"));
     layout->addWidget(value, axis / 2, axis % 2);
@@ -213,14 +210,12 @@ PositionBox::PositionBox(QWidget* parent) : QWidget(parent), to_go_title_(new QL
   }
   auto* to_go = new QHBoxLayout;
   to_go->setSpacing(4);
-  to_go_title_->setObjectName("to_go");
   QFont small = this->font();
   small.setPointSize(small.pointSize() - 1);
   to_go_title_->setFont(small);
   to_go->addWidget(to_go_title_);
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    auto* label = new QLabel;
-    label->setObjectName(QString("to_go_%1").arg("xyza"[axis]));
+    QLabel* label = namedLabel(QString("to_go_%1").arg(QChar(axisLetter(axis)).toLower()));
     label->setFont(small);
     label->setToolTip(QString("Distance to go to the end of the running move in %1").arg(axis == kA ? "deg" : "mm"));
     // A long text must not make the panel grow.

@@ -5,6 +5,7 @@
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/tool/z_law.h"
 #include "panel/plain_words.h"
+#include "panel/text_view.h"
 
 #include <QHBoxLayout>
 #include <QVBoxLayout>
@@ -34,7 +35,7 @@ SectionView::SectionView(QWidget* parent)
       x_(new NumberBox("section_x", kXDecimals)),
       follow_(new QCheckBox("Follow the wheel")),
       drawing_(new SectionDrawing),
-      figures_(new QLabel) {
+      figures_(namedLabel("section_figures")) {
   x_->setSingleStep(0.5);
   x_->setSuffix(" mm");
   x_->setKeyboardTracking(false);
@@ -42,7 +43,6 @@ SectionView::SectionView(QWidget* parent)
   follow_->setObjectName("follow_wheel");
   follow_->setToolTip("Show the section at the wheel's X");
   drawing_->setObjectName("section");
-  figures_->setObjectName("section_figures");
   figures_->setWordWrap(true);
   figures_->setToolTip("In brackets: what the job asks for, and its tolerance");
   figures_->setAlignment(Qt::AlignTop | Qt::AlignLeft);

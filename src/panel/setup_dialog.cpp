@@ -56,7 +56,7 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
       flange_(ros::names::append(grinder, "geometry/flange")),
       sheet_(textView("setup_sheet", kFewestLines)),
       write_(new PanelButton("write_setup", "Write the set-up file", "Write the set-up file that the job file names")),
-      why_not_(new QLabel),
+      why_not_(namedLabel("why_not_written")),
       question_(new Question("write", kWriteLines)),
       buttons_(makeButtons()) {
   setObjectName("setup_dialog");
@@ -81,7 +81,6 @@ SetupDialog::SetupDialog(const QString& file, const std::string& operation, cons
 SetupDialog::~SetupDialog() { stop_ = true; }
 
 QWidget* SetupDialog::makeButtons() {
-  why_not_->setObjectName("why_not_written");
   write_->setEnabled(false);
   auto* close = new PanelButton("close_setup", "Close", "Close the sheet");
   close->setDefault(true);

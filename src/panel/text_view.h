@@ -10,6 +10,13 @@ constexpr const char* kWrong = "#b00020";  ///< colour of faults
 constexpr const char* kGreen = "#1e7d34";
 constexpr const char* kAmber = "#9a5b00";
 
+/// @param name by which tests find it.
+inline QLabel* namedLabel(const QString& name) {
+  auto* label = new QLabel;
+  label->setObjectName(name);
+  return label;
+}
+
 /// A read-only text field that scrolls if there are more lines than fit.
 inline QPlainTextEdit* textView(const char* name, int lines) {
   auto* view = new QPlainTextEdit;

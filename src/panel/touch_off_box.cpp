@@ -4,6 +4,7 @@
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "panel/panel_button.h"
+#include "panel/text_view.h"
 
 #include <QDateTime>
 #include <QGridLayout>
@@ -40,19 +41,17 @@ TouchOffBox::TouchOffBox(QWidget* parent)
           new PanelButton("touch_off", "Touch off", "Set the axis' work offset from where it is now; nothing moves")),
       back_(new PanelButton("touch_back", "Back", "Set the offset that was touched off last to what it was before")),
       reclamped_(new PanelButton("reclamped", "New clamping", "Say that a tool was clamped: another one, or anew")),
-      offset_(new QLabel),
-      tool_(new QLabel),
+      offset_(namedLabel("work_offset")),
+      tool_(namedLabel("tool")),
       question_(new Question("touch", kLinesOfChange)),
       pages_(new QStackedLayout) {
   axis_->setObjectName("touch_axis");
   for (const char name : {'X', 'Y', 'Z', 'A'}) axis_->addItem(QString(name));
-  offset_->setObjectName("work_offset");
   offset_->setWordWrap(true);
   offset_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   // A long text must not make the panel grow.
   offset_->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Ignored);
   offset_->setMinimumHeight(kLinesOfOffset * offset_->fontMetrics().lineSpacing() + 4);
-  tool_->setObjectName("tool");
   tool_->setWordWrap(true);
   tool_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
   auto* form = new QWidget;

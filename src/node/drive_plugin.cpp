@@ -2,15 +2,37 @@
 
 #include "flute_grinder/base/fault_text.h"
 #include "flute_grinder/drive/export_drive.h"
-#include "node/plugin_abi.h"
+
+#include <dlfcn.h>
+#include <link.h>
 
 #include <boost/algorithm/string/join.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
 
 namespace grinder {
 
 namespace {
 
 const std::string kSimulatedDrive = "flute_grinder/SimulatedDrive";
+
+/// The version of the drive interface that a plugin was built against (flute_grinder/drive/export_drive.h). Runs no
+/// code of the plugin.
+/// @param library path of the plugin's library, which has been loaded.
+/// @return nothing if the library itself states no version, even if a library that it is linked with does.
+std::optional<std::uint32_t> driveAbiOf(const std::string& library) {
+  const std::unique_ptr<void, int (*)(void*)> handle(dlopen(library.c_str(), RTLD_LAZY | RTLD_NOLOAD), dlclose);
+  if (!handle) return std::nullopt;
+  const void* abi = dlsym(handle.get(), "flute_grinder_drive_abi");
+  const link_map* loaded = nullptr;
+  Dl_info owner;
+  if (!abi || dlinfo(handle.get(), RTLD_DI_LINKMAP, &loaded) != 0 || dladdr(abi, &owner) == 0) return std::nullopt;
+  // dlsym() also searches the libraries that the plugin is linked with.
+  if (reinterpret_cast<ElfW(Addr)>(owner.dli_fbase) != loaded->l_addr) return std::nullopt;
+  return *static_cast<const std::uint32_t*>(abi);
+}
 
 /// Refuses a loaded plugin that was built against another version of the drive interface.
 void checkAbi(const std::string& parameter, const std::string& library) {

@@ -1,11 +1,11 @@
 #include "node/request_server.h"
 
+#include "flute_grinder/base/format.h"
 #include "node/stamp_age.h"
 
 #include <std_msgs/String.h>
 
 #include <cmath>
-#include <sstream>
 
 namespace grinder {
 
@@ -13,14 +13,22 @@ namespace {
 
 constexpr double kWarningInterval = 1;  ///< time between warnings about the messages of a continuous jog [s]
 
+/// Makes the reply a service's response. @return true, as the service's callback.
+template <typename Response>
+bool answer(const RequestReply& reply, Response& response) {
+  response.success = static_cast<std::uint8_t>(reply.accepted);
+  response.message = reply.text;
+  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
+  return true;
+}
+
 /// Why a message of a continuous jog is too old; empty if it is fresh. An interrupted network may deliver old messages.
 std::string staleness(const flute_grinder::Jog& message, double timeout) {
   const double age = ageOf(message.header.stamp);
   if (std::abs(age) <= timeout) return "";
-  std::ostringstream text;
-  text << "jog refused: the message is " << age << " s old; allowed: up to " << timeout
-       << " s, by clocks that agree; header.stamp must be set";
-  return text.str();
+  return format(
+      "jog refused: the message is %g s old; allowed: up to %g s, by clocks that agree; header.stamp must be set", age,
+      timeout);
 }
 
 }  // namespace
@@ -43,11 +51,7 @@ RequestServer::RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loo
 void RequestServer::serve(ros::NodeHandle& nh, MachineEvent event) {
   const boost::function<bool(std_srvs::Trigger::Request&, std_srvs::Trigger::Response&)> callback =
       [this, event](std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-        const RequestReply reply = execute(event);
-        response.success = reply.accepted;
-        response.message = reply.text;
-        if (!reply.accepted) ROS_WARN_STREAM(reply.text);
-        return true;
+        return answer(execute(event), response);
       };
   services_.push_back(nh.advertiseService(serviceOf(event), callback));
 }
@@ -63,22 +67,14 @@ RequestReply RequestServer::execute(MachineEvent event) {
 
 bool RequestServer::onConfirmSwivel(flute_grinder::ConfirmSwivel::Request& request,
                                     flute_grinder::ConfirmSwivel::Response& response) {
-  const RequestReply reply = loop_.confirmSwivel(request.swivel);
-  response.success = static_cast<std::uint8_t>(reply.accepted);
-  response.message = reply.text;
-  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
-  return true;
+  return answer(loop_.confirmSwivel(request.swivel), response);
 }
 
 bool RequestServer::onJogStep(flute_grinder::JogStep::Request& request, flute_grinder::JogStep::Response& response) {
   JogRequest jog{request.axis, false, request.distance, request.speed};
   const bool named = request.speed != 0 || request.axis >= kAxisCount;
   if (!named) jog.velocity = loop_.config().jog_velocity[request.axis];
-  const RequestReply reply = loop_.jog(jog);
-  response.success = static_cast<std::uint8_t>(reply.accepted);
-  response.message = reply.text;
-  if (!reply.accepted) ROS_WARN_STREAM(reply.text);
-  return true;
+  return answer(loop_.jog(jog), response);
 }
 
 void RequestServer::onJog(const flute_grinder::Jog::ConstPtr& message) {

@@ -146,12 +146,6 @@ int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis
   return callAnswering<flute_grinder::SetOffset>(nh, "set_offset", request) ? 0 : 1;
 }
 
-std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh) {
-  const Latest<flute_grinder::WorkOffsets> watch(nh, "offsets");
-  if (!await(kPatience, [&] { return watch.newest() != nullptr; })) return std::nullopt;
-  return *watch.newest();
-}
-
 std::string offsetRefusal(const std::string& argument) {
   const std::string allowed = "; allowed: AXIS=VALUE, as y=45.2, the axis x, y, z or a, the value in mm or deg";
   if (axisOf(argument) == kAxisCount || argument.size() < 3 || argument[1] != '=') return argument + allowed;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/motion/work_offsets.h"
 
 #include <ros/node_handle.h>
@@ -52,9 +51,6 @@ int sayReclamped(const std::string& node);
 /// @return the exit status.
 int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
                   const std::vector<std::string>& answers);
-
-/// The work offsets; nothing if the grinder does not publish them in time.
-std::optional<flute_grinder::WorkOffsets> workOffsets(ros::NodeHandle& nh);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);

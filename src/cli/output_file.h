@@ -20,8 +20,6 @@ class OutputFile {
  public:
   /// @throw FileError if the file cannot be written, or if the command has read it or writes it already.
   explicit OutputFile(std::string path);
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
   ~OutputFile();
 
   const std::string& path() const { return path_; }

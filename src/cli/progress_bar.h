@@ -17,8 +17,6 @@ class ProgressBar {
   ProgressBar(int teeth, int passes);
   /// Ends the line.
   ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
 
   void show(const flute_grinder::GrindFeedback& feedback);
 

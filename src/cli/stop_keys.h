@@ -18,8 +18,6 @@ class StopKeys {
   /// @param nh the grinder's namespace.
   /// @param watch watch of the same grinder; must outlive this object.
   StopKeys(ros::NodeHandle& nh, const StateWatch& watch);
-  StopKeys(const StopKeys&) = delete;
-  StopKeys& operator=(const StopKeys&) = delete;
   ~StopKeys();
 
   /// Whether the grinder is connected, so that it would receive a hold.

@@ -11,8 +11,6 @@ namespace grinder {
 class DiskThread {
  public:
   DiskThread();
-  DiskThread(const DiskThread&) = delete;
-  DiskThread& operator=(const DiskThread&) = delete;
   /// Waits up to 5 s for the tasks that were posted. After that the disk is presumed dead, and the thread is detached,
   /// with all that its tasks hold.
   ~DiskThread();

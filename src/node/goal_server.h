@@ -26,8 +26,7 @@ namespace grinder {
 /// are polled. One goal at a time; any other is rejected at once.
 class GoalServer {
  public:
-  /// @param private_nh the node's own namespace.
-  /// The other parameters must outlive this object.
+  /// The parameters must outlive this object, except private_nh.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops, Planner& planner,
              Telemetry& telemetry, Journal& journal, OffsetServer& offsets);
   ~GoalServer();

@@ -25,7 +25,6 @@ namespace grinder {
 /// on the spindle and the tool in the collet on `~offsets`. Runs in its own thread, which waits for the disk.
 class OffsetServer {
  public:
-  /// @param private_nh the node's own namespace.
   /// @param loop,gate,store must outlive this object.
   OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop& loop, JobGate& gate, OffsetStore& store,
                const OffsetLimits& limits);

@@ -31,8 +31,6 @@ class Planner {
   };
 
   Planner(const Machine& machine, const MachineShapes& shapes);
-  Planner(const Planner&) = delete;
-  Planner& operator=(const Planner&) = delete;
   ~Planner() { end(); }
 
   /// Abandons the current plan; its `done` is called. Later requests are refused.

@@ -22,7 +22,6 @@ namespace grinder {
 /// takes the messages. Stops go directly to the control loop and end the cycle.
 class ProbeServer {
  public:
-  /// @param private_nh the node's own namespace.
   /// @param loop,gate,offsets must outlive this object.
   ProbeServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets);
   ~ProbeServer();

@@ -20,7 +20,6 @@ namespace grinder {
 /// the control loop's reply, one request at a time.
 class RequestServer {
  public:
-  /// @param private_nh the node's own namespace.
   /// @param loop,gate,offsets must outlive this object.
   RequestServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, OffsetServer& offsets);
 

@@ -15,8 +15,6 @@ class ServedQueue {
   ServedQueue();
   /// @param period time between calls of `poll` [s].
   ServedQueue(double period, std::function<void()> poll);
-  ServedQueue(const ServedQueue&) = delete;
-  ServedQueue& operator=(const ServedQueue&) = delete;
   ~ServedQueue();
 
   /// For node handles whose callbacks this thread is to serve.

@@ -18,7 +18,6 @@ namespace grinder {
 /// thread does no I/O, logging, publishing or planning, and takes no lock that another thread holds while it does.
 class StopServer {
  public:
-  /// @param private_nh the node's own namespace.
   /// @param loop,gate must outlive this object.
   StopServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate);
 

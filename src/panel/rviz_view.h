@@ -19,8 +19,6 @@ class RvizView : public QObject {
   explicit RvizView(rviz::VisualizationManager& manager, QObject* parent);
   /// Makes rviz draw at its own rate again.
   ~RvizView() override;
-  RvizView(const RvizView&) = delete;
-  RvizView& operator=(const RvizView&) = delete;
 
   /// Looks at the flutes of a cutter from the same side as before, if the view orbits in the frame `work`. Other
   /// views do not follow the work, and stay.

@@ -29,8 +29,6 @@ class MasterWatch {
   /// @param services resolved names of the process' services, without the services of every roscpp node. Services not
   ///        advertised at the time are skipped.
   explicit MasterWatch(std::vector<std::string> services = {});
-  MasterWatch(const MasterWatch&) = delete;
-  MasterWatch& operator=(const MasterWatch&) = delete;
   ~MasterWatch();
 
   /// The result of the last check, at most a few seconds ago. Thread safe; never blocks.

@@ -26,8 +26,6 @@ class ServiceCall {
   /// @param timeout longest wait for the answer; takes effect when abortIfOverdue() is called.
   ServiceCall(std::string name, std::string md5sum, ros::SerializedMessage request, ros::WallDuration timeout,
               Done done);
-  ServiceCall(const ServiceCall&) = delete;
-  ServiceCall& operator=(const ServiceCall&) = delete;
   /// Aborts the call if it is still waiting.
   ~ServiceCall();
 

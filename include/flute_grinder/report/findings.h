@@ -32,8 +32,6 @@ class Survey {
   /// @param run must outlive this object. @param job job of the run, with its laws; nothing if the run has none.
   /// @param draws whether pictures are wanted.
   Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws);
-  Survey(const Survey&) = delete;
-  Survey& operator=(const Survey&) = delete;
   ~Survey();
 
   void add(const RunRow& row);

@@ -17,11 +17,8 @@ namespace grinder {
 /// Thread safe; the calls do not wait for the computation.
 class GroundView {
  public:
-  /// @param private_nh the node's own namespace.
   explicit GroundView(ros::NodeHandle private_nh);
   ~GroundView();
-  GroundView(const GroundView&) = delete;
-  GroundView& operator=(const GroundView&) = delete;
 
   /// @param reached progress of the job; nothing for the finished tool.
   void show(const std::optional<ValidJob>& job, const std::optional<Reached>& reached);

@@ -21,7 +21,6 @@ namespace grinder {
 /// thread.
 class Scene {
  public:
-  /// @param private_nh the node's own namespace.
   Scene(ros::NodeHandle private_nh, const FirstView& first_view);
 
   /// Shows a job before its first setpoint, with the errors of its first stroke. If the same job is continued, its

@@ -25,7 +25,8 @@ namespace grinder {
 
 namespace {
 
-// SimpleActionClient loses an answer that comes before its sendGoal() returns.
+// An action of its own, which GrinderClient does not have. SimpleActionClient loses an answer that comes before its
+// sendGoal() returns.
 using ProbeClient = actionlib::ActionClient<flute_grinder::ProbeAction>;
 
 const ros::WallDuration kAgain(0.05);  ///< time between messages that this program is alive

@@ -4,6 +4,7 @@
 #include "flute_grinder/base/escaped.h"
 
 #include <poll.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -29,7 +30,8 @@ std::string readLine() {
   }
 }
 
-void put(const flute_grinder::Need& need) {
+/// @return false if it cannot be asked.
+bool put(const flute_grinder::Need& need) {
   const auto say = [](const std::string& text) { std::fprintf(stderr, "%s\n", escaped(text).c_str()); };
   say(need.text);
   say(need.question);
@@ -45,7 +47,10 @@ void put(const flute_grinder::Need& need) {
   for (const flute_grinder::NeedAnswer& answer : need.answers) {
     say("  " + std::to_string(++number) + "  " + answer.text + ": " + answer.help);
   }
+  // What was typed ahead is no answer.
+  if (tcflush(STDIN_FILENO, TCIFLUSH) != 0) return false;
   std::fprintf(stderr, "Number of the answer, or Enter for none: ");
+  return true;
 }
 
 }  // namespace
@@ -54,8 +59,7 @@ bool addAnswers(const std::vector<flute_grinder::Need>& needs, std::vector<std::
   if (needs.empty() || isatty(STDIN_FILENO) == 0) return false;
   std::vector<std::string> given;
   for (const flute_grinder::Need& need : needs) {
-    if (need.answers.empty()) return false;
-    put(need);
+    if (need.answers.empty() || !put(need)) return false;
     const std::string line = readLine();
     const std::size_t number = line.size() == 1 ? static_cast<std::size_t>(line[0] - '0') : 0;
     if (number < 1 || number > need.answers.size()) return false;

@@ -6,19 +6,17 @@
 
 #include <ros/ros.h>
 
-#include <functional>
 #include <optional>
 #include <string>
 
 namespace grinder {
 
-/// Calls a service of the grinder, and prints why if there is no answer.
-/// @param patience longest wait for the answer. @param give_up ends the wait earlier. @return nothing without an
-/// answer.
+/// Calls a service of the grinder, and prints why if there is no answer. Without a GrinderClient, for whose topics a
+/// command that only asks would have to wait.
+/// @return nothing without an answer.
 template <typename Service>
-std::optional<typename Service::Response> ask(
-    ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
-    const ros::WallDuration& patience = kPatience, const std::function<bool()>& give_up = [] { return false; }) {
+std::optional<typename Service::Response> ask(ros::NodeHandle& nh, const std::string& service,
+                                              const typename Service::Request& request) {
   ros::ServiceClient there = nh.serviceClient<Service>(service);
   if (!await(kPatience, [&] { return there.exists(); })) {
     noGrinder(nh);
@@ -26,9 +24,9 @@ std::optional<typename Service::Response> ask(
   }
   std::optional<typename Service::Response> response;
   ServiceCall running(nh.resolveName(service), ros::service_traits::md5sum<Service>(),
-                      ros::serialization::serializeMessage(request), patience,
+                      ros::serialization::serializeMessage(request), kPatience,
                       [&](ros::SerializedMessage* message) { response = responseFrom<Service>(message); });
-  await(patience, [&] { return running.finished() || give_up(); });
+  await(kPatience, [&] { return running.finished(); });
   running.end();
   if (!response) {
     fail(service + ": no answer from the grinder " + nh.getNamespace() +
@@ -37,16 +35,11 @@ std::optional<typename Service::Response> ask(
   return response;
 }
 
-/// Calls a service that may refuse, and prints why if it refuses or does not answer.
-/// @param answer gets the response, if there is one; may be null. @return the exit status.
+/// Calls a service that may refuse, and prints why if it refuses or does not answer. @return the exit status.
 template <typename Service>
-int call(
-    ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request,
-    typename Service::Response* answer = nullptr, const ros::WallDuration& patience = kPatience,
-    const std::function<bool()>& give_up = [] { return false; }) {
-  const std::optional<typename Service::Response> response = ask<Service>(nh, service, request, patience, give_up);
+int call(ros::NodeHandle& nh, const std::string& service, const typename Service::Request& request) {
+  const std::optional<typename Service::Response> response = ask<Service>(nh, service, request);
   if (!response) return 1;
-  if (answer) *answer = *response;
   return response->success ? 0 : fail(response->message);
 }
 

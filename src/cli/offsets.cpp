@@ -107,20 +107,20 @@ bool agree(const flute_grinder::GrinderState& state, const flute_grinder::WorkOf
 }
 
 /// Waits for a state computed with the present work offsets. @return the exit status.
-int awaitAgreement(ros::NodeHandle& nh, const StateWatch& watch, const Latest<flute_grinder::WorkOffsets>& offsets) {
-  if (!await(kPatience, [&] { return watch.begun() && offsets.newest(); })) return noGrinder(nh);
-  if (!await(kPatience, [&] { return agree(watch.newest(), *offsets.newest()); })) return fail(kLinkLost);
+int awaitAgreement(ros::NodeHandle& nh, const States& states, const Latest<flute_grinder::WorkOffsets>& offsets) {
+  if (!await(kPatience, [&] { return states.newest() && offsets.newest(); })) return noGrinder(nh);
+  if (!await(kPatience, [&] { return agree(*states.newest(), *offsets.newest()); })) return fail(kLinkLost);
   return 0;
 }
 
 int show(ros::NodeHandle& nh, bool json) {
-  const StateWatch watch(nh);
+  const States states(nh, "state");
   const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
-  if (const int status = awaitAgreement(nh, watch, offsets)) return status;
+  if (const int status = awaitAgreement(nh, states, offsets)) return status;
   if (json) {
-    print(toJson(nh.getNamespace(), *offsets.newest(), watch.newest()));
+    print(toJson(nh.getNamespace(), *offsets.newest(), *states.newest()));
   } else {
-    printTable(nh.getNamespace(), *offsets.newest(), watch.newest());
+    printTable(nh.getNamespace(), *offsets.newest(), *states.newest());
   }
   return 0;
 }
@@ -177,10 +177,10 @@ int runTouchOff(const std::string& node, const TouchOffOptions& options) {
   ros::NodeHandle nh(node);
   if (axis == kY) {
     const GrindJob job = readJobFile(options.job, options.operation);
-    const StateWatch watch(nh);
+    const States states(nh, "state");
     const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
-    if (const int status = awaitAgreement(nh, watch, offsets)) return status;
-    const std::string refused = heightRefusal(job, watch.newest().work_position[kZ]);
+    if (const int status = awaitAgreement(nh, states, offsets)) return status;
+    const std::string refused = heightRefusal(job, states.newest()->work_position[kZ]);
     if (!refused.empty()) return fail(refused);
     request.position = touchY(job, request.position);
   }

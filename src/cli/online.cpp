@@ -13,6 +13,7 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
 #include "flute_grinder/base/units.h"
+#include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/client/latest.h"
 #include "flute_grinder/client/requests.h"
 #include "flute_grinder/machine/machine_state.h"
@@ -22,7 +23,6 @@
 
 #include <actionlib_msgs/GoalID.h>
 #include <ros/service_manager.h>
-#include <sensor_msgs/JointState.h>
 #include <std_srvs/Trigger.h>
 
 #include <algorithm>
@@ -30,8 +30,9 @@
 #include <csignal>
 #include <cstdio>
 #include <functional>
-#include <mutex>
+#include <limits>
 #include <optional>
+#include <utility>
 
 namespace grinder {
 
@@ -147,13 +148,13 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
 /// @param moves whether the motion continues in a given state.
 /// @param wait_more called meanwhile; returns false to stop waiting.
 /// @return the exit status of the start, or of a lost connection.
-int awaitMotion(int status, const StateWatch& watch, const std::function<bool(std::uint8_t)>& moves,
+int awaitMotion(int status, const States& states, const std::function<bool(std::uint8_t)>& moves,
                 const std::function<bool()>& wait_more) {
   if (status != 0) return status;
-  bool connected = watch.awaitNext();
-  while (connected && moves(watch.newest().state) && wait_more()) {
+  bool connected = awaitNext(states);
+  while (connected && moves(states.newest()->state) && wait_more()) {
     ros::WallDuration(0.02).sleep();
-    connected = !watch.lost();
+    connected = !isLost(states);
   }
   return connected ? 0 : fail(kLinkLost);
 }
@@ -204,15 +205,15 @@ void leaveRos() {
 
 int printStatus(const std::string& node, bool json) {
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
+  const States states(nh, "state");
   const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
-  if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
+  if (!await(kPatience, [&] { return states.count() > 0; })) return noGrinder(nh);
   // A limited wait: the last known state is better than none.
-  await(kFreshness, [&] { return watch.fresh() && offsets.newest(); });
+  await(kFreshness, [&] { return states.count() > 1 && offsets.newest(); });
   if (json) {
-    print(toJson(nh.getNamespace(), watch.newest(), offsets.newest()));
+    print(toJson(nh.getNamespace(), *states.newest(), offsets.newest()));
   } else {
-    printState(nh.getNamespace(), watch.newest(), offsets.newest());
+    printState(nh.getNamespace(), *states.newest(), offsets.newest());
   }
   return 0;
 }
@@ -231,15 +232,15 @@ std::string doneText(MachineEvent event) {
 /// Waits until homing is over; Ctrl-C breaks it off by switching the power off.
 int home(const std::string& node) {
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
-  if (!await(kPatience, [&] { return watch.begun(); })) return noGrinder(nh);
+  const States states(nh, "state");
+  if (!await(kPatience, [&] { return states.count() > 0; })) return noGrinder(nh);
   catchInterrupts();
   const int status = awaitMotion(
-      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kHome), {}), watch,
+      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kHome), {}), states,
       [](std::uint8_t state) { return state == flute_grinder::GrinderState::HOMING; },
       [] { return interrupts() == 0; });
   if (status != 0) return status;
-  const flute_grinder::GrinderState state = watch.newest();
+  const flute_grinder::GrinderState state = *states.newest();
   if (state.state == flute_grinder::GrinderState::HOMING) {
     // Homing ends only by switching the power off.
     const int refused = call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kDisable), {});
@@ -252,81 +253,59 @@ int home(const std::string& node) {
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
 int lift(const std::string& node) {
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
-  StopKeys keys(nh, watch);
-  if (!await(kPatience, [&] { return watch.begun() && keys.connected(); })) return noGrinder(nh);
+  const GrinderClient client(node);
+  StopKeys keys(client);
+  if (!await(kPatience, [&] { return client.connected(); })) return noGrinder(nh);
   catchInterrupts();
   catchHolds();
-  keys.start([&] { keys.hold(); });
+  keys.start([&] { client.stopNow(MachineEvent::kHold); });
   const int status = awaitMotion(
-      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kLift), {}), watch,
+      call<std_srvs::Trigger>(nh, serviceOf(MachineEvent::kLift), {}), client.states(),
       [](std::uint8_t state) { return state == flute_grinder::GrinderState::LIFTING; }, [] { return true; });
   if (status != 0) return status;
-  const flute_grinder::GrinderState state = watch.newest();
+  const flute_grinder::GrinderState state = *client.states().newest();
   if (state.state == flute_grinder::GrinderState::FAULT) return fail(state.fault);
   if (!state.wheel_in_work) return 0;
   return fail("the lift was stopped: the wheel is still in the work; 'grind lift' lifts it");
 }
 
-/// Cancels the running job of any client, and waits for the end.
+/// Cancels the running job of any client, and waits for the end. Without a GrinderClient: a stop is to wait for no
+/// topic but its own.
 int cancelJob(const std::string& node) {
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
+  const States states(nh, "state");
   ros::Publisher cancel = nh.advertise<actionlib_msgs::GoalID>("grind/cancel", 1);
-  if (!await(kPatience, [&] { return watch.begun() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
-  const flute_grinder::GrinderState before = watch.newest();
+  if (!await(kPatience, [&] { return states.newest() && cancel.getNumSubscribers() > 0; })) return noGrinder(nh);
+  const flute_grinder::GrinderState before = *states.newest();
   // Sent in any state, because the state does not show a job in planning. An empty id cancels every goal.
   cancel.publish(actionlib_msgs::GoalID());
   if (!takesCancel(before)) {
     return fail("cancel refused: the machine is in state " + before.state_name + "; allowed: " +
                 allowedIn(static_cast<MachineState>(before.state)) + "; a job that was being planned is canceled");
   }
-  while (takesCancel(watch.newest()) && !watch.lost()) ros::WallDuration(0.02).sleep();
-  if (watch.lost()) return fail(kLinkLost);
-  const flute_grinder::GrinderState state = watch.newest();
+  while (takesCancel(*states.newest()) && !isLost(states)) ros::WallDuration(0.02).sleep();
+  if (isLost(states)) return fail(kLinkLost);
+  const flute_grinder::GrinderState state = *states.newest();
   return state.fault.empty() ? 0 : fail(state.fault);
 }
 
-/// Receives the position of an axis, 100 times a second, and 10 times while the machine is at rest.
-class PositionWatch {
- public:
-  /// @param nh the grinder's namespace.
-  PositionWatch(const ros::NodeHandle& nh, int axis) : joint_(kJointNames[static_cast<std::size_t>(axis)]) {
-    ros::NodeHandle around(ros::names::parentNamespace(nh.getNamespace()));
-    subscriber_ = around.subscribe("joint_states", 10, &PositionWatch::onJointState, this);
-  }
+constexpr int kSettled = 5;          ///< positions without motion after which an axis stands still
+constexpr double kEncoder = 0.5e-6;  ///< change of the position of an axis at rest [m], A [rad]
 
-  /// The position read by the drive [m], A [rad]; nothing before the first message.
-  std::optional<double> newest() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return position_;
-  }
-  /// Whether the axis stands still.
-  bool settled() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return still_ >= kSettled;
-  }
-
- private:
-  static constexpr int kSettled = 5;          ///< messages without motion after which the axis stands still
-  static constexpr double kEncoder = 0.5e-6;  ///< change of the position of an axis at rest [m], A [rad]
-
-  void onJointState(const sensor_msgs::JointState::ConstPtr& joints) {
-    const auto found = std::find(joints->name.begin(), joints->name.end(), joint_);
-    const auto at = static_cast<std::size_t>(found - joints->name.begin());
-    if (at >= joints->position.size()) return;
-    const std::lock_guard<std::mutex> lock(mutex_);
-    const bool still = position_ && std::abs(*position_ - joints->position[at]) <= kEncoder;
-    still_ = still ? still_ + 1 : 0;
-    position_ = joints->position[at];
-  }
-
-  const std::string joint_;
-  mutable std::mutex mutex_;
-  std::optional<double> position_;
-  int still_ = 0;  ///< messages without motion
-  ros::Subscriber subscriber_;
-};
+/// Waits until an axis stands still, but not for long. @return its position; NaN if none is received.
+double settledPosition(const GrinderClient& client, int axis) {
+  double last = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t seen = 0;
+  int still = 0;
+  await(kSettling, [&] {
+    const std::optional<Axes> position = client.view().position;
+    if (!position || std::exchange(seen, client.joints().count()) == seen) return false;
+    const double before = std::exchange(last, (*position)[axis]);
+    still = std::abs(last - before) <= kEncoder ? still + 1 : 0;
+    return still >= kSettled;
+  });
+  return last;
+}
 
 }  // namespace
 
@@ -334,24 +313,25 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   const bool rotary = axis == kA;
   const double unit = rotary ? units::kDegree : units::kMillimetre;
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
-  const PositionWatch position(nh, axis);
-  StopKeys keys(nh, watch);
-  if (!await(kPatience, [&] { return watch.begun() && position.newest() && keys.connected(); })) return noGrinder(nh);
+  const GrinderClient client(node);
+  StopKeys keys(client);
+  std::optional<Axes> begin;
+  if (!await(kPatience, [&] { return client.connected() && (begin = client.view().position); })) return noGrinder(nh);
   catchInterrupts();
   catchHolds();
-  keys.start([&] { keys.hold(); });
-  const double end = *position.newest() + distance * unit;
+  keys.start([&] { client.stopNow(MachineEvent::kHold); });
+  const double end = (*begin)[axis] + distance * unit;
   const auto request = jogRequest(axis, distance * unit, feed * unit / 60);
   const auto moves = [](std::uint8_t state) {
     return state == flute_grinder::GrinderState::JOGGING || state == flute_grinder::GrinderState::JOGGING_RETRACTED;
   };
   const int status =
-      awaitMotion(call<flute_grinder::JogStep>(nh, "jog_step", request), watch, moves, [] { return true; });
+      awaitMotion(call<flute_grinder::JogStep>(nh, "jog_step", request), client.states(), moves, [] { return true; });
   if (status != 0) return status;
-  if (watch.newest().state == flute_grinder::GrinderState::FAULT) return fail(watch.newest().fault);
-  await(kSettling, [&] { return position.settled(); });
-  const double there = *position.newest();
+  const flute_grinder::GrinderState state = *client.states().newest();
+  if (state.state == flute_grinder::GrinderState::FAULT) return fail(state.fault);
+  const double there = settledPosition(client, axis);
+  if (!std::isfinite(there)) return fail(kLinkLost);
   std::printf("%c %.4f %s\n", axisLetter(axis), there / unit, rotary ? "deg" : "mm");
   return std::abs(there - end) <= kJogTolerance ? 0 : fail("the jog was stopped before its end");
 }

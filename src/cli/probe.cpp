@@ -25,7 +25,8 @@ namespace grinder {
 
 namespace {
 
-// SimpleActionClient loses an answer that comes before its sendGoal() returns.
+// An action of its own, which GrinderClient does not have. SimpleActionClient loses an answer that comes before its
+// sendGoal() returns.
 using ProbeClient = actionlib::ActionClient<flute_grinder::ProbeAction>;
 
 const ros::WallDuration kAgain(0.05);  ///< time between messages that this program is alive
@@ -59,10 +60,10 @@ flute_grinder::ProbeGoal goalOf(const ProbingCycleRow& row, const ProbeOptions& 
 }
 
 /// Waits for the end of a cycle. Ctrl-C and Ctrl-Z cancel it. @return whether the connection lasted.
-bool awaitCycle(ProbeClient::GoalHandle& cycle, const StateWatch& watch) {
+bool awaitCycle(ProbeClient::GoalHandle& cycle, const States& states) {
   bool canceled = false;
   while (cycle.getCommState() != actionlib::CommState::DONE) {
-    if (watch.lost()) return false;
+    if (isLost(states)) return false;
     if (!canceled && interrupts() + holds() > 0) {
       cycle.cancel();
       canceled = true;
@@ -100,11 +101,11 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
   const ProbingCycleRow& row = rowOf(cycle);
   const flute_grinder::ProbeGoal goal = goalOf(row, options);
   ros::NodeHandle nh(node);
-  const StateWatch watch(nh);
+  const States states(nh, "state");
   ProbeClient client(nh, "probe");
   ros::Publisher publisher = nh.advertise<std_msgs::Header>("probe_alive", 1);
   if (!await(kPatience,
-             [&] { return watch.begun() && client.isServerConnected() && publisher.getNumSubscribers() > 0; })) {
+             [&] { return states.newest() && client.isServerConnected() && publisher.getNumSubscribers() > 0; })) {
     return noGrinder(nh);
   }
   catchInterrupts();
@@ -115,7 +116,7 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
     publisher.publish(header);
   });
   ProbeClient::GoalHandle running = client.sendGoal(goal);
-  if (!awaitCycle(running, watch)) return fail(kLinkLost);
+  if (!awaitCycle(running, states)) return fail(kLinkLost);
   const flute_grinder::ProbeResultConstPtr result = running.getResult();
   if (!result) return fail("probing: no result from the grinder " + nh.getNamespace());
   printFigures(*result);

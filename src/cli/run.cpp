@@ -7,20 +7,16 @@
 #include "cli/state_watch.h"
 #include "cli/stop_keys.h"
 #include "cli/stream_watch.h"
-#include "flute_grinder/GrindAction.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
+#include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
-#include "flute_grinder/network/user_at_host.h"
-
-#include <actionlib/client/action_client.h>
 
 #include <cstdio>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -28,48 +24,9 @@ namespace grinder {
 
 namespace {
 
-// SimpleActionClient loses an answer that comes before its sendGoal() returns, and logs that into the progress bar.
-using Client = actionlib::ActionClient<flute_grinder::GrindAction>;
-
-/// The state of a goal. It is received by one thread and shown by another, so that a blocked terminal cannot stop
-/// reception. Thread safe.
-class GoalWatch {
- public:
-  void onFeedback(const flute_grinder::GrindFeedbackConstPtr& feedback) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    newest_ = feedback;
-  }
-  void onDone(bool succeeded, const flute_grinder::GrindResultConstPtr& result) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    done_ = true;
-    succeeded_ = succeeded;
-    result_ = result;
-  }
-  /// The feedback since the last call; null if there is none.
-  flute_grinder::GrindFeedbackConstPtr takeFeedback() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return std::exchange(newest_, nullptr);
-  }
-  bool done() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return done_;
-  }
-  bool succeeded() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return succeeded_;
-  }
-  /// The result; null before it arrives, and if the grinder no longer knows the goal.
-  flute_grinder::GrindResultConstPtr result() const {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return result_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  flute_grinder::GrindFeedbackConstPtr newest_;
-  bool done_ = false, succeeded_ = false;
-  flute_grinder::GrindResultConstPtr result_;
-};
+bool succeeded(const flute_grinder::GrindActionResult& end) {
+  return end.status.status == actionlib_msgs::GoalStatus::SUCCEEDED;
+}
 
 /// Prints a line when a job begins with a feed override, when the operator presses a stop key, and when the grinder
 /// holds by itself.
@@ -101,24 +58,32 @@ class RunMessages {
   int interrupts_seen_ = 0, holds_seen_ = 0;
 };
 
-/// Shows the progress of a goal to its end. @return false if the connection is lost.
-bool showProgress(GoalWatch& goal, const StateWatch& watch, ProgressBar& bar) {
+/// A goal that was sent.
+struct Sent {
+  std::string id;
+  std::optional<flute_grinder::GrindActionResult> end;
+};
+
+/// Shows the progress of a goal to its end, or until the connection is lost.
+void showProgress(const Sent& sent, GrinderClient& client, ProgressBar& bar) {
   RunMessages messages(bar);
+  flute_grinder::GrindActionFeedback::ConstPtr shown;
   const auto show = [&] {
-    if (const auto newest = goal.takeFeedback()) bar.show(*newest);
+    const auto newest = client.view().feedback;
+    if (newest && newest->status.goal_id.id == sent.id && newest != shown) bar.show(newest->feedback);
+    shown = newest;
   };
-  while (!goal.done()) {
-    if (watch.lost()) return false;
-    messages.update(watch.newest());
+  for (client.deliver(); !sent.end; client.deliver()) {
+    if (isLost(client.states())) return;
+    messages.update(*client.states().newest());
     show();
     ros::WallDuration(0.01).sleep();
   }
-  messages.update(watch.newest());
+  messages.update(*client.states().newest());
   // The last feedback may come after the result, over another connection.
-  if (goal.succeeded()) {
+  if (succeeded(*sent.end)) {
     await(ros::WallDuration(1), [&] { return show(), bar.complete(); });
   }
-  return true;
 }
 
 /// @param written number of setpoints written to the drive, from the goal's result; 0 if unknown.
@@ -134,22 +99,22 @@ void printStream(const StreamWatch& stream, std::uint64_t written) {
   std::printf("\n");
 }
 
-/// Prints the outcome of a goal. @param connected whether the connection lasted to its end. @return the exit status.
-int printOutcome(const GoalWatch& goal, bool connected, const StreamWatch& stream) {
-  const flute_grinder::GrindResultConstPtr result = goal.result();
-  if (result) {
-    printPlan(result->plan);
-    if (goal.succeeded()) {
-      for (const flute_grinder::Need& need : result->plan.needs) {
+/// Prints the outcome of a goal. @param end nothing if the connection was lost before. @return the exit status.
+int printOutcome(const std::optional<flute_grinder::GrindActionResult>& end, const StreamWatch& stream) {
+  if (end) {
+    printPlan(end->result.plan);
+    if (succeeded(*end)) {
+      for (const flute_grinder::Need& need : end->result.plan.needs) {
         std::fprintf(stderr, "to start it: %s\n", escaped(need.text).c_str());
       }
     }
   }
-  printStream(stream, result ? result->setpoints_written : 0);
-  if (!connected) return fail(kLinkLost);
-  if (!result) return fail("the grinder no longer knows the job: it has been restarted");
-  if (goal.succeeded() && result->error_code == 0) return 0;
-  return fail(result->error_string + " (code " + std::to_string(result->error_code) + ")");
+  printStream(stream, end ? end->result.setpoints_written : 0);
+  if (!end) return fail(kLinkLost);
+  const flute_grinder::GrindResult& result = end->result;
+  if (end->status.status == actionlib_msgs::GoalStatus::LOST) return fail(result.error_string);
+  if (succeeded(*end) && result.error_code == 0) return 0;
+  return fail(result.error_string + " (code " + std::to_string(result.error_code) + ")");
 }
 
 /// Closes the CSV file, after everything about the job has been printed. @param status exit status so far. @return the
@@ -174,21 +139,7 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
   }
   goal.dry_run = options.dry_run;
   goal.answers = options.answers;
-  goal.sent_by = userAtHost();
   return goal;
-}
-
-/// Sends a goal. @param watched must outlive the goal's handle.
-Client::GoalHandle send(Client& client, const flute_grinder::GrindGoal& goal, GoalWatch& watched) {
-  return client.sendGoal(
-      goal,
-      [&watched](Client::GoalHandle handle) {
-        if (handle.getCommState() != actionlib::CommState::DONE) return;
-        watched.onDone(handle.getTerminalState() == actionlib::TerminalState::SUCCEEDED, handle.getResult());
-      },
-      [&watched](const Client::GoalHandle&, const flute_grinder::GrindFeedbackConstPtr& feedback) {
-        watched.onFeedback(feedback);
-      });
 }
 
 }  // namespace
@@ -198,38 +149,29 @@ int runJob(const std::string& node, const RunOptions& options) {
   const ValidJob job(jobFromGoal(goal));
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
-  const StateWatch watch(nh);
-  Client client(nh, "grind");
-  StopKeys keys(nh, watch);
-  if (!await(kPatience,
-             [&] { return watch.begun() && client.isServerConnected() && stream.connected() && keys.connected(); })) {
-    return noGrinder(nh);
-  }
+  Sent sent;
+  GrinderClient client(node, [&sent](const flute_grinder::GrindActionResult& end) {
+    if (end.status.goal_id.id == sent.id) sent.end = end;
+  });
+  StopKeys keys(client);
+  if (!await(kPatience, [&] { return client.connected() && stream.connected(); })) return noGrinder(nh);
   if (options.go_on) {
-    const std::string refusal = continueFrom(watch.newest().progress, *job, goal);
+    const std::string refusal = continueFrom(client.states().newest()->progress, *job, goal);
     if (!refusal.empty()) return fail(refusal);
   }
 
   catchInterrupts();
   catchHolds();
-  std::mutex mutex;  // guards `running`
-  Client::GoalHandle running;
-  keys.start([&] {
-    const std::lock_guard<std::mutex> lock(mutex);
-    running.cancel();
-  });
+  keys.start([&] { client.cancelSent(); });
   for (;;) {
-    GoalWatch watched;
     ProgressBar bar(job.teeth(), static_cast<int>(job.depths().size()));
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      running = send(client, goal, watched);
-    }
-    const bool connected = showProgress(watched, watch, bar);
+    const std::optional<std::string> id = client.send(goal);
+    if (!id) return fail(kLinkLost);
+    sent = {*id, std::nullopt};
+    showProgress(sent, client, bar);
     bar.end();
-    const flute_grinder::GrindResultConstPtr result = watched.result();
-    if (result && !goal.dry_run && addAnswers(result->plan.needs, goal.answers)) continue;
-    return closeStream(stream, options.csv, printOutcome(watched, connected, stream));
+    if (sent.end && !goal.dry_run && addAnswers(sent.end->result.plan.needs, goal.answers)) continue;
+    return closeStream(stream, options.csv, printOutcome(sent.end, stream));
   }
 }
 

@@ -15,17 +15,12 @@ const char* const kLinkLost =
 
 bool inJob(const flute_grinder::GrinderState& state) { return isInJob(static_cast<MachineState>(state.state)); }
 
-bool StateWatch::awaitNext() const {
+bool awaitNext(const States& states) {
   // The first two states may have been sent before the call.
-  const std::uint64_t enough = state_.count() + 3;
-  return await(kTimeout, [&] { return state_.count() >= enough; });
+  const std::uint64_t enough = states.count() + 3;
+  return await(kTimeout, [&] { return states.count() >= enough; });
 }
 
-flute_grinder::GrinderState StateWatch::newest() const {
-  const auto newest = state_.newest();
-  return newest ? *newest : flute_grinder::GrinderState();
-}
-
-bool StateWatch::lost() const { return !ros::ok() || !state_.isFresh(kTimeout); }
+bool isLost(const States& states) { return !ros::ok() || !states.isFresh(kTimeout); }
 
 }  // namespace grinder

@@ -24,25 +24,13 @@ bool await(const ros::WallDuration& timeout, Condition condition) {
 const ros::WallDuration kPatience(10);       ///< longest wait for a node that is still starting
 const ros::WallDuration kMasterPatience(2);  ///< longest wait for a ROS master that does not answer
 
-/// Receives the grinder's state, 20 times a second, and 10 times while the machine is at rest.
-class StateWatch {
- public:
-  /// @param nh the grinder's namespace.
-  explicit StateWatch(const ros::NodeHandle& nh) : state_(nh, "state") {}
+/// The grinder's states, 20 times a second, and 10 times while the machine is at rest.
+using States = Latest<flute_grinder::GrinderState>;
 
-  /// Whether a state has been received.
-  bool begun() const { return state_.count() > 0; }
-  /// Whether a state was received that was published after this object was made: the first may be old.
-  bool fresh() const { return state_.count() > 1; }
-  /// Waits for a state sent after this call. @return false if the connection is lost.
-  bool awaitNext() const;
-  flute_grinder::GrinderState newest() const;
-  /// Whether nothing has been received for too long.
-  bool lost() const;
-
- private:
-  Latest<flute_grinder::GrinderState> state_;
-};
+/// Waits for a state sent after this call. @return false if the connection is lost.
+bool awaitNext(const States& states);
+/// Whether nothing has been received for too long.
+bool isLost(const States& states);
 
 /// Error text for a lost connection.
 extern const char* const kLinkLost;

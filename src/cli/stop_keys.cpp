@@ -1,24 +1,15 @@
 #include "cli/stop_keys.h"
 
 #include "cli/interrupt.h"
-#include "flute_grinder/Stop.h"
+#include "cli/state_watch.h"
 
 #include <utility>
 
 namespace grinder {
 
-StopKeys::StopKeys(ros::NodeHandle& nh, const StateWatch& watch)
-    : watch_(watch), publisher_(nh.advertise<flute_grinder::Stop>("stop", 10)) {}
-
 StopKeys::~StopKeys() {
   ended_ = true;
   if (thread_.joinable()) thread_.join();
-}
-
-void StopKeys::hold() const {
-  flute_grinder::Stop stop;
-  stop.request = flute_grinder::Stop::HOLD;
-  publisher_.publish(stop);
 }
 
 void StopKeys::start(std::function<void()> on_interrupt) {
@@ -34,9 +25,9 @@ void StopKeys::run(const std::function<void()>& on_interrupt) const {
       on_interrupt();
     }
     const bool pressed = holds() != holds_seen;
-    const bool job = inJob(watch_.newest());
+    const bool job = inJob(*client_.states().newest());
     if (pressed || (hold_pending && job)) {
-      hold();
+      client_.stopNow(MachineEvent::kHold);
       // During planning there is no job to hold yet: the hold is repeated once there is one, before it moves.
       hold_pending = !job;
     }

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "cli/state_watch.h"
-
-#include <ros/ros.h>
+#include "flute_grinder/client/grinder_client.h"
 
 #include <atomic>
 #include <functional>
@@ -15,24 +13,18 @@ namespace grinder {
 /// master.
 class StopKeys {
  public:
-  /// @param nh the grinder's namespace.
-  /// @param watch watch of the same grinder; must outlive this object.
-  StopKeys(ros::NodeHandle& nh, const StateWatch& watch);
+  /// @param client must outlive this object.
+  explicit StopKeys(const GrinderClient& client) : client_(client) {}
   ~StopKeys();
 
-  /// Whether the grinder is connected, so that it would receive a hold.
-  bool connected() const { return publisher_.getNumSubscribers() > 0; }
-  /// Makes the grinder hold on the path. Thread safe.
-  void hold() const;
-  /// Starts handling the keys, including any pressed since catchInterrupts() and catchHolds().
+  /// Starts handling the keys, including any pressed since catchInterrupts() and catchHolds(). The client is connected.
   /// @param on_interrupt called in the keys' thread, after each Ctrl-C.
   void start(std::function<void()> on_interrupt);
 
  private:
   void run(const std::function<void()>& on_interrupt) const;
 
-  const StateWatch& watch_;
-  ros::Publisher publisher_;
+  const GrinderClient& client_;
   std::atomic<bool> ended_{false};
   std::thread thread_;
 };

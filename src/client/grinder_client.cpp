@@ -64,15 +64,17 @@ GrinderClient::GrinderClient(const std::string& node, OnResult on_result, OnJogR
                 Axes position;
                 return readPositions(joints, position);
               }),
-      state_(
+      states_(
           nh_, "state", [this](const flute_grinder::GrinderState&) { return forgetAfterSilence(); }, on_news_),
       spinner_(1, &queue_) {
   const auto hints = ros::TransportHints().tcpNoDelay();
-  subscribers_.push_back(nh_.subscribe("grind/feedback", 10, &GrinderClient::onFeedback, this, hints));
+  feedbacks_ = nh_.subscribe("grind/feedback", 10, &GrinderClient::onFeedback, this, hints);
   subscribers_.push_back(nh_.subscribe("job", 1, &GrinderClient::onJob, this, hints));
+  statuses_ = nh_.subscribe("grind/status", 10, &GrinderClient::onStatuses, this, hints);
   results_ = nh_.subscribe("grind/result", 10, &GrinderClient::onResult, this, hints);
   subscribers_.push_back(nh_.subscribe("jog_refusal", 10, &GrinderClient::onJogRefusal, this, hints));
   goals_ = nh_.advertise<flute_grinder::GrindActionGoal>("grind/goal", 10);
+  cancels_ = nh_.advertise<actionlib_msgs::GoalID>("grind/cancel", 10);
   stops_ = nh_.advertise<flute_grinder::Stop>("stop", 10);
   jogs_ = nh_.advertise<flute_grinder::Jog>("jog", 1);
   spinner_.start();
@@ -84,14 +86,14 @@ GrinderView GrinderClient::view() const {
   GrinderView view;
   const std::lock_guard<std::mutex> lock(mutex_);
   // Only once the topics of goal and result are connected, or a short job might end unheard.
-  if (state_.isFresh(kStale) && goals_.getNumSubscribers() > 0 && results_.getNumPublishers() > 0) {
-    view.state = *state_.newest();
+  if (states_.isFresh(kStale) && goals_.getNumSubscribers() > 0 && results_.getNumPublishers() > 0) {
+    view.state = *states_.newest();
     view.machine = machine_.newest();
     if (const auto offsets = offsets_.newest()) view.offsets = *offsets;
     const auto legend = legend_.newest();
     if (legend && legend->cutter.end_diameter > 0) view.legend = *legend;
-    if (feedback_) view.feedback = feedback_->message.feedback;
-    if (feedback_ && job_ && job_->goal_id.id == feedback_->message.status.goal_id.id) view.job = job_;
+    if (feedback_) view.feedback = feedback_->message;
+    if (feedback_ && job_ && job_->goal_id.id == feedback_->message->status.goal_id.id) view.job = job_;
   }
   Axes position;
   if (joints_.isFresh(kStale) && readPositions(*joints_.newest(), position)) view.position = position;
@@ -100,12 +102,21 @@ GrinderView GrinderClient::view() const {
     view.work_position = *view.position - offset;
   }
   const bool is_new = feedback_ && ros::SteadyTime::now() - feedback_->time <= kStale;
-  if (is_new && view.feedback && view.feedback->state == kPlanning) view.planned = view.feedback->planned;
+  if (is_new && view.feedback && view.feedback->feedback.state == kPlanning) {
+    view.planned = view.feedback->feedback.planned;
+  }
   return view;
 }
 
+bool GrinderClient::connected() const {
+  const auto heard = [](const ros::Subscriber& topic) { return topic.getNumPublishers() > 0; };
+  const auto read = [](const ros::Publisher& topic) { return topic.getNumSubscribers() > 0; };
+  return states_.newest() && read(goals_) && read(cancels_) && read(stops_) && heard(feedbacks_) && heard(results_) &&
+         heard(statuses_);
+}
+
 bool GrinderClient::forgetAfterSilence() {
-  if (state_.isFresh(kStale)) return true;
+  if (states_.isFresh(kStale)) return true;
   // The node may be a new process, which knows nothing of the last job.
   const std::lock_guard<std::mutex> lock(mutex_);
   feedback_.reset();
@@ -114,7 +125,7 @@ bool GrinderClient::forgetAfterSilence() {
 
 void GrinderClient::onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  feedback_ = Feedback{*feedback, ros::SteadyTime::now()};
+  feedback_ = Feedback{feedback, ros::SteadyTime::now()};
 }
 
 void GrinderClient::onJob(const flute_grinder::GrindActionGoal::ConstPtr& job) {
@@ -126,11 +137,29 @@ void GrinderClient::onResult(const flute_grinder::GrindActionResult::ConstPtr& r
   const std::string& id = result->status.goal_id.id;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const bool shown = feedback_ && id == feedback_->message.status.goal_id.id;
+    const bool shown = feedback_ && id == feedback_->message->status.goal_id.id;
     if (id != sent_ && !shown) return;
-    if (shown) feedback_->message.feedback.state.clear();  // no longer in planning
+    if (shown) feedback_->time = ros::SteadyTime();  // no longer in planning
+    if (id == sent_) sent_.clear();
   }
-  post([this, result] { on_result_(result->status.goal_id.id, result->result); });
+  post([this, result] { on_result_(*result); });
+}
+
+void GrinderClient::onStatuses(const actionlib_msgs::GoalStatusArray::ConstPtr& statuses) {
+  const auto is_sent = [this](const actionlib_msgs::GoalStatus& status) { return status.goal_id.id == sent_; };
+  flute_grinder::GrindActionResult lost;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto& list = statuses->status_list;
+    const bool was_known = std::exchange(known_, std::any_of(list.begin(), list.end(), is_sent));
+    // The grinder lists a goal for seconds after its result.
+    if (sent_.empty() || known_ || !was_known) return;
+    lost.status.goal_id.id = std::exchange(sent_, "");
+  }
+  lost.status.status = actionlib_msgs::GoalStatus::LOST;
+  lost.result.error_code = flute_grinder::GrindResult::LINK_LOST;
+  lost.result.error_string = "the grinder no longer knows the job: it has been restarted";
+  post([this, lost] { on_result_(lost); });
 }
 
 void GrinderClient::onJogRefusal(const std_msgs::String::ConstPtr& refusal) {
@@ -221,13 +250,21 @@ std::optional<std::string> GrinderClient::send(const flute_grinder::GrindGoal& g
   message.goal_id = ids_.generateID();
   message.goal = goal;
   message.goal.sent_by = userAtHost();
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    sent_ = message.goal_id.id;
-  }
+  const std::lock_guard<std::mutex> lock(mutex_);  // a cancel follows the goal
+  sent_ = message.goal_id.id;
+  known_ = false;
   goals_.publish(message);
-  return message.goal_id.id;
+  return sent_;
 }
+
+void GrinderClient::cancelSent() const {
+  actionlib_msgs::GoalID id;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  id.id = sent_;
+  if (!sent_.empty()) cancels_.publish(id);  // an empty id would cancel every goal
+}
+
+void GrinderClient::stopNow(MachineEvent event) const { stops_.publish(stopFor(event)); }
 
 void GrinderClient::stop(MachineEvent event, const OnAnswer& on_answer) {
   unsent_.push_back({event, ros::SteadyTime::now() + kStopTimeout, on_answer});
@@ -241,7 +278,7 @@ void GrinderClient::sendStops() {
     if (!connected && ros::SteadyTime::now() < stop.due) return;
     unsent_.pop_front();
     if (connected) {
-      stops_.publish(stopFor(stop.event));
+      stopNow(stop.event);
       stop.on_answer("");
     } else {
       stop.on_answer(toString(stop.event) + (" was not sent: the grinder " + name()) + " is not connected");

@@ -301,7 +301,7 @@ void GrindPanel::connectLink() {
   // Without a master the link would wait for one.
   if (name_.empty() || master_watch_->master() == Master::kMissing) return;
   link_ = std::make_unique<GrinderClient>(
-      name_, [this](const std::string& id, const flute_grinder::GrindResult& result) { onResult(id, result); },
+      name_, [this](const flute_grinder::GrindActionResult& ended) { onResult(ended); },
       [this](const std::string& refusal) { showMessage(refusal); },
       [this] {
         // One look for all that comes until then.
@@ -467,9 +467,10 @@ void GrindPanel::send(const flute_grinder::GrindGoal& goal) {
   showMessage(id ? "the job was sent" : "the job was not sent: no answer from the grinder " + name_);
 }
 
-void GrindPanel::onResult(const std::string& id, const flute_grinder::GrindResult& result) {
+void GrindPanel::onResult(const flute_grinder::GrindActionResult& ended) {
+  const flute_grinder::GrindResult& result = ended.result;
   const bool good = result.error_code == flute_grinder::GrindResult::SUCCESSFUL;
-  if (sent_ && id == sent_->id) {
+  if (sent_ && ended.status.goal_id.id == sent_->id) {
     flute_grinder::GrindGoal goal = sent_->goal;
     sent_.reset();
     if (goal.dry_run) {

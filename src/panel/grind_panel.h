@@ -85,7 +85,7 @@ class GrindPanel : public rviz::Panel {
   void dropPassedReply(std::optional<MachineState> state);
   void plan(const flute_grinder::GrindGoal& goal);
   void send(const flute_grinder::GrindGoal& goal);
-  void onResult(const std::string& id, const flute_grinder::GrindResult& result);
+  void onResult(const flute_grinder::GrindActionResult& ended);
   void setFeedOverride(double fraction);
   void jogStep(int axis, double distance, double speed);
   void askToTouchOff(int axis, double at);

@@ -158,7 +158,7 @@ void ProgressBox::set(const Bar& bar, const QString& format, double fraction, bo
 
 void ProgressBox::show(const GrinderView& view, bool job_runs) {
   if (view.planned) return showPlanning(*view.planned);
-  const flute_grinder::GrindFeedback f = view.feedback.value_or(flute_grinder::GrindFeedback());
+  const flute_grinder::GrindFeedback f = view.feedback ? view.feedback->feedback : flute_grinder::GrindFeedback();
   set(stroke_, kStrokeDone, f.stroke_fraction, job_runs);
   if (!view.feedback || !job_runs) {
     place_->setText(view.state ? "No job runs" : "");

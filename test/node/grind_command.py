@@ -68,22 +68,28 @@ class CommandLine(unittest.TestCase):
 class Command:
     """The command line in a process of its own, with what it says on stderr as it comes: by a pipe, or as a terminal."""
 
-    def __init__(self, *arguments, columns=None, term='xterm', before=default_signals, environment=(), prefix=()):
-        """`prefix`: of a command that runs it, as `ip netns exec NAME`."""
+    def __init__(self, *arguments, columns=None, typed=None, term='xterm', before=default_signals, environment=(), prefix=()):
+        """`typed`: what the terminal's keyboard has typed before it starts; None: it has no keyboard. `prefix`: of a command that
+        runs it, as `ip netns exec NAME`."""
         self.text = ''
         if columns is None:
             self.reader, writer = os.pipe()
         else:
             self.reader, writer = pty.openpty()
             self.resize(columns)
-        self.process = subprocess.Popen([*prefix, gc.program('grind'), *arguments], stdout=subprocess.PIPE, stderr=writer,
-                                        env=dict(os.environ, TERM=term, **dict(environment)), preexec_fn=before)
+        if typed:
+            self.type(typed)
+        self.process = subprocess.Popen([*prefix, gc.program('grind'), *arguments], stdin=None if typed is None else writer,
+                                        stdout=subprocess.PIPE, stderr=writer, env=dict(os.environ, TERM=term, **dict(environment)), preexec_fn=before)
         os.close(writer)
         self.thread = threading.Thread(target=self.read)
         self.thread.start()
 
     def resize(self, columns):
         fcntl.ioctl(self.reader, termios.TIOCSWINSZ, struct.pack('HHHH', 24, columns, 0, 0))
+
+    def type(self, line):
+        os.write(self.reader, line.encode() + b'\n')
 
     def read(self):
         # A terminal whose other side is closed gives an error in place of the end.

@@ -13,6 +13,7 @@ import rospy
 from flute_grinder.msg import GrinderState, GrindResult, Legend, OffsetBasis, WorkOffsets
 
 import grinder_client as gc
+from grind_command import Command
 from grinder_client import A, DEG, MM, MM_MIN, STROKE, X, Y, Z
 
 # The job then stays within the machine's limits, and the cutter stands out of the collet, not in.
@@ -52,12 +53,22 @@ class OffsetsTest(gc.OwnNode):
         return rospy.wait_for_message('/%s/offsets' % self.client.name, WorkOffsets, gc.PATIENCE)
 
     def grind_answering(self, answer, status, *arguments):
-        """At a terminal, whose keyboard has typed the answer; what it says there."""
-        keyboard, terminal = os.openpty()
-        self.addCleanup(os.close, keyboard)
-        self.addCleanup(os.close, terminal)
-        os.write(keyboard, answer.encode() + b'\n')
-        return self.grind(status, *arguments, stdin=terminal).stderr
+        """At a terminal, where each of its questions gets the answer, and nothing before the first; what it says there."""
+        return self.grind_typed_ahead('', answer, status, *arguments)
+
+    def grind_typed_ahead(self, typed, answer, status, *arguments):
+        command = Command('--node', self.node.name, *arguments, columns=200, typed=typed)
+        self.addCleanup(command.close)
+        answered = []
+
+        def ended():
+            if command.text.count('Enter for none: ') > len(answered):
+                answered.append(command.type(answer))
+            return command.process.poll() is not None
+
+        gc.poll(ended, 'its end')
+        self.assertEqual(command.end(), status, command.text)
+        return command.text
 
     def check_refused(self, answer, text):
         self.assertFalse(answer.success)
@@ -410,11 +421,20 @@ class TestCommandLine(OffsetsTest):
                 said = self.grind_answering(answer, 1, *command)
                 self.assertRegex(said, r'  axis X; asked: .* mm; set: .* mm; off by: .* mm\r?\n  1  Set it: ')
             self.assertEqual(self.offsets().values, before.values)
-            self.grind_answering('1\n1\n1', 0, *command)
+            self.grind_answering('1', 0, *command)
             self.assertNotEqual(self.offsets().values[X], before.values[X], command)
         self.grind(0, 'offsets', '--set', 'x=-40', '--answer', 'set-offset')
         self.grind(0, *zeros, '--answer', 'set-offset')
         self.grind(2, 'zeros', job, '--stickout', '62', '--flange', '2', '--answer', 'set-offset')
+
+    def test_typed_ahead_is_no_answer(self):
+        self.grind(0, 'offsets', '--set', 'x=0')
+        change = 'offsets', '--set', 'x=12.3'
+        # Whichever it takes first decides.
+        self.grind_typed_ahead('1', '2', 1, *change)
+        self.assertEqual(self.offsets().values[X], 0)
+        self.grind_typed_ahead('2', '1', 0, *change)
+        self.assertAlmostEqual(self.offsets().values[X], 12.3 * MM, delta=1e-12)
 
     def test_touch_off_y_on_a_blank(self):
         """The wheel's centre is then at (blank + worn wheel) / 2 from the axis, and Y = 0 is at (D1 + new wheel) / 2."""

@@ -7,6 +7,7 @@ import re
 import signal
 import subprocess
 
+from actionlib_msgs.msg import GoalStatusArray
 from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
@@ -176,6 +177,17 @@ class TestEnd(RunTest):
         self.assertEqual(done.stderr,
                          'cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog; '
                          'a job that was being planned is canceled\n')
+
+
+    def test_grinder_that_no_longer_knows_the_job(self):
+        command, seen = self.grind_into_stroke()
+        statuses = gc.publisher(self.addCleanup, '/grinder/grind/status', GoalStatusArray)
+        # As of a new process.
+        gc.poll(lambda: statuses.publish(GoalStatusArray()) or command.process.poll() is not None, 'its end')
+        self.assertEqual(command.end(), 1)
+        self.assertTrue(command.text.endswith('\nthe grinder no longer knows the job: it has been restarted\n'), command.text)
+        self.assertEqual(gc.grind('cancel').returncode, 0)
+        self.check_stopped(seen)
 
 
 class TestStuck(RunTest):

@@ -16,6 +16,7 @@
 #include "flute_grinder/network/service_call.h"
 
 #include <actionlib/goal_id_generator.h>
+#include <actionlib_msgs/GoalStatusArray.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
@@ -34,8 +35,8 @@ namespace grinder {
 /// The known state of a grinder.
 struct GrinderView {
   std::optional<flute_grinder::GrinderState> state;  ///< nothing if none was received for a second
-  /// Feedback of the running job of any client, or of the last job; nothing without the state or after its loss.
-  std::optional<flute_grinder::GrindFeedback> feedback;
+  /// Feedback of the running job of any client, or of the last job; null without the state or after its loss.
+  flute_grinder::GrindActionFeedback::ConstPtr feedback;
   flute_grinder::GrindActionGoal::ConstPtr job;  ///< goal of that feedback, once the job has started; may be null
   std::optional<double> planned;  ///< fraction of a goal planned and checked, 0..1; nothing without a goal in planning
   /// Machine position read by the drive [m], A [rad]; nothing if none was received for a second.
@@ -56,9 +57,9 @@ class GrinderClient {
   using OnAnswer = std::function<void(const std::string& refusal)>;
   /// @param needs what must be answered before the request is carried out.
   using OnNeeds = std::function<void(const std::string& refusal, const std::vector<flute_grinder::Need>& needs)>;
-  /// @param id id of the goal, as returned by send().
-  using OnResult = std::function<void(const std::string& id, const flute_grinder::GrindResult& result)>;
-
+  /// @param result with the id of the goal, as returned by send(), and how it ended: LOST, with the reason as its
+  /// error, if the grinder no longer knows a goal sent by this object.
+  using OnResult = std::function<void(const flute_grinder::GrindActionResult& result)>;
   /// @param text why a continuous jog of any client moves nothing.
   using OnJogRefusal = std::function<void(const std::string& text)>;
 
@@ -66,14 +67,21 @@ class GrinderClient {
   /// @param on_result called when a goal sent by this object, or the job shown, ends.
   /// @param on_news called in another thread when a state, offsets or an answer have come: it is worth to look.
   /// @throw ros::InvalidNameException
-  GrinderClient(const std::string& node, OnResult on_result, OnJogRefusal on_jog_refusal,
-                std::function<void()> on_news);
+  explicit GrinderClient(
+      const std::string& node, OnResult on_result = [](const flute_grinder::GrindActionResult&) {},
+      OnJogRefusal on_jog_refusal = [](const std::string&) {}, std::function<void()> on_news = [] {});
   GrinderClient(const GrinderClient&) = delete;
   GrinderClient& operator=(const GrinderClient&) = delete;
   ~GrinderClient();
 
   const std::string& name() const { return nh_.getNamespace(); }  ///< resolved name of the node
   GrinderView view() const;
+  /// The states as they come, also without the other topics. Thread safe.
+  const Latest<flute_grinder::GrinderState>& states() const { return states_; }
+  /// The positions read by the drive, as they come. Thread safe.
+  const Latest<sensor_msgs::JointState>& joints() const { return joints_; }
+  /// Whether a state has come, and stops, and the action with all its topics, have a connection.
+  bool connected() const;
 
   /// Calls the callbacks of requests that were answered or timed out. To be called often.
   void deliver();
@@ -96,18 +104,23 @@ class GrinderClient {
 
   /// Sends a job, in the name of this user. @return the goal's id; nothing if no grinder is connected.
   std::optional<std::string> send(const flute_grinder::GrindGoal& goal);
+  /// Cancels the goal that send() has sent last, unless it has ended. Thread safe. Uses a connection that survives the
+  /// ROS master.
+  void cancelSent() const;
   /// Holds or cancels the running or planned job of any client, or switches the power off. Uses a connection that
   /// survives the ROS master, and has no answer: the state shows the effect.
   /// @param event kHold, kCancel or kDisable.
   /// @param on_answer called once the stop is sent, or when it is dropped after two seconds without a connection.
   void stop(MachineEvent event, const OnAnswer& on_answer);
+  /// As stop(), but the stop is lost without a connection. Thread safe.
+  void stopNow(MachineEvent event) const;
   /// Whether stops have a connection now.
   bool stopsConnected() const { return stops_.getNumSubscribers() > 0; }
 
  private:
   /// Feedback with its time of arrival.
   struct Feedback {
-    flute_grinder::GrindActionFeedback message;
+    flute_grinder::GrindActionFeedback::ConstPtr message;
     ros::SteadyTime time;
   };
 
@@ -123,6 +136,7 @@ class GrinderClient {
   void onFeedback(const flute_grinder::GrindActionFeedback::ConstPtr& feedback);
   void onJob(const flute_grinder::GrindActionGoal::ConstPtr& job);
   void onResult(const flute_grinder::GrindActionResult::ConstPtr& result);
+  void onStatuses(const actionlib_msgs::GoalStatusArray::ConstPtr& statuses);
   void onJogRefusal(const std_msgs::String::ConstPtr& refusal);
   void post(std::function<void()> answer);
   template <typename Service, typename OnResponse>
@@ -144,16 +158,17 @@ class GrinderClient {
   Latest<flute_grinder::WorkOffsets> offsets_;
   Latest<flute_grinder::Legend> legend_;
   Latest<sensor_msgs::JointState> joints_;
-  Latest<flute_grinder::GrinderState> state_;
+  Latest<flute_grinder::GrinderState> states_;
 
   mutable std::mutex mutex_;  ///< guards the members that the callbacks write
   std::optional<Feedback> feedback_;
   flute_grinder::GrindActionGoal::ConstPtr job_;  ///< goal of the job started last
-  std::string sent_;                              ///< id of the last goal sent by this object
+  std::string sent_;                              ///< id of the last goal sent by this object; empty once it has ended
+  bool known_ = false;                            ///< whether the grinder has listed that goal
   std::deque<std::function<void()>> answers_;
 
-  ros::Publisher goals_, stops_, jogs_;
-  ros::Subscriber results_;
+  ros::Publisher goals_, cancels_, stops_, jogs_;
+  ros::Subscriber feedbacks_, results_, statuses_;
   std::deque<Unsent> unsent_;
   std::list<ros::Subscriber> subscribers_;
   ros::AsyncSpinner spinner_;

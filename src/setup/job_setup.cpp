@@ -5,11 +5,15 @@
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/job/rounded_job.h"
 #include "flute_grinder/tool/z_law.h"
+#include "setup/flute_setup.h"
 #include "setup/relief_setup.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 namespace grinder {
@@ -19,6 +23,9 @@ namespace {
 constexpr int kMaxLengthenings = 4;  ///< maximum number of times that the overtravel is lengthened
 constexpr double kSpare = 2e-5;      ///< addition for the precision of the required overtravel [m]
 constexpr double kRoom = 0.02;       ///< additional overtravel for a law of Z, as a fraction of the flute's length
+/// Tolerances, per asked tolerance, within which set-ups for a correction of Z are sought: for the rake, and for spiral
+/// angle and core. A correction changes core and edge so much that other set-ups may suit it.
+constexpr double kRakeForCorrection = 4, kOthersForCorrection = 0.8;
 
 // Decimals in a file. The rake changes by up to 1/R per height (0.0006 deg for 10 nm at a radius of 1 mm), and by a few
 // times the change of the swivel.
@@ -40,95 +47,41 @@ std::string textOf(double value, double scale, int decimals) {
   return number == "-0" ? "0" : number;
 }
 
-std::string asked(const char* path, double value, Unit unit) {
-  return fieldName(path) + " = " + text(Quantity{value, unit}, 5);
-}
-
-std::string range(const SetupRefusal& r, Unit unit) { return text(Quantity{r.min, unit}, Quantity{r.max, unit}, 5); }
-
-std::string textOf(const SetupRefusal::Nearest& nearest, const GrindJob& job) {
-  const CutterGeometry& c = job.cutter;
-  const auto line = [](const std::string& name, double value, const Range& had, double tolerance, Unit unit) {
-    const auto shown = [&](double si) { return text(Quantity{si, unit}, 3); };
-    return "\n  " + name + " = " + text(Quantity{value, unit}, 5) + " within " + shown(tolerance) + ": " +
-           shown(had.from) + (had.to == had.from ? "" : " to " + shown(had.to));
-  };
-  const auto key = [](const char* path) { return fieldName(path); };
-  const auto& [core, end] = nearest.core_diameter;
-  return line(key("cutter.rake_angle"), c.rake_angle, nearest.rake, c.rake_tolerance, Unit::kRadian) +
-         line(rowOf(ToolFigure::kChordalRake).words, c.rake_angle, nearest.chordal_rake, c.chordal_rake_tolerance,
-              Unit::kRadian) +
-         line(key("cutter.spiral_angle"), c.spiral_angle, nearest.spiral, c.spiral_tolerance, Unit::kRadian) +
-         line(key("cutter.core_diameter"), c.core_diameter, {core, core}, c.core_tolerance, Unit::kMetre) +
-         line(key("cutter.core_diameter_end"), c.core_diameter_end, {end, end}, c.core_tolerance, Unit::kMetre);
-}
-
-std::string textOf(const SetupRefusal::Mend& mend, const GrindJob& job) {
+/// What would make the tool possible, for the operator.
+std::string textOf(const FluteMend& mend, const GrindProcess& p) {
   const auto figure = [](const char* path, double value) {
     return fieldName(path) + " = " + textOf(value, units::kMillimetre, 3);
   };
-  if (mend.wheel_diameter > 0) {
-    return "\nIt would be set up with " +
-           figure("process.wheel_diameter", mend.wheel_diameter + 2 * job.process().wheel_wear);
-  }
-  if (mend.wheel_width > 0) return "\nIt would be set up with " + figure("process.wheel_width", mend.wheel_width);
-  if (mend.core_diameter[0] > 0) {
-    return "\nIt would be set up with " + figure("cutter.core_diameter", mend.core_diameter[0]) + " and " +
-           figure("cutter.core_diameter_end", mend.core_diameter[1]);
-  }
-  return "\nNo smaller or narrower wheel and no other core was found to mend it";
-}
-
-std::string textOf(const SetupRefusal& r, const GrindJob& job, std::optional<SetupFigure> keep) {
-  const std::string change = "; change " + fieldName(rowOf(r.problem).change);
-  switch (r.problem) {
-    case SetupProblem::kSwivel:
-      return keep == SetupFigure::kSwivel
-                 ? asked("process.setup_swivel", r.asked, Unit::kRadian) + "; the machine swivels " +
-                       range(r, Unit::kRadian) + "; change it"
-                 : "the set-up takes a swivel of " + text(Quantity{r.asked, Unit::kRadian}, 5) +
-                       "; the machine swivels " + range(r, Unit::kRadian) + change;
-    case SetupProblem::kReach: return "this wheel reaches the cutter in no set-up" + change;
-    case SetupProblem::kCore: return "the wheel cuts through the core" + change;
-    case SetupProblem::kWall:
-      return "the wheel's circumference would form the rake face, not its face or edge; it can in no set-up with this "
-             "depth" +
-             change;
-    case SetupProblem::kTolerance:
-      return "no set-up gives all that is asked within its tolerance; the nearest one gives for" +
-             textOf(r.nearest, job) + textOf(r.mend, job);
-    case SetupProblem::kLand:
-      return "no land is left: the flutes overlap by " + text(Quantity{-r.min, Unit::kMetre}, 3) + " along the circle" +
-             change + (r.mend.wheel_width > 0 ? textOf(r.mend, job) : "");
-    case SetupProblem::kIncomplete:
-      return "near the cone's apex no overtravel makes the flute complete" + change + ", or set " +
-             fieldName("process.incomplete_ok");
-  }
+  const auto& [core, end] = mend.core_diameter;
+  if (mend.less_diameter > 0) return figure("process.wheel_diameter", p.wheel_diameter - mend.less_diameter);
+  if (mend.less_width > 0) return figure("process.wheel_width", p.wheel_width - mend.less_width);
+  if (core > 0) return figure("cutter.core_diameter", core) + " and " + figure("cutter.core_diameter_end", end);
   return "";
 }
 
-SetupRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
+/// The minimum angle from one tooth to the next.
+double minPitch(const std::vector<double>& angles) {
+  double min = angles.front() + units::kTurn - angles.back();
+  for (std::size_t i = 1; i < angles.size(); ++i) min = std::min(min, angles[i] - angles[i - 1]);
+  return min;
+}
+
+/// 1, or -1 for a left-hand cutter, which is set up as the mirror image of a right-hand one.
+double handOf(const GrindJob& job) { return job.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
+
+FluteRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
   const GrindProcess& p = job.process();
-  SetupRequest r;
-  r.cutter = job.cutter;
-  r.cutter.spiral_angle = (askedSpiral(job).from + askedSpiral(job).to) / 2;
-  r.rake = job.cutter.rake_angle;
-  r.tooth_angles = job.tooth_angles;
-  r.wheel = wheelOf(job).worn(p.wheel_wear);
+  const double hand = handOf(job);
+  const Range spiral = askedSpiral(job);
+  const WheelProfile wheel = wheelOf(job).worn(p.wheel_wear);
+  FluteRequest r{job.cutter, minPitch(job.tooth_angles), hand > 0 ? wheel : wheel.mirrored(), 0, swivel, keep, {}};
+  r.cutter.cut = CutDirection::kRightHand;
+  r.cutter.spiral_angle = hand * (spiral.from + spiral.to) / 2;
   r.nominal_radius = p.wheel_diameter / 2 - p.wheel_wear;  // Y follows the wear
-  r.depth = p.depth;
-  const CutterGeometry& c = job.cutter;
-  r.core_diameter = c.core_diameter;
-  r.core_diameter_end = c.core_diameter_end;
-  // A first taper from the asked cores.
-  r.y_per_x = (c.core_diameter_end - c.core_diameter) / 2 / c.flute_length - std::tan(c.cone_angle);
-  r.incomplete_ok = p.incomplete_ok;
-  r.asks_spiral = true;
-  r.min_swivel = swivel.from;
-  r.max_swivel = swivel.to;
-  r.keep = keep;
-  r.kept = {p.setup_swivel, p.setup_height};
-  r.z_law = p.z_law;
+  if (hand < 0) r.swivel = {-swivel.to, -swivel.from};
+  r.kept.swivel = hand * p.setup_swivel;
+  r.kept.height = hand * p.setup_height;
+  r.kept.depth = p.depth;
   return r;
 }
 
@@ -144,20 +97,22 @@ void takeOvertravel(JobSetup& setup) {
   lengthen(p.overtravel_shank, setup.overtravel[1]);
 }
 
-/// Puts the solved figures into the job, as read back from a file. A fixed depth keeps its decimals.
-void take(const SolvedSetup& solved, std::optional<SetupFigure> keep, JobSetup& setup) {
+/// Puts the figures of a set-up into the job, as read back from a file. A figure that stays keeps its decimals.
+void take(const JudgedFlute& found, std::optional<SetupFigure> keep, JobSetup& setup) {
   GrindProcess& p = setup.job.process();
+  const SetupPoint& point = found.point;
+  const double hand = handOf(setup.job);
   const auto millimetres = [](double value) { return rounded(value, units::kMillimetre, kLengthDecimals); };
-  if (keep != SetupFigure::kDepth) p.depth = millimetres(solved.depth);
-  if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(solved.setup.swivel, units::kDegree, kAngleDecimals);
-  if (keep != SetupFigure::kHeight) p.setup_height = millimetres(solved.setup.height);
+  if (keep != SetupFigure::kDepth) p.depth = millimetres(point.depth);
+  if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(hand * point.swivel, units::kDegree, kAngleDecimals);
+  if (keep != SetupFigure::kHeight) p.setup_height = millimetres(hand * point.height);
   // A flute of constant depth needs no depth at its end.
-  if (p.depth_end > 0 || solved.depth_end != solved.depth) p.depth_end = millimetres(solved.depth_end);
-  p.setup_x_shift = millimetres(solved.setup.x_shift);
-  setup.overtravel = solved.overtravel;
+  if (p.depth_end > 0 || point.taper != 0) {
+    p.depth_end = millimetres(point.depth - point.taper * setup.job.cutter.flute_length);
+  }
+  p.setup_x_shift = millimetres(point.x_shift);
+  setup.overtravel = found.overtravel;
   takeOvertravel(setup);
-  setup.limit = solved.limit;
-  setup.margin = solved.margin;
 }
 
 bool hasLaws(const ValidJob& job) {
@@ -180,11 +135,11 @@ void giveRoom(JobSetup& setup) {
 /// Lengthens the overtravel by what is missing: the solver knows the published law of Z, and another law moves the
 /// places of the stroke where the flute's ends are formed.
 /// @return whether it was too short. Near a cone's apex, where no overtravel is enough, it stays.
-bool lengthenOvertravel(const SolvedSetup& solved, JobSetup& setup) {
+bool lengthenOvertravel(const JudgedFlute& found, JobSetup& setup) {
   const GrindProcess& p = setup.job.process();
   const double length = setup.job.cutter.flute_length;
   const auto& complete = setup.check.complete;
-  if (!complete || solved.complete_from > 0 || solved.complete_to < length) return false;
+  if (!complete || !found.complete) return false;
   if (complete->from > 0) setup.overtravel[0] = p.overtravel_end + complete->from + kSpare;
   if (complete->to < length) setup.overtravel[1] = p.overtravel_shank + length - complete->to + kSpare;
   takeOvertravel(setup);
@@ -213,11 +168,27 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   return setup;
 }
 
-/// The job with a solved set-up, and the tool that it grinds.
-JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
+/// The limit that the set-up is nearest to.
+void findLimit(const Range& swivel, JobSetup& setup) {
+  const CutterGeometry& c = setup.job.cutter;
+  const double at = setup.job.process().setup_swivel;
+  const auto least = [&](ToolFigure figure) {
+    const GroundFigure* found = find(setup.check.figures, figure);
+    return found ? found->least.value : 0;
+  };
+  const std::pair<SetupLimit, double> margins[] = {
+      {SetupLimit::kSwivel, std::min(at - swivel.from, swivel.to - at) / (swivel.to - swivel.from)},
+      {SetupLimit::kLand, least(ToolFigure::kLand) / (minPitch(setup.job.tooth_angles) * c.end_diameter / 2)},
+      {SetupLimit::kCore, least(ToolFigure::kCoreDiameter) / c.end_diameter}};
+  std::tie(setup.limit, setup.margin) = *std::min_element(
+      std::begin(margins), std::end(margins), [](const auto& a, const auto& b) { return a.second < b.second; });
+}
+
+/// The job with a set-up, and the tool that it grinds.
+JobSetup setupWith(const JudgedFlute& found, const GrindJob& job, std::optional<SetupFigure> keep) {
   JobSetup setup;
   setup.job = job;
-  take(solved, keep, setup);
+  take(found, keep, setup);
   for (int i = 0;; ++i) {
     const ValidJob valid(setup.job);
     if (i == 0 && !hasLaws(valid)) {
@@ -225,26 +196,54 @@ JobSetup setupWith(const SolvedSetup& solved, const GrindJob& job, std::optional
       continue;
     }
     setup.check = checkGroundCutter(withLaws(valid));
-    if (i == kMaxLengthenings || !lengthenOvertravel(solved, setup)) return setup;
+    if (i == kMaxLengthenings || !lengthenOvertravel(found, setup)) return setup;
   }
 }
 
-/// Whether a plan's check accepts a job with a solved set-up.
-bool isAccepted(const SolvedSetup& solved, const GrindJob& job, std::optional<SetupFigure> keep) {
+/// Whether a plan's check accepts a job with a set-up.
+bool isAccepted(const JudgedFlute& found, const GrindJob& job, std::optional<SetupFigure> keep) {
   try {
-    return setupWith(solved, job, keep).check.reasons.empty();
+    return setupWith(found, job, keep).check.reasons.empty();
   } catch (const std::invalid_argument&) {  // the job is then not valid, or has no law of Z
     return false;
   }
 }
 
+FoundFlute findFlute(const FluteRequest& request, const GrindJob& job) {
+  const auto accepts = [&](const JudgedFlute& found) { return isAccepted(found, job, request.keep); };
+  FoundFlute found = findFluteSetup(request, accepts);
+  if (found.accepted || job.process().z_law == ZLaw::kPublished) return found;
+  FluteRequest wider = request;
+  wider.cutter.rake_tolerance *= kRakeForCorrection;
+  wider.cutter.spiral_tolerance *= kOthersForCorrection;
+  wider.cutter.core_tolerance *= kOthersForCorrection;
+  FoundFlute corrected = findFluteSetup(wider, accepts);
+  return corrected.accepted ? corrected : found;
+}
+
 std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,
                                                     std::optional<SetupFigure> keep) {
-  SetupRequest request = requestOf(job, swivel, keep);
-  request.accepts = [&](const SolvedSetup& solved) { return isAccepted(solved, job, keep); };
-  const auto result = solveSetup(request);
-  if (const auto* refusal = std::get_if<SetupRefusal>(&result)) return textOf(*refusal, job, keep);
-  return setupWith(std::get<SolvedSetup>(result), job, keep);
+  const auto machine = [&] {
+    return "the machine swivels " + text(Quantity{swivel.from, Unit::kRadian}, Quantity{swivel.to, Unit::kRadian}, 5);
+  };
+  const double kept = job.process().setup_swivel;
+  if (keep == SetupFigure::kSwivel && !(kept >= swivel.from && kept <= swivel.to)) {
+    return fieldName("process.setup_swivel") + " = " + text(Quantity{kept, Unit::kRadian}, 5) + "; " + machine() +
+           "; change it";
+  }
+  const FluteRequest request = requestOf(job, swivel, keep);
+  const FoundFlute found = findFlute(request, job);
+  if (found.swivel_beyond) {
+    return "the set-up takes a swivel of " + text(Quantity{handOf(job) * *found.swivel_beyond, Unit::kRadian}, 5) +
+           "; " + machine() + "; change " + fieldName("cutter.spiral_angle");
+  }
+  if (!found.best) {
+    return "this wheel reaches the cutter in no set-up; change " + fieldName("process.wheel_diameter");
+  }
+  JobSetup setup = setupWith(*found.best, job, keep);
+  findLimit(swivel, setup);
+  if (!found.accepted) setup.mend = textOf(mendOf(request, found.best->point), job.process());
+  return setup;
 }
 
 /// Transfers the set-up found for a job with rounded numbers to the job itself.

@@ -14,9 +14,6 @@ namespace grinder {
 
 namespace {
 
-/// Step for the slope of the edge, as a fraction of the blank's radius: small enough for the curvature, large enough
-/// for rounding.
-constexpr double kDifference = 1e-4;
 constexpr int kRings = 64;             ///< rings for the area of a section
 constexpr double kChordalDepth = 0.1;  ///< depth of the chord, as a fraction of the flute's depth
 constexpr int kRingsOfDepth = 6;       ///< rings on which a flute must be complete
@@ -113,16 +110,14 @@ std::optional<Arc> GroundCutter::arc(const Flute& flute, double x, double r) con
   return all;
 }
 
-void GroundCutter::measureRake(const Flute& flute, double x, double r, ToothSection& section) const {
+void GroundCutter::measureRake(const Flute& flute, double x, double r, const Wall& edge, ToothSection& section) const {
   const double hand = direction() == CutDirection::kRightHand ? 1 : -1;
-  const auto edge = rakeFace(flute, x, r);
-  if (!edge) return;
-  section.rake = std::atan(-hand * r * edge->slope);
+  section.rake = std::atan(-hand * r * edge.slope);
   if (section.spiral) section.normal_rake = std::atan(std::tan(*section.rake) * std::cos(*section.spiral));
   const double inner = r - chordDepth(chordal_rake_depth_, section.depth);
   section.chordal_rake.reset();
   if (const auto face = rakeFace(flute, x, inner)) {
-    section.chordal_rake = chordAngle(r, inner, hand * (face->angle - edge->angle));
+    section.chordal_rake = chordAngle(r, inner, hand * (face->angle - edge.angle));
   }
 }
 
@@ -219,23 +214,19 @@ bool GroundCutter::arcIsComplete(const Flute& flute, double x, double r) const {
   return complete(&Arc::low, &Arc::low_x, min, false) && complete(&Arc::high, &Arc::high_x, max, true);
 }
 
-ToothSection GroundCutter::measure(const Flute& flute, double x) const {
+ToothSection GroundCutter::tooth(std::size_t index, double x) const {
+  const Flute& flute = flutes_[index];
   const double r = cutter_.radius(x);
-  const double h = kDifference * r;
+  const bool right = direction() == CutDirection::kRightHand;
   ToothSection section;
-  const double core = coreRadius(flute, x);
-  section.depth = r - core;
-  const auto at = arc(flute, x, r);
-  const auto face = rakeFace(flute, x, r);
-  if (!at || !face) return section;
+  section.depth = r - coreRadius(flute, x);
+  const auto face = rakeFace(flute, x, r), back = outermostWall(flute, x, r, !right);
+  if (!face || !back) return section;
   section.edge = face->angle;
   section.edge_wheel_x = face->axis_x;
-  section.flute = at->high - at->low;
-  const auto ahead = rakeFace(flute, x + h, cutter_.radius(x + h)),
-             behind = rakeFace(flute, x - h, cutter_.radius(x - h));
-  if (ahead && behind) section.spiral = std::atan(r * (ahead->angle - behind->angle) / (2 * h));
-  measureRake(flute, x, r, section);
-  section.complete = isComplete(flute, x, core);
+  section.flute = std::abs(face->angle - back->angle);
+  section.spiral = std::atan(r * (face->turn + face->slope * cutter_.tanCone()));
+  measureRake(flute, x, r, *face, section);
   return section;
 }
 
@@ -244,9 +235,11 @@ GroundSection GroundCutter::section(double x) const {
   section.x = x;
   section.radius = section.core_radius = cutter_.radius(x);
   std::vector<ToothSection> measured;
-  for (const Flute& flute : flutes_) {
-    measured.push_back(measure(flute, x));
-    section.core_radius = std::min(section.core_radius, section.radius - measured.back().depth);
+  for (std::size_t flute = 0; flute < flutes_.size(); ++flute) {
+    ToothSection& one = measured.emplace_back(tooth(flute, x));
+    const double core = section.radius - one.depth;
+    one.complete = one.edge && isComplete(flutes_[flute], x, core);
+    section.core_radius = std::min(section.core_radius, core);
   }
   std::vector<Arcs> arcs(flutes_.size());
   const double depth = section.radius - section.core_radius;
@@ -268,8 +261,10 @@ GroundSection GroundCutter::section(double x) const {
     while (same < i && !landsAreAlike(same, i)) ++same;
     ToothSection& tooth = section.teeth[i];
     tooth.relief = same < i ? section.teeth[same].relief : measureRelief(*this, section, i, reliefs(i));
-    if (tooth.relief->edge_radius < section.radius)
-      measureRake(flutes_[teeth_[i].flute], x, tooth.relief->edge_radius, tooth);
+    const double r = tooth.relief->edge_radius;
+    const Flute& flute = flutes_[teeth_[i].flute];
+    const auto edge = r < section.radius ? rakeFace(flute, x, r) : std::nullopt;
+    if (edge) measureRake(flute, x, r, *edge, tooth);
     section.core_radius = std::min(section.core_radius, tooth.relief->core_radius);
   }
   return section;

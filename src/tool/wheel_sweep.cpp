@@ -429,7 +429,7 @@ WheelSweep::Normal WheelSweep::normal(const Pose& p, double r, double theta, dou
   const double n_z = radial * t * sin_ + axial * cos_;
   const PathDeviation off = deviationSlope(p.axis_x);
   const double tangential = (n_z * y - n_y * z) / r;
-  return {(n_y * y + n_z * z) / r, tangential,
+  return {n_x, (n_y * y + n_z * z) / r, tangential,
           n_x + n_y * (y_per_x_ + off.y) + n_z * (z_per_x_ + stroke_.z_correction.at(p.axis_x).first + off.z) +
               (curve_.slope(p.axis_x) + off.a) * r * tangential};
 }
@@ -452,9 +452,11 @@ std::optional<Wall> WheelSweep::wall(double x, double r, bool high) const {
   const Normal above = normal(p, r, theta, on_face ? face : w + kCorner);
   const double difference = above.along_motion - below.along_motion;
   const double part = difference == 0 ? 0.5 : std::clamp(-below.along_motion / difference, 0.0, 1.0);
-  const double radial = below.radial + part * (above.radial - below.radial);
-  const double tangential = below.tangential + part * (above.tangential - below.tangential);
-  return Wall{angle, -radial / (r * tangential), w, end.axis_x};
+  const auto at_wall = [&](double Normal::*component) {
+    return below.*component + part * (above.*component - below.*component);
+  };
+  const double per_angle = r * at_wall(&Normal::tangential);
+  return Wall{angle, -at_wall(&Normal::radial) / per_angle, -at_wall(&Normal::axial) / per_angle, w, end.axis_x};
 }
 
 double WheelSweep::minRadius(double x, double blank_radius) const {

@@ -66,7 +66,7 @@ class TestFigures(TestSetup):
                  r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
                  r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),
                  r'reads \(D - 10\)/2 mm: 0\.000 mm for D = 10 mm', r'flutes complete +X 0\.000 to 30\.000 mm',
-                 r'core diameter +6\.800 to 12\.050 mm; asked 6\.8 to 12\.05 mm within 0\.02 mm']
+                 r'core diameter +6\.80. to 12\.05. mm; asked 6\.8 to 12\.05 mm within 0\.02 mm']
         for name, key, asked in (('rake', 'rake', '8 deg within 0.5'), ('chordal rake', 'chordal_rake', '8 deg within 7'),
                                  ('spiral angle', 'spiral', '30 deg within 0.3')):
             ends = found['figures'][key]['ground_deg']

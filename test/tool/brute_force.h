@@ -1,7 +1,9 @@
 #pragma once
 
 #include "flute_grinder/base/units.h"
-#include "flute_grinder/setup/setup_solver.h"
+#include "flute_grinder/curve/z_correction.h"
+#include "flute_grinder/job/cutter_geometry.h"
+#include "flute_grinder/tool/wheel_profile.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,45 +15,49 @@
 /// with the sweep but the wheel's profile and the path.
 namespace grinder::brute {
 
+/// A cutter, and the wheel that grinds it.
+struct Tool {
+  CutterGeometry cutter;
+  std::size_t teeth = 1;
+  WheelProfile wheel = WheelProfile::straight(0.1, 0.003);
+  double nominal_radius = 0;  ///< radius of the wheel that touches the small end at Y = 0 [m]
+  double y_per_x = 0;         ///< slope of a core taper, added to the cone's
+};
+
 /// A cutter of one tooth and a straight wheel, in the shop's units.
 struct Shop {
   double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
   CutDirection cut = CutDirection::kRightHand;
 
-  SetupRequest request() const {
+  Tool tool() const {
     constexpr double kMm = units::kMillimetre, kDegree = units::kDegree;
-    SetupRequest r;
-    r.cutter = {diameter * kMm, cone * kDegree, spiral * kDegree, rake * kDegree, length * kMm, cut};
-    r.rake = rake * kDegree;
-    r.tooth_angles = {0};
-    r.wheel = WheelProfile::straight(wheel * kMm, width * kMm);
-    r.nominal_radius = wheel / 2 * kMm;
-    r.depth = depth * kMm;
-    r.min_swivel = -60 * kDegree;
-    r.max_swivel = 60 * kDegree;
-    return r;
+    Tool tool;
+    tool.cutter = {diameter * kMm, cone * kDegree, spiral * kDegree, rake * kDegree, length * kMm, cut};
+    tool.wheel = WheelProfile::straight(wheel * kMm, width * kMm);
+    tool.nominal_radius = wheel / 2 * kMm;
+    return tool;
   }
 };
 
-/// A set-up of a wheel that grinds a request's cutter.
+/// A set-up of a wheel that grinds a cutter.
 struct Bench {
-  const SetupRequest& request;
+  const Tool& tool;
   double swivel, height, depth;
   int poses = 120, places = 24;
   ZCorrection z_correction{};
-  double x_shift = 0, taper = 0;  ///< of the wheel's centre, and beside the request's y_per_x
+  double x_shift = 0, taper = 0;  ///< of the wheel's centre, and beside the tool's y_per_x
 
   /// dZ/dY
-  static double zPerY(const SetupRequest& request) {
-    return (request.cutter.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(request.cutter.rake_angle);
+  static double zPerY(const Tool& tool) {
+    return (tool.cutter.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(tool.cutter.rake_angle);
   }
 
-  double radius(double x) const { return request.cutter.end_diameter / 2 + x * std::tan(request.cutter.cone_angle); }
+  double radius(double x) const { return tool.cutter.end_diameter / 2 + x * std::tan(tool.cutter.cone_angle); }
 
   /// How far the path has turned at a place of the stroke.
   double turned(double s) const {
-    const double tan_cone = std::tan(request.cutter.cone_angle), tan_spiral = std::tan(request.cutter.spiral_angle);
-    const double r0 = request.cutter.end_diameter / 2;
+    const double tan_cone = std::tan(tool.cutter.cone_angle), tan_spiral = std::tan(tool.cutter.spiral_angle);
+    const double r0 = tool.cutter.end_diameter / 2;
     return std::abs(tan_cone) < 1e-9 ? tan_spiral * s / r0 : tan_spiral / tan_cone * std::log(1 + s * tan_cone / r0);
   }
 
@@ -61,11 +67,11 @@ struct Bench {
 
   /// The end of the circle's arc inside the wheel while it stands at s; side 1 is the upper end, -1 the lower one.
   End endAt(double x, double r, double s, int side) const {
-    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
+    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);
     const double y0 =
-        request.cutter.end_diameter / 2 + request.nominal_radius - depth + s * (tan_cone + request.y_per_x + taper);
-    const double z0 = height + s * tan_cone * zPerY(request) + z_correction.at(s).z;
-    const WheelProfile& wheel = request.wheel;
+        tool.cutter.end_diameter / 2 + tool.nominal_radius - depth + s * (tan_cone + tool.y_per_x + taper);
+    const double z0 = height + s * tan_cone * zPerY(tool) + z_correction.at(s).z;
+    const WheelProfile& wheel = tool.wheel;
     const double lower = wheel.lowerFace(), upper = wheel.upperFace();
     double sine = 0;
     const auto inside = [&](double w) {
@@ -96,13 +102,13 @@ struct Bench {
 
   /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
   End wall(double x, double r, int side) const {
-    const double large = request.wheel.maxRadius(), rise = large * std::abs(std::tan(request.cutter.cone_angle));
+    const double large = tool.wheel.maxRadius(), rise = large * std::abs(std::tan(tool.cutter.cone_angle));
     const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
-                         (request.wheel.upperFace() - request.wheel.lowerFace());
+                         (tool.wheel.upperFace() - tool.wheel.lowerFace());
     double from = x - 1.5 * reach, to = x + 1.5 * reach;
-    const double apex = -request.cutter.end_diameter / 2 / std::tan(request.cutter.cone_angle);
-    if (request.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
-    if (request.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
+    const double apex = -tool.cutter.end_diameter / 2 / std::tan(tool.cutter.cone_angle);
+    if (tool.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
+    if (tool.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
@@ -144,7 +150,7 @@ struct Bench {
     return in;
   }
 
-  int rakeSide() const { return request.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
+  int rakeSide() const { return tool.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
 
   double rake(double x) const {
     const double r = radius(x), h = 1e-5 * r;
@@ -153,16 +159,16 @@ struct Bench {
 
   /// The larger error of the rake at both ends of the flute; infinite if the wheel does not reach the outer circle.
   double rakeError() const {
-    const double one = std::abs(rake(0) - request.rake);
-    const double other = std::abs(rake(request.cutter.flute_length) - request.rake);
+    const double one = std::abs(rake(0) - tool.cutter.rake_angle);
+    const double other = std::abs(rake(tool.cutter.flute_length) - tool.cutter.rake_angle);
     return one <= other ? other : other <= one ? one : std::numeric_limits<double>::infinity();
   }
 
   /// The minimum land over both ends of the flute [m].
   double land() const {
     double min = std::numeric_limits<double>::infinity();
-    const double pitch = 2 * 3.14159265358979324 / static_cast<double>(request.tooth_angles.size());
-    for (const double x : {0.0, request.cutter.flute_length}) {
+    const double pitch = 2 * 3.14159265358979324 / static_cast<double>(tool.teeth);
+    for (const double x : {0.0, tool.cutter.flute_length}) {
       const double flute = wall(x, radius(x), 1).angle + wall(x, radius(x), -1).angle;
       min = std::min(min, radius(x) * (pitch - flute));
     }
@@ -171,14 +177,14 @@ struct Bench {
 
   /// Whether the rake face, a tenth of the depth below the outer circle, is formed beyond the wheel's maximum radius.
   bool formedByFace() const {
-    const WheelProfile& wheel = request.wheel;
+    const WheelProfile& wheel = tool.wheel;
     double max = rakeSide() > 0 ? wheel.lowerFace() : wheel.upperFace();
     for (int i = 0; i <= 1000; ++i) {
       const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * i / 1000;
       if (wheel.radius(w) >= wheel.maxRadius() * (1 - 1e-6))
         max = std::max(rakeSide() * max, rakeSide() * w) * rakeSide();
     }
-    for (const double x : {0.0, request.cutter.flute_length}) {
+    for (const double x : {0.0, tool.cutter.flute_length}) {
       const double w = wall(x, radius(x) - 0.1 * depth, rakeSide()).w;
       if (rakeSide() * (w - max) < -1e-6) return false;
     }
@@ -186,23 +192,22 @@ struct Bench {
   }
 
   /// The depth that leaves a core at X = 0; infinite if none does.
-  static double depthFor(const SetupRequest& request, double swivel, double height, double core, int places,
-                         int discs) {
-    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(request.cutter.cone_angle);
-    const double reach = 0.8 * request.wheel.maxRadius();
+  static double depthFor(const Tool& tool, double swivel, double height, double core, int places, int discs) {
+    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);
+    const double reach = 0.8 * tool.wheel.maxRadius();
     double min = std::numeric_limits<double>::infinity();
     for (int i = -places; i <= places; ++i) {
       const double s = reach * i / places;
-      if (std::abs(s * tan_cone) > 0.98 * request.cutter.end_diameter / 2) continue;
+      if (std::abs(s * tan_cone) > 0.98 * tool.cutter.end_diameter / 2) continue;
       for (int k = 0; k <= discs; ++k) {
-        const WheelProfile& wheel = request.wheel;
+        const WheelProfile& wheel = tool.wheel;
         const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * k / discs;
         const double dz = (w - s * sn) / cs, t = dz * sn - s * cs;
-        const double z = height + dz + s * tan_cone * zPerY(request);
+        const double z = height + dz + s * tan_cone * zPerY(tool);
         const double squared = wheel.radius(w) * wheel.radius(w) - t * t;
         if (std::abs(z) > core || squared < 0) continue;
-        const double low = request.cutter.end_diameter / 2 + request.nominal_radius + s * (tan_cone + request.y_per_x) -
-                           std::sqrt(squared);
+        const double low =
+            tool.cutter.end_diameter / 2 + tool.nominal_radius + s * (tan_cone + tool.y_per_x) - std::sqrt(squared);
         min = std::min(min, low - std::sqrt(core * core - z * z));
       }
     }

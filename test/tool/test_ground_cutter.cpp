@@ -148,11 +148,11 @@ double bruteEnd(const RandomCase& k, double r, bool high, int fineness) {
   constexpr int kCloser = 14;
   const int poses = 1500 * fineness, places = 200 * fineness;
   const Case& c = k.c;
-  SetupRequest request;
-  request.cutter = {c.cutter().cone()};
-  request.wheel = k.wheel;
-  request.nominal_radius = c.wheel / 2 * kMillimetre;
-  const brute::Bench bench{request, c.setup().swivel, c.setup().height, c.depth * kMillimetre, poses, places};
+  brute::Tool tool;
+  tool.cutter = {c.cutter().cone()};
+  tool.wheel = k.wheel;
+  tool.nominal_radius = c.wheel / 2 * kMillimetre;
+  const brute::Bench bench{tool, c.setup().swivel, c.setup().height, c.depth * kMillimetre, poses, places};
   const double from = std::max(c.from * kMillimetre, k.x - 0.04), to = std::min(c.to * kMillimetre, k.x + 0.04);
   double step = (to - from) / poses, best = -1e9, best_at = from;
   const auto tryAll = [&](double first, int count) {

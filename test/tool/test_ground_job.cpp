@@ -307,11 +307,11 @@ TEST(GroundJob, AnEngraverOf30DegIsPossible) {
 // The published motion grinds the paper's cutter with a spiral of 27 deg.
 TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
   GrindJob job = jobOf("paper");
-  SetupRequest request;
-  request.cutter = job.cutter;
-  request.wheel = wheelOf(job);
-  request.nominal_radius = job.process().wheel_diameter / 2;
-  brute::Bench bench{request, job.process().setup_swivel, job.process().setup_height, job.process().depth, 200, 100};
+  brute::Tool tool;
+  tool.cutter = job.cutter;
+  tool.wheel = wheelOf(job);
+  tool.nominal_radius = job.process().wheel_diameter / 2;
+  brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 200, 100};
   bench.x_shift = job.process().setup_x_shift;
   bench.taper = (job.process().depth - job.process().depthEnd()) / job.cutter.flute_length;
   double min = 1e9, max = -1e9;
@@ -370,12 +370,11 @@ GrindJob nearApex(double overtravel_mm) {
 
 /// From which overtravel on, beyond 9.2 mm, a wall of the flute at X = 0 goes farther than before, by trying.
 double spoiledByTrying(const GrindJob& job, double core) {
-  SetupRequest request;
-  request.cutter = job.cutter;
-  request.wheel = wheelOf(job);
-  request.nominal_radius = job.process().wheel_diameter / 2;
-  const brute::Bench bench{request, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120,
-                           400};
+  brute::Tool tool;
+  tool.cutter = job.cutter;
+  tool.wheel = wheelOf(job);
+  tool.nominal_radius = job.process().wheel_diameter / 2;
+  const brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120, 400};
   double first = 12 * kMillimetre;
   for (int i = 1; i <= 6; ++i) {
     for (const int side : {-1, 1}) {

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "flute_grinder/base/enum_table.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/setup_file.h"
-#include "flute_grinder/setup/setup_solver.h"
 #include "flute_grinder/tool/ground_job.h"
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <variant>
@@ -14,13 +15,22 @@
 /// The set-up for a job: what `grind setup` and the panel show, and write into its set-up file.
 namespace grinder {
 
+/// The property of a set-up that is nearest to its limit.
+enum class SetupLimit : std::uint8_t { kSwivel, kLand, kCore };
+constexpr EnumRow<SetupLimit> kSetupLimits[] = {
+    {SetupLimit::kSwivel, "swivel"}, {SetupLimit::kLand, "land"}, {SetupLimit::kCore, "core"}};
+constexpr const auto& rowsOf(SetupLimit) noexcept { return kSetupLimits; }
+
 /// The set-up for a job, and the tool that the job grinds with it.
 struct JobSetup {
   GrindJob job;                            ///< the job with the set-up, as it would be read from its files
   std::array<double, 2> overtravel{};      ///< required overtravel, at the small end and at the shank [m]
   CutterCheck check;                       ///< result of the plan's check; a set-up with a reason is not written
   SetupLimit limit = SetupLimit::kSwivel;  ///< the limit with the smallest margin
-  double margin = 0;                       ///< see SolvedSetup
+  double margin = 0;  ///< margin to that limit, relative to the machine's swivel range, the pitch or the end diameter
+  /// What else would make the tool possible, if no set-up gives all that is asked: a smaller or a narrower wheel, or
+  /// other cores, as "key = value"; empty if none of these does.
+  std::string mend;
   /// Properties of a relief, instead of overtravel, limit and margin.
   struct Relief {
     double rim = 0;        ///< width of the rim behind the relief's start; the land needs all of it except a margin [m]
@@ -31,15 +41,17 @@ struct JobSetup {
   std::optional<Relief> relief;
 };
 
-/// Solves the set-up of a job: rake and edge over the flute, and the cores at its ends. Uses the wheel's wear at the
+/// Solves the set-up of a job: rake, edge and core over the flute, see docs/algorithm.md. Uses the wheel's wear at the
 /// job's start, and the middle of unequal spiral angles. The figures are rounded as in a file before the tool is
-/// checked, and the overtravel is lengthened as the job's law of Z requires. Takes up to some tenths of a second, or
-/// seconds if it is refused. For a relief, finds swivel and height: the swivel nearest to the flutes' swivel at which
+/// checked, and the overtravel is lengthened as the job's law of Z requires. Takes some tenths of a second, or some
+/// seconds if there is none. For a relief, finds swivel and height: the swivel nearest to the flutes' swivel at which
 /// the rim covers the land and clears the next tooth.
 /// @param asked as in JobToSetUp; its numbers are rounded to nine digits, see roundedOff().
 /// @param swivel range that the machine allows [rad].
 /// @param keep the figure that stays.
-/// @return the set-up; or, for the operator, the asked values, the reachable values, and the key to change.
+/// @return the set-up; of flutes that cannot be had, the nearest one, with the reasons in its check. Or, for the
+/// operator,
+///         why there is none at all, and the key to change.
 std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const Range& swivel,
                                                   std::optional<SetupFigure> keep);
 

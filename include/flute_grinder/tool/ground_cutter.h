@@ -102,6 +102,9 @@ class GroundCutter {
   /// @param x X of the section, where the blank's radius is positive [m].
   GroundSection section(double x) const;
 
+  /// A tooth at angle 0 in a section, as its flute alone leaves it: without a land, reliefs, or whether it is complete.
+  ToothSection tooth(std::size_t flute, double x) const;
+
   /// The area removed in a section [m^2].
   double areaRemoved(const GroundSection& section) const { return areaRemoved(section.x, section.core_radius); }
 
@@ -138,12 +141,11 @@ class GroundCutter {
   std::optional<Wall> rakeFace(const Flute& flute, double x, double r) const {
     return outermostWall(flute, x, r, direction() == CutDirection::kRightHand);
   }
-  /// Measures the rakes of a tooth whose edge is on the circle of radius `r`.
-  void measureRake(const Flute& flute, double x, double r, ToothSection& section) const;
+  /// Measures the rakes of a tooth at its edge, on the circle of radius `r`.
+  void measureRake(const Flute& flute, double x, double r, const Wall& edge, ToothSection& section) const;
   double coreRadius(const Flute& flute, double x) const { return leastRadius(flute, x, cutter_.radius(x)); }
   double coreRadius(double x) const;
   double areaRemoved(double x, double core_radius) const;
-  ToothSection measure(const Flute& flute, double x) const;
   bool isComplete(const Flute& flute, double x, double core_radius) const;
   bool arcIsComplete(const Flute& flute, double x, double r) const;
   bool isComplete(double x) const;

@@ -53,6 +53,7 @@ struct Arc {
 struct Wall {
   double angle = 0;   ///< angle, in the sense of A [rad]
   double slope = 0;   ///< d angle / d radius [rad/m]
+  double turn = 0;    ///< d angle / dX on the circle's cylinder [rad/m]
   double w = 0;       ///< place on the wheel's profile that forms it [m]
   double axis_x = 0;  ///< X of the wheel's centre that forms it [m]
 };
@@ -155,10 +156,10 @@ class WheelSweep {
   };
   std::optional<Spoiling> spoiling(double x, double r, bool high) const;
   Extremum anyExtremum(double x, double r, const Window& window, bool high) const;
-  /// A normal of the wheel, of any length: along the cutter's radius, in the sense of rising angles, and along the
-  /// wheel's motion relative to the cutter.
+  /// A normal of the wheel, of any length: along the cutter's axis and radius, in the sense of rising angles, and along
+  /// the wheel's motion relative to the cutter.
   struct Normal {
-    double radial, tangential, along_motion;
+    double axial, radial, tangential, along_motion;
   };
   Normal normal(const Pose& pose, double r, double theta, double w) const noexcept;
   /// The minimum of a function of the wheel's lower side in a section, and its place on the stroke.

@@ -17,9 +17,10 @@ struct FreeFigure {
 /// The figures of a request's set-up that are free.
 std::vector<FreeFigure> freeFigures(const FluteTrial& trial);
 
-/// Fits a set-up to the asked tool: the sum of squares of all errors over the flute, per tolerance, is least, and what
-/// an error exceeds most of its tolerance, or a land is less than wide, counts many times (Levenberg and Marquardt).
-/// @param figures the figures that may change; where two are equally good, the point nearest to the start is taken.
+/// Fits a set-up to the asked tool: the smallest sum of squares of all errors over the flute, each per its tolerance,
+/// by Levenberg and Marquardt. An error beyond nine tenths of its tolerance counts ten times, and so does a missing
+/// land.
+/// @param figures the figures that may change.
 /// @param sections intervals between the sections that are measured.
 /// @param most maximum number of steps.
 /// @return nothing if the start gives no tool.

@@ -27,7 +27,6 @@ struct Stage {
   std::size_t most;  ///< maximum number of results that go on
 };
 constexpr Stage kStages[] = {{1, 4, 48}, {1, 8, 24}, {4, 8, 8}, {4, 40, 8}};
-constexpr Stage kLast = kStages[3];
 /// Starting swivels, relative to the spiral angle, and numbers of starting heights on either side of the axis. On a
 /// cylinder, a wheel in the plane of the helix may give the maximum rake, which may be the asked one.
 const std::vector<double> kFirstSwivels{4 * kDegree};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/online.h"
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "flute_grinder/network/service_call.h"
 
 #include <ros/ros.h>

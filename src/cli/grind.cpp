@@ -1,7 +1,7 @@
 #include "cli/command_line.h"
 #include "cli/csv.h"
 #include "cli/online.h"
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/network/init_ros.h"

@@ -1,6 +1,6 @@
 #include "cli/json_output.h"
 
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/messages/offset_basis.h"

@@ -4,7 +4,7 @@
 #include "cli/interrupt.h"
 #include "cli/offsets.h"
 #include "cli/online.h"
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "cli/zeros.h"
 #include "flute_grinder/ProbeAction.h"
 #include "flute_grinder/base/escaped.h"

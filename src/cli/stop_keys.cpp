@@ -1,7 +1,7 @@
 #include "cli/stop_keys.h"
 
 #include "cli/interrupt.h"
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 
 #include <utility>
 

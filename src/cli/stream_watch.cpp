@@ -1,6 +1,6 @@
 #include "cli/stream_watch.h"
 
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "flute_grinder/messages/conversions.h"
 
 #include <algorithm>

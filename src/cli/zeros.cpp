@@ -4,7 +4,7 @@
 #include "cli/machine_file.h"
 #include "cli/offsets.h"
 #include "cli/online.h"
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/messages/offset_basis.h"

@@ -115,15 +115,6 @@ void take(const JudgedFlute& found, std::optional<SetupFigure> keep, JobSetup& s
   takeOvertravel(setup);
 }
 
-bool hasLaws(const ValidJob& job) {
-  try {
-    withLaws(job);
-    return true;
-  } catch (const ReasonError&) {
-    return false;
-  }
-}
-
 /// Lengthens the overtravel by more than a law of Z needs: an incomplete flute may have no such law.
 void giveRoom(JobSetup& setup) {
   for (double& beyond : setup.overtravel) {
@@ -190,12 +181,13 @@ JobSetup setupWith(const JudgedFlute& found, const GrindJob& job, std::optional<
   setup.job = job;
   take(found, keep, setup);
   for (int i = 0;; ++i) {
-    const ValidJob valid(setup.job);
-    if (i == 0 && !hasLaws(valid)) {
+    try {
+      setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
+    } catch (const ReasonError&) {  // no law of Z
+      if (i > 0) throw;
       giveRoom(setup);
       continue;
     }
-    setup.check = checkGroundCutter(withLaws(valid));
     if (i == kMaxLengthenings || !lengthenOvertravel(found, setup)) return setup;
   }
 }

@@ -28,7 +28,7 @@ MESSAGES = {
                            'the power is on', 'the fault is reset; the power is commanded off', 'held because', 'no journal', 'it ended'),
     'src/cli/probe.cpp': ('work offset',),
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
-    'src/cli/state_watch.cpp': (),
+    'src/cli/waiting.cpp': (),
     'src/check/machine_shapes.cpp': (),
     'src/network/master_watch.cpp': (),
     'src/control/loop_requests.cpp': (),

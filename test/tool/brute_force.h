@@ -175,22 +175,6 @@ struct Bench {
     return min;
   }
 
-  /// Whether the rake face, a tenth of the depth below the outer circle, is formed beyond the wheel's maximum radius.
-  bool formedByFace() const {
-    const WheelProfile& wheel = tool.wheel;
-    double max = rakeSide() > 0 ? wheel.lowerFace() : wheel.upperFace();
-    for (int i = 0; i <= 1000; ++i) {
-      const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * i / 1000;
-      if (wheel.radius(w) >= wheel.maxRadius() * (1 - 1e-6))
-        max = std::max(rakeSide() * max, rakeSide() * w) * rakeSide();
-    }
-    for (const double x : {0.0, tool.cutter.flute_length}) {
-      const double w = wall(x, radius(x) - 0.1 * depth, rakeSide()).w;
-      if (rakeSide() * (w - max) < -1e-6) return false;
-    }
-    return true;
-  }
-
   /// The depth that leaves a core at X = 0; infinite if none does.
   static double depthFor(const Tool& tool, double swivel, double height, double core, int places, int discs) {
     const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);

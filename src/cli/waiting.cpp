@@ -1,4 +1,4 @@
-#include "cli/state_watch.h"
+#include "cli/waiting.h"
 
 #include "flute_grinder/machine/machine_state.h"
 

@@ -216,6 +216,13 @@ TEST(FluteSetup, WithItsOvertravelTheFluteIsCompleteAndWithLessItIsNot) {
   EXPECT_GT(shortened, 0);
 }
 
+// Found at random: a fit to rake, edge and core alone ends where the flutes meet.
+TEST(FluteSetup, ALandIsLookedFor) {
+  const JobSetup setup = solved(jobWithEdge(Shop{1.38, 0, -22.3, 14.2, 3.37, 0.195, 75, 0.63}, 8));
+  EXPECT_GT(find(setup.check.figures, ToolFigure::kLand)->least.value, 0);
+  expectWithinTolerances(setup.job);
+}
+
 TEST(FluteSetup, ASwivelBeyondTheMachinesRangeIsNamed) {
   for (const int hand : {1, -1}) {
     Shop shop;

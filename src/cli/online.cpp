@@ -20,6 +20,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/wheel_known.h"
+#include "flute_grinder/network/prompt_connections.h"
 
 #include <actionlib_msgs/GoalID.h>
 #include <ros/service_manager.h>
@@ -190,6 +191,7 @@ bool joinRos(const std::string& node) {
     return false;
   }
   // Called here, so that the end of the last NodeHandle does not call ros::shutdown(), which takes 0.1 to 0.3 s.
+  connectPromptly();
   ros::start();
   // Never stopped, because that would wait for its thread; it ends with the process.
   static ros::AsyncSpinner spinner(1);

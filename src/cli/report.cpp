@@ -75,13 +75,13 @@ void measureTool(const RunStrokes& strokes, const std::string& place, ReportCont
 
 /// Goes through the rows of a bag for the report, and for the tool if the bag has the job and the positions read.
 /// @param job job of the run, with its laws.
-void surveyRun(const std::string& path, const BagRun& run, const std::optional<ValidJob>& job, Survey& survey,
-               ReportContext& context) {
+void addRows(const std::string& path, const BagRun& run, const std::optional<ValidJob>& job, RunFindings& findings,
+             ReportContext& context) {
   std::optional<RunStrokes> strokes;
   std::string& why = context.no_tool;
   if (job) why = reasonWhyNot([&] { strokes.emplace(*job, recordedBefore(path, run)); });
   run.visit([&](const RunRow& row) {
-    survey.add(row);
+    findings.add(row);
     if (strokes && why.empty()) why = reasonWhyNot([&] { strokes->add(row.setpoint, row.actual); });
   });
   if (!strokes || !why.empty()) return;
@@ -102,10 +102,10 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
     context.no_tool = "the bag does not have the goal of " + run.place();
   }
   say("computing the ground tool");
-  Survey survey(run, asked, draws);
-  surveyRun(path, run, asked, survey, context);
-  Json document = survey.findings(context);
-  if (draws) document["plots"] = survey.plots();
+  RunFindings findings(run, asked, draws);
+  addRows(path, run, asked, findings, context);
+  Json document = findings.json(context);
+  if (draws) document["plots"] = findings.plots();
   return document;
 }
 

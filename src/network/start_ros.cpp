@@ -1,5 +1,7 @@
 #include "flute_grinder/network/start_ros.h"
 
+#include "flute_grinder/network/prompt_connections.h"
+
 #include <ros/connection_manager.h>
 #include <ros/console_impl.h>
 #include <ros/ros.h>
@@ -47,6 +49,7 @@ bool listLoggers(roscpp::GetLoggers::Request&, roscpp::GetLoggers::Response& res
 
 ros::ServiceServer startRos() {
   allowDescriptors();
+  connectPromptly();
   ros::start();
   ros::ConnectionManager::instance()->getUDPServerTransport()->disableRead();
   ros::ServiceManager::instance()->unadvertiseService(ros::names::resolve("~get_loggers"));

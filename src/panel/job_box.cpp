@@ -53,7 +53,7 @@ JobBox::JobBox(QWidget* parent)
       plan_(new PanelButton("plan", "Plan",
                             "The grinder plans and checks the job as it would be ground; nothing moves. While a job "
                             "runs, 'grind plan' does so without the grinder")),
-      verdict_(textView("verdict", kAnswerLines)),
+      report_(textView("plan_report", kAnswerLines)),
       other_job_(textView("other_job", kAnswerLines)),
       answer_(new QStackedWidget),
       form_(new QWidget),
@@ -85,7 +85,7 @@ void JobBox::layOut() {
   layout->addWidget(operation_);
   layout->addWidget(continue_);
   layout->addWidget(plan_);
-  answer_->addWidget(verdict_);
+  answer_->addWidget(report_);
   answer_->addWidget(other_job_);
   layout->addWidget(answer_);
   pages_->addWidget(form_);
@@ -169,7 +169,7 @@ void JobBox::read() {
     planned_.reset();
     // Without the folder, which is too long for a panel.
     const QString folder = file_.chopped(QFileInfo(file_).fileName().size());
-    showVerdict(folder.isEmpty() ? error.what() : QString(error.what()).remove(folder), false);
+    showReport(folder.isEmpty() ? error.what() : QString(error.what()).remove(folder), false);
   }
 }
 
@@ -183,7 +183,7 @@ void JobBox::watchFiles(const JobFile& opened) {
 
 void JobBox::discardPlan(const QString& why) {
   planned_.reset();
-  showVerdict(why.isEmpty() ? withoutPlan() : why, why.isEmpty());
+  showReport(why.isEmpty() ? withoutPlan() : why, why.isEmpty());
 }
 
 /// Whether offsets from the grinder differ from the plan's. Older ones do not count: the offsets at the time of
@@ -224,7 +224,7 @@ std::optional<flute_grinder::GrindGoal> JobBox::beginPlan() {
   discardPlan();
   read();
   auto goal = goalNow();
-  if (goal) showVerdict("Planning ...", true);
+  if (goal) showReport("Planning ...", true);
   return goal;
 }
 
@@ -240,7 +240,7 @@ void JobBox::setPlan(const flute_grinder::GrindGoal& goal, const flute_grinder::
   if (result.plan.valid) planned_ = goal;
   needs_ = result.plan.needs;
   planned_with_ = result.plan.offsets;
-  showVerdict(QString::fromStdString(describe(result)), result.plan.valid != 0);
+  showReport(QString::fromStdString(describe(result)), result.plan.valid != 0);
 }
 
 void JobBox::start() {
@@ -298,13 +298,13 @@ std::optional<flute_grinder::GrindGoal> JobBox::takePlanned() {
   read();
   auto goal = std::exchange(planned_, std::nullopt);
   if (goal && isForNow(*goal)) return goal;
-  if (job_) showVerdict(kFileChanged, false);
+  if (job_) showReport(kFileChanged, false);
   return std::nullopt;
 }
 
 void JobBox::showOtherJob(const QString& text) {
   if (text != other_job_->toPlainText()) other_job_->setPlainText(text);
-  answer_->setCurrentWidget(text.isEmpty() ? verdict_ : other_job_);
+  answer_->setCurrentWidget(text.isEmpty() ? report_ : other_job_);
 }
 
 void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
@@ -323,11 +323,11 @@ void JobBox::refresh(const std::optional<flute_grinder::GrinderState>& state,
 
 void JobBox::refreshContinue(const std::optional<flute_grinder::GrinderState>& state) {
   if (!state) return;
-  const bool has_no_plan = verdict_->toPlainText() == withoutPlan();
+  const bool has_no_plan = report_->toPlainText() == withoutPlan();
   job_runs_ = isInJob(static_cast<MachineState>(state->state));
   progress_ = state->progress;
   journal_error_ = state->journal_error;
-  if (has_no_plan && verdict_->toPlainText() != withoutPlan()) showText(*verdict_, withoutPlan(), true);
+  if (has_no_plan && report_->toPlainText() != withoutPlan()) showText(*report_, withoutPlan(), true);
   where_left_.reset();
   if (job_) {
     flute_grinder::GrindGoal left = goal_;
@@ -378,8 +378,8 @@ void JobBox::findUnfinished() {
   }
 }
 
-void JobBox::showVerdict(const QString& text, bool good) {
-  showText(*verdict_, text, good);
+void JobBox::showReport(const QString& text, bool good) {
+  showText(*report_, text, good);
   closeQuestion();
 }
 

@@ -100,7 +100,7 @@ class JobBox : public QWidget {
   QString unfinishedName(const QString& rest) const;
   void clickContinue(bool checked);
   QString withoutPlan() const;
-  void showVerdict(const QString& text, bool good);
+  void showReport(const QString& text, bool good);
 
   QString file_;
   std::string grinder_;  ///< name of the grinder's node
@@ -124,9 +124,9 @@ class JobBox : public QWidget {
   QPushButton* setup_;
   QCheckBox* continue_;
   QPushButton* plan_;
-  QPlainTextEdit* verdict_;
+  QPlainTextEdit* report_;
   QPlainTextEdit* other_job_;
-  QStackedWidget* answer_;  ///< the verdict, or the job of another client
+  QStackedWidget* answer_;  ///< the plan report, or the job of another client
   QWidget* form_;           ///< page with all widgets above
   Question* question_;
   QStackedWidget* pages_;  ///< the form or the question

@@ -42,20 +42,20 @@ void addVerdict(Json& data, const std::vector<Criterion>& criteria, const Verdic
 
 }  // namespace
 
-void Survey::MaxOfAxes::add(bool in_stroke, const Axes& values) {
+void RunFindings::MaxOfAxes::add(bool in_stroke, const Axes& values) {
   Axes& part = in_stroke ? stroke : rapid;
   part = part.max(values.abs());
 }
 
-Survey::Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws)
+RunFindings::RunFindings(const BagRun& run, const std::optional<ValidJob>& job, bool draws)
     : run_(run),
       motion_(std::make_unique<MotionOfRows>(run)),
       plots_(draws ? std::make_unique<Plots>(run) : nullptr),
       strokes_(job ? StrokeLog(*job) : StrokeLog()) {}
 
-Survey::~Survey() = default;
+RunFindings::~RunFindings() = default;
 
-void Survey::add(const RunRow& row) {
+void RunFindings::add(const RunRow& row) {
   const bool in_stroke = row.setpoint.step != StepKind::kNone;
   const AxisMotion motion = motion_->add(row);
   if (motion.speed) speed_.add(in_stroke, *motion.speed);
@@ -71,9 +71,9 @@ void Survey::add(const RunRow& row) {
   if (plots_) plots_->add(row, motion);
 }
 
-Json Survey::plots() const { return plots_->json(); }
+Json RunFindings::plots() const { return plots_->json(); }
 
-Json Survey::findings(const ReportContext& context) const {
+Json RunFindings::json(const ReportContext& context) const {
   Json data = headOf("bag", "bag of the grinder", context);
   data.update(run_.head());
   escapeTexts(data);
@@ -96,7 +96,7 @@ Json Survey::findings(const ReportContext& context) const {
   return data;
 }
 
-void Survey::judge(Json& data, const ReportContext& context) const {
+void RunFindings::judge(Json& data, const ReportContext& context) const {
   const RowSummary& all = run_.summary();
   std::vector<Criterion> criteria =
       criteriaOfTool(*run_.job(), context.tool ? &*context.tool : nullptr, context.tolerances);
@@ -105,7 +105,7 @@ void Survey::judge(Json& data, const ReportContext& context) const {
   addVerdict(data, criteria, verdictOn(criteria, run_.outcome(), all.missing));
 }
 
-Json Survey::ofSetpoints() const {
+Json RunFindings::ofSetpoints() const {
   const RowSummary& all = run_.summary();
   Json data{{"setpoints", {{"written", all.count + all.missing}, {"lost", all.missing}}},
             {"period_ms", run_.period() / kMillisecond},
@@ -115,7 +115,7 @@ Json Survey::ofSetpoints() const {
   return data;
 }
 
-Json Survey::holdsAndOverrides() const {
+Json RunFindings::holdsAndOverrides() const {
   JobEvents events;
   double feed_override = 1;
   for (const StateChange& change : run_.states()) {
@@ -127,7 +127,7 @@ Json Survey::holdsAndOverrides() const {
 }
 
 /// @param machine machine of a record; empty if unknown.
-Json Survey::axesJson(const Json& machine) const {
+Json RunFindings::axesJson(const Json& machine) const {
   struct Quantity {
     const char* key;
     const MaxOfAxes& max;
@@ -153,7 +153,7 @@ Json Survey::axesJson(const Json& machine) const {
   return rows;
 }
 
-Json Survey::loopJson() const {
+Json RunFindings::loopJson() const {
   Json states = Json::array(), diagnostics = Json::array();
   for (const StateChange& change : run_.states()) {
     if (!states.empty() && states.back()["state"] == change.state && states.back()["reason"] == change.reason) continue;

@@ -226,7 +226,7 @@ FoundFlute findFluteSetup(const FluteRequest& request, const AcceptsFlute& accep
   return here;
 }
 
-FluteMend mendOf(const FluteRequest& request, const SetupPoint& nearest) {
+FluteRemedy remedyFor(const FluteRequest& request, const SetupPoint& nearest) {
   const auto mended = [&](const FluteTrial& trial, std::vector<FreeFigure> figures) {
     for (const FreeFigure& one : freeFigures(trial)) figures.push_back(one);
     Search search(

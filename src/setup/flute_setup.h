@@ -25,13 +25,13 @@ using AcceptsFlute = std::function<bool(const JudgedFlute&)>;
 FoundFlute findFluteSetup(const FluteRequest& request, const AcceptsFlute& accepts);
 
 /// What would make a tool possible that cannot be had: another wheel, or other cores. Nothing: 0.
-struct FluteMend {
+struct FluteRemedy {
   double less_diameter = 0;               ///< how much smaller the wheel [m]
   double less_width = 0;                  ///< how much narrower [m]
   std::array<double, 2> core_diameter{};  ///< cores at the flute's ends [m]
 };
 
 /// @param nearest the set-up nearest to the asked tool.
-FluteMend mendOf(const FluteRequest& request, const SetupPoint& nearest);
+FluteRemedy remedyFor(const FluteRequest& request, const SetupPoint& nearest);
 
 }  // namespace grinder

@@ -48,13 +48,13 @@ std::string textOf(double value, double scale, int decimals) {
 }
 
 /// What would make the tool possible, for the operator.
-std::string textOf(const FluteMend& mend, const GrindProcess& p) {
+std::string textOf(const FluteRemedy& remedy, const GrindProcess& p) {
   const auto figure = [](const char* path, double value) {
     return fieldName(path) + " = " + textOf(value, units::kMillimetre, 3);
   };
-  const auto& [core, end] = mend.core_diameter;
-  if (mend.less_diameter > 0) return figure("process.wheel_diameter", p.wheel_diameter - mend.less_diameter);
-  if (mend.less_width > 0) return figure("process.wheel_width", p.wheel_width - mend.less_width);
+  const auto& [core, end] = remedy.core_diameter;
+  if (remedy.less_diameter > 0) return figure("process.wheel_diameter", p.wheel_diameter - remedy.less_diameter);
+  if (remedy.less_width > 0) return figure("process.wheel_width", p.wheel_width - remedy.less_width);
   if (core > 0) return figure("cutter.core_diameter", core) + " and " + figure("cutter.core_diameter_end", end);
   return "";
 }
@@ -234,7 +234,7 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
   }
   JobSetup setup = setupWith(*found.best, job, keep);
   findLimit(swivel, setup);
-  if (!found.accepted) setup.mend = textOf(mendOf(request, found.best->point), job.process());
+  if (!found.accepted) setup.remedy = textOf(remedyFor(request, found.best->point), job.process());
   return setup;
 }
 

@@ -150,7 +150,7 @@ std::string planRefusal(const JobSetup& setup) {
     const bool is_uneven = reason.kind == ReasonKind::kRake && setup.job.process().z_law == ZLaw::kPublished;
     text += is_uneven ? ", or set process.z_law: constant_rake\n" : "\n";
   }
-  if (!setup.mend.empty()) text += "It would be set up with " + setup.mend + "\n";
+  if (!setup.remedy.empty()) text += "It would be set up with " + setup.remedy + "\n";
   return text;
 }
 

@@ -272,12 +272,12 @@ TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
   EXPECT_EQ(panel.text("other_job"),
             "Running: six_teeth_of_the_night_shift.yaml, secondary relief (D 6 mm, cone 2 deg, spiral 12 deg, rake 6 "
             "deg, 6 teeth). It was not started in this panel.");
-  EXPECT_FALSE(panel.isVisible("verdict")) << "the time is another job's";
+  EXPECT_FALSE(panel.isVisible("plan_report")) << "the time is another job's";
   EXPECT_TRUE(panel.shows("place", ", secondary, tooth 4, pass 20"));
   EXPECT_EQ(panel.the<QLabel>("place").toolTip(), "six_teeth_of_the_night_shift.yaml, 3 secondary relief");
   panel.picture("job_of_somebody_else");
   stage.be("ready");
-  WAIT_FOR(panel.isVisible("verdict"));
+  WAIT_FOR(panel.isVisible("plan_report"));
   EXPECT_EQ(panel.label("place"), "No job runs");
 }
 
@@ -395,7 +395,7 @@ TEST_F(OnStage, AGoalThatIsPlannedIsShownAndCanBeCanceled) {
 }
 
 TEST_F(OnStage, WhatAPlanSaysIsShown) {
-  const auto verdict = [&] { return panel.text("verdict"); };
+  const auto report = [&] { return panel.text("plan_report"); };
   const std::string shank = "\nThe first pass cuts 0.375 mm more than its infeed out of the shank.";
   flute_grinder::FeedLimit limit;
   limit.cause = "axis A velocity";
@@ -409,7 +409,7 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
     stage.planned.plan.shank_cut = 0.375e-3;
   });
   panel.plan();
-  EXPECT_EQ(verdict(),
+  EXPECT_EQ(report(),
             "Takes 12:05 min.\nFeed 400.0 to 600.0 mm/min, limited by\naxis A velocity, X 3.000 to 5.200 mm" + shank);
   stage.change([&] {
     stage.planned = {};
@@ -426,7 +426,7 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
       "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
       "To start it: X was never set.\nThe feed is never reached." +
       shank;
-  WAIT_FOR(verdict() == good);
+  WAIT_FOR(report() == good);
   const std::vector<std::string> reasons{
       "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
       "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
@@ -435,7 +435,7 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
     for (const std::string& reason : reasons) stage.planned.reasons.emplace_back().text = reason;
   });
   panel.press("plan");
-  WAIT_FOR(verdict() == "Cannot be ground:\n" + reasons[0] + '\n' + reasons[1]);
+  WAIT_FOR(report() == "Cannot be ground:\n" + reasons[0] + '\n' + reasons[1]);
   WAIT_FOR(panel.enabledRequests() == (Names{"disable", "home"}));
   panel.picture("cannot_be_ground");
 }
@@ -457,7 +457,7 @@ TEST_F(OnStage, APlanIsVoidOnceAZeroPointOrTheWheelIsAnother) {
     EXPECT_TRUE(panel.enabled("start")) << "nothing of it has changed";
     wheel ? ++offsets.wheel.mounting : offsets.values[kY] += 1e-6;
     newer();
-    WAIT_FOR(panel.text("verdict") == zero && !panel.enabled("start"));
+    WAIT_FOR(panel.text("plan_report") == zero && !panel.enabled("start"));
   }
 }
 
@@ -465,7 +465,7 @@ TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
   stage.change([&] { stage.plan_hangs = true; });
   panel.press("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 1);
-  EXPECT_EQ(panel.text("verdict"), "Planning ...");
+  EXPECT_EQ(panel.text("plan_report"), "Planning ...");
   const flute_grinder::GrindActionGoal goal = stage.get(&Stage::plans).at(0);
   EXPECT_EQ(goal.goal.job_name, "paper.yaml");
   WAIT_FOR(panel.enabled("cancel"));
@@ -473,7 +473,7 @@ TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
   refused.error_code = flute_grinder::GrindResult::BUSY;
   refused.error_string = "a goal is running";
   stage.end(goal.goal_id.id, refused);
-  WAIT_FOR(panel.text("verdict") == "Cannot be ground:\n" + refused.error_string);
+  WAIT_FOR(panel.text("plan_report") == "Cannot be ground:\n" + refused.error_string);
   EXPECT_FALSE(panel.enabled("start"));
   WAIT_FOR(!panel.enabled("cancel"));
 }
@@ -541,7 +541,7 @@ class AfterAJobWasLeft : public OnStage {
 };
 
 TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
-  EXPECT_TRUE(panel.says("verdict", "It ended: in the middle, with the grinder's program."));
+  EXPECT_TRUE(panel.says("plan_report", "It ended: in the middle, with the grinder's program."));
   EXPECT_FALSE(panel.enabled("continue")) << "its file is not known";
   need({kUnfinished});
   startAndBeAsked("discard");
@@ -576,7 +576,7 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
   WAIT_FOR(go_on.isEnabled());
   EXPECT_EQ(go_on.text().toStdString(), "Continue paper.yaml at tooth 2, pass 3");
   EXPECT_EQ(
-      panel.text("verdict"),
+      panel.text("plan_report"),
       "Open a job file first.\nNot finished: paper.yaml (D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth), "
       "at tooth 2, pass 3. It ended: the drive reports a fault.");
   panel.picture("unfinished");
@@ -584,7 +584,7 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
   EXPECT_EQ(panel.label("job_file"), "paper.yaml");
   WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
   EXPECT_TRUE(go_on.isChecked());
-  EXPECT_EQ(panel.text("verdict").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
+  EXPECT_EQ(panel.text("plan_report").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
 }
 
 TEST_F(AfterAJobWasLeft, ADamagedJournalIsSaid) {
@@ -593,7 +593,7 @@ TEST_F(AfterAJobWasLeft, ADamagedJournalIsSaid) {
     stage.state.journal_error = "journal /j: its checksum is wrong";
     stage.state.journal_damaged = 1;
   });
-  WAIT_FOR(panel.text("verdict") == "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
+  WAIT_FOR(panel.text("plan_report") == "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
 }
 
 TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
@@ -635,7 +635,7 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   stage.be("ready");
   panel.plan();
   changedJob(path, path, {{"depth_mm: 1.6", "depth_mm: 1.5"}});
-  WAIT_FOR(panel.says("verdict", "Plan it again") && !panel.enabled("start"));
+  WAIT_FOR(panel.says("plan_report", "Plan it again") && !panel.enabled("start"));
   // A goal that was sent after all would have come before this.
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);

@@ -209,8 +209,8 @@ TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
   QFileDialog* dialog = panel.fileDialog();
   ASSERT_TRUE(dialog);
   Panel::enter(*dialog, "/nowhere/job.yaml");
-  WAIT_FOR(panel.says("verdict", "job.yaml"));
-  EXPECT_FALSE(panel.says("verdict", "/nowhere"));
+  WAIT_FOR(panel.says("plan_report", "job.yaml"));
+  EXPECT_FALSE(panel.says("plan_report", "/nowhere"));
   panel.picture("wrong_job_file");
   expectHoldWorks();
 }

@@ -15,7 +15,7 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   const QTemporaryDir folder;
   Panel panel("grinder");
   WAIT_FOR(panel.state() == "Disabled");
-  EXPECT_EQ(panel.text("verdict"), "Open a job file first.");
+  EXPECT_EQ(panel.text("plan_report"), "Open a job file first.");
   EXPECT_FALSE(panel.enabled("plan"));
   WAIT_FOR(panel.label("position_x") == "X   -50.000 mm");
   QFileDialog* dialog = panel.fileDialog();
@@ -27,14 +27,14 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   EXPECT_EQ(panel.label("job_file"), "slow.yaml");
   EXPECT_FALSE(panel.enabled("start"));
   panel.press("plan");
-  WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
-  EXPECT_TRUE(panel.says("verdict", "Feed 300.0 mm/min; no axis limits it."));
+  WAIT_FOR(panel.text("plan_report").find("Takes ") == 0);
+  EXPECT_TRUE(panel.says("plan_report", "Feed 300.0 mm/min; no axis limits it."));
   panel.press("enable");
   WAIT_FOR(panel.state() == "Ready");
   panel.picture("planned");
   panel.press("start");
   panel.press("confirm-wheel");
-  WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
+  WAIT_FOR(panel.text("plan_report").find("Takes ") == 0);
   panel.press("start");
   for (const char* answer : {"ignore-offsets", "confirm-swivel"}) panel.press(answer);
   WAIT_FOR(panel.state() == "Running" && panel.the<QProgressBar>("stroke").value() > 100);
@@ -83,7 +83,7 @@ class SetupSheet : public ::testing::Test {
     EXPECT_TRUE(panel->says("write_question", "Write this set-up into " + folder.filePath(setup).toStdString() + "?"));
     panel->press("write_over");
     WAIT_FOR(sheet().find("Written into ") != std::string::npos);
-    EXPECT_EQ(panel->text("verdict").find("Not planned yet."), 0U) << panel->text("verdict");
+    EXPECT_EQ(panel->text("plan_report").find("Not planned yet."), 0U) << panel->text("plan_report");
   }
   void closeSheet() {
     panel->click("close_setup");
@@ -107,7 +107,7 @@ TEST_F(SetupSheet, IsShownAndWritten) {
   ASSERT_TRUE(test_support::hasComma()) << "Qt has given this process the desktop's locale, here a German one";
   open({{kSetup, kNone}});
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
-  EXPECT_TRUE(panel->says("verdict", "'grind setup --write' solves it"));
+  EXPECT_TRUE(panel->says("plan_report", "'grind setup --write' solves it"));
   EXPECT_NEAR(figure("swivel"), 32.350, 0.02);
   ASSERT_NO_FATAL_FAILURE(write("job.setup.yaml"));
   EXPECT_FALSE(panel->enabled("write_setup"));
@@ -141,7 +141,7 @@ TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
   // Another test may have confirmed it.
   if (asks_for_wheel()) {
     panel->press("confirm-wheel");
-    WAIT_FOR(panel->text("verdict").find("Takes ") == 0);
+    WAIT_FOR(panel->text("plan_report").find("Takes ") == 0);
     panel->press("start");
   }
   for (const char* answer : {"ignore-offsets", "confirm-swivel"}) panel->press(answer);
@@ -228,7 +228,7 @@ TEST_F(SetupSheet, OfAReliefGoesToItsOperation) {
   EXPECT_FALSE(panel->enabled("setup"));
   panel->chooseOperation("2 primary relief");
   WAIT_FOR(panel->enabled("setup"));
-  EXPECT_TRUE(panel->says("verdict", "'grind setup --operation primary --write' solves it"));
+  EXPECT_TRUE(panel->says("plan_report", "'grind setup --operation primary --write' solves it"));
   ASSERT_NO_FATAL_FAILURE(openSheet());
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml, 2 primary relief for /grinder");
   ASSERT_NO_FATAL_FAILURE(write("taper_reamer_d6_t6.setup.yaml"));

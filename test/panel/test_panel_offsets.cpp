@@ -25,7 +25,7 @@ TEST_F(ZeroPoints, AreAskedForBesideWhatTheJobHas) {
   panel.press("decline_job");
   need({kNoZeros});
   panel.press("plan");
-  WAIT_FOR(panel.says("verdict", "To start it: X was never set."));
+  WAIT_FOR(panel.says("plan_report", "To start it: X was never set."));
   ASSERT_NO_FATAL_FAILURE(startAndBeAsked("ignore-offsets"));
   EXPECT_FALSE(panel.widget().findChild<QPushButton*>("fit-offsets"));
   EXPECT_FALSE(panel.says("job_question", "off by")) << "a column with nothing in it";
@@ -39,7 +39,7 @@ TEST_F(ZeroPoints, AnAnswerOnWhichThePlanDependsIsPlannedWith) {
     SCOPED_TRACE(asked.text);
     need({asked});
     panel.press("plan");
-    WAIT_FOR(panel.says("verdict", asked.text));
+    WAIT_FOR(panel.says("plan_report", asked.text));
     ASSERT_NO_FATAL_FAILURE(startAndBeAsked(toString(answer)));
     need({});
     stage.change([&] { stage.plans.clear(); });
@@ -47,8 +47,8 @@ TEST_F(ZeroPoints, AnAnswerOnWhichThePlanDependsIsPlannedWith) {
     panel.press(toString(answer));
     WAIT_FOR(stage.get(&Stage::plans).size() == 1);
     EXPECT_EQ(stage.get(&Stage::plans)[0].goal.answers, Answers{answerId(asked, answer)});
-    WAIT_FOR(panel.text("verdict").find("Takes ") == 0);
-    EXPECT_FALSE(panel.says("verdict", asked.text));
+    WAIT_FOR(panel.text("plan_report").find("Takes ") == 0);
+    EXPECT_FALSE(panel.says("plan_report", asked.text));
     EXPECT_TRUE(goals().empty()) << "only planned";
   }
   panel.press("start");

@@ -13,7 +13,7 @@ class Operation : public Staged {
     stage.change([&] { stage.planned.plan.valid = 1, stage.state.swivel = 13.104 * M_PI / 180; });
     stage.be("ready");
   }
-  bool says(const std::string& begin) { return panel.text("verdict").find(begin) == 0; }
+  bool says(const std::string& begin) { return panel.text("plan_report").find(begin) == 0; }
 
   Panel panel{"cell/stage", kReamer};
   QComboBox& box = panel.the<QComboBox>("operation");
@@ -27,7 +27,7 @@ TEST_F(Operation, NoneIsChosenAtFirst) {
   EXPECT_EQ(offered, (QStringList{"choose", "1 flute", "2 primary relief", "3 secondary relief"}));
   EXPECT_EQ(box.currentText(), "choose");
   for (const char* name : {"plan", "setup", "start"}) EXPECT_FALSE(panel.enabled(name)) << name;
-  EXPECT_EQ(panel.text("verdict"), "Choose the operation first.");
+  EXPECT_EQ(panel.text("plan_report"), "Choose the operation first.");
   panel.picture("operation_to_choose");
   Panel single("cell/stage", kPaper);
   WAIT_FOR(single.enabled("plan"));
@@ -77,7 +77,7 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
         ""},
        {"  second_clearance_deg: 22\n", ""}});
   panel.click("start");
-  EXPECT_EQ(panel.text("verdict"), "Choose the operation first.");
+  EXPECT_EQ(panel.text("plan_report"), "Choose the operation first.");
   EXPECT_EQ(box.currentText(), "choose");
   EXPECT_EQ(box.count(), 3);
   WAIT_FOR(!panel.enabled("start") && !panel.enabled("plan"));

@@ -196,8 +196,8 @@ TEST(JobSetup, TheWidthThatARefusalNamesLeavesALand) {
   job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
   const JobSetup none = unsolved(job);
   expectContains(planRefusal(none), "no land is left");
-  const double width = numberBehind(none.mend, "process.wheel.width_mm") * kMillimetre;
-  ASSERT_GT(width, 0.5e-3) << none.mend;
+  const double width = numberBehind(none.remedy, "process.wheel.width_mm") * kMillimetre;
+  ASSERT_GT(width, 0.5e-3) << none.remedy;
   job.process().wheel_width = width;
   EXPECT_TRUE(solved(job).check.reasons.empty());
 }
@@ -210,10 +210,10 @@ TEST(JobSetup, WhatCannotBeHadIsRefusedWithHowNearItComesAndWhatMendsIt) {
   job.cutter.spiral_tolerance = 0.3 * kDegree;
   const JobSetup none = unsolved(job);
   expectContains(planRefusal(none), "a plan would refuse this tool: ");
-  expectContains(planRefusal(none), "It would be set up with " + none.mend);
-  job.cutter.core_diameter = numberBehind(none.mend, "cutter.core_diameter_mm") * kMillimetre;
-  job.cutter.core_diameter_end = numberBehind(none.mend, "cutter.core_diameter_end_mm") * kMillimetre;
-  EXPECT_TRUE(solved(job).check.reasons.empty()) << none.mend;
+  expectContains(planRefusal(none), "It would be set up with " + none.remedy);
+  job.cutter.core_diameter = numberBehind(none.remedy, "cutter.core_diameter_mm") * kMillimetre;
+  job.cutter.core_diameter_end = numberBehind(none.remedy, "cutter.core_diameter_end_mm") * kMillimetre;
+  EXPECT_TRUE(solved(job).check.reasons.empty()) << none.remedy;
 }
 
 // Found at random: their figures were near the ends of their tolerances.

@@ -27,17 +27,17 @@ struct ReportContext {
 };
 
 /// Goes through the rows of a bag once, and computes all that a report shows of them.
-class Survey {
+class RunFindings {
  public:
   /// @param run must outlive this object. @param job job of the run, with its laws; nothing if the run has none.
   /// @param draws whether pictures are wanted.
-  Survey(const BagRun& run, const std::optional<ValidJob>& job, bool draws);
-  ~Survey();
+  RunFindings(const BagRun& run, const std::optional<ValidJob>& job, bool draws);
+  ~RunFindings();
 
   void add(const RunRow& row);
 
   /// The data of the report.
-  Json findings(const ReportContext& context) const;
+  Json json(const ReportContext& context) const;
   /// The points of the report's pictures; only if they are wanted.
   Json plots() const;
 

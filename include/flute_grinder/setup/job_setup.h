@@ -30,7 +30,7 @@ struct JobSetup {
   double margin = 0;  ///< margin to that limit, relative to the machine's swivel range, the pitch or the end diameter
   /// What else would make the tool possible, if no set-up gives all that is asked: a smaller or a narrower wheel, or
   /// other cores, as "key = value"; empty if none of these does.
-  std::string mend;
+  std::string remedy;
   /// Properties of a relief, instead of overtravel, limit and margin.
   struct Relief {
     double rim = 0;        ///< width of the rim behind the relief's start; the land needs all of it except a margin [m]

@@ -252,12 +252,15 @@ int home(const std::string& node) {
   return fail(state.fault.empty() ? "homing was aborted" : state.fault);
 }
 
+/// Whether a motion can be followed and held. It does not wait for the client's other topics.
+bool canStop(const GrinderClient& client) { return client.states().newest() && client.stopsConnected(); }
+
 /// Waits until the wheel is lifted; Ctrl-C and Ctrl-Z hold it.
 int lift(const std::string& node) {
   ros::NodeHandle nh(node);
   const GrinderClient client(node);
   StopKeys keys(client);
-  if (!await(kPatience, [&] { return client.connected(); })) return noGrinder(nh);
+  if (!await(kPatience, [&] { return canStop(client); })) return noGrinder(nh);
   catchInterrupts();
   catchHolds();
   keys.start([&] { client.stopNow(MachineEvent::kHold); });
@@ -318,7 +321,7 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   const GrinderClient client(node);
   StopKeys keys(client);
   std::optional<Axes> begin;
-  if (!await(kPatience, [&] { return client.connected() && (begin = client.view().position); })) return noGrinder(nh);
+  if (!await(kPatience, [&] { return canStop(client) && (begin = client.view().position); })) return noGrinder(nh);
   catchInterrupts();
   catchHolds();
   keys.start([&] { client.stopNow(MachineEvent::kHold); });

@@ -80,7 +80,10 @@ GrinderClient::GrinderClient(const std::string& node, OnResult on_result, OnJogR
   spinner_.start();
 }
 
-GrinderClient::~GrinderClient() { spinner_.stop(); }
+GrinderClient::~GrinderClient() {
+  queue_.disable();  // or its thread would wait for a message for a tenth of a second more
+  spinner_.stop();
+}
 
 GrinderView GrinderClient::view() const {
   GrinderView view;

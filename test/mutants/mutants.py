@@ -1,0 +1,261 @@
+#!/usr/bin/env python3
+"""Breaks a module in some hundred small ways, one at a time, and notes which tests see each: a measure of what the tests
+prove, and of which of them nobody would miss. Works in build/mutants/, on the files as they are; needs clang's python3-clang."""
+
+import argparse
+import collections
+import concurrent.futures
+import json
+import os
+import pathlib
+import random
+import re
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import breaks
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+WORK = ROOT / 'build/mutants'
+TREE = WORK / 'tree'
+BUILD = TREE / 'build'
+BINARIES = BUILD / 'devel/lib/flute_grinder'
+PREFIX = 'flute_grinder_test_'
+ROUNDS = 12   # of a build, each without the breaks that did not compile in the one before
+SLOW = 0.5    # [s]; a test that takes longer is asked only about what no faster one sees
+PATIENCE = 4  # times a test may take as long with a mutant as without, and
+LEAST = 5     # [s] is always left to it
+# Cases that fail are not made smaller.
+RANDOM_CASES = 'seed=20 max_success=100 noshrink=1'
+
+Case = collections.namedtuple('Case', 'suite name')
+
+
+def git(*arguments):
+    return subprocess.run(['git', '-C', ROOT, *arguments], check=True, stdout=subprocess.PIPE).stdout.decode()
+
+
+def copy_tree():
+    """Brings the copy up to date, so that make builds again what is different."""
+    for name in git('ls-files', '-z', '--cached', '--others', '--exclude-standard').split('\0'):
+        if name and (ROOT / name).exists():
+            write(TREE / name, (ROOT / name).read_bytes())
+            shutil.copymode(ROOT / name, TREE / name)
+
+
+def write(path, data):
+    if path.exists() and path.read_bytes() == data:
+        return
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(data)
+
+
+def make(*arguments):
+    return subprocess.run(['make', '-C', BUILD, '-j%d' % os.cpu_count(), *arguments], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT).stdout.decode(errors='replace')
+
+
+def configure():
+    if (BUILD / 'Makefile').exists():
+        return
+    subprocess.run(['cmake', '-S', TREE, '-B', BUILD, '-DCMAKE_BUILD_TYPE=Release', '-DTESTS_IN_ALL=ON',
+                    '-DCATKIN_ENABLE_TESTING=ON', '-DBUILD_BENCHMARKS=OFF', '-DPYTHON_EXECUTABLE=/usr/bin/python3',
+                    '-DPython3_EXECUTABLE=/usr/bin/python3',
+                    '-DCMAKE_CXX_FLAGS=--param=ggc-min-heapsize=1000000'], check=True, stdout=subprocess.DEVNULL)
+    make('flute_grinder_generate_messages_cpp')
+
+
+def arguments_of(module):
+    """The compiler's, of a module's sources."""
+    for entry in json.loads((BUILD / 'compile_commands.json').read_text()):
+        if '/src/%s/' % module in entry['file']:
+            words = shlex.split(entry['command'])[1:]
+            resources = subprocess.run(['clang', '-print-resource-dir'], check=True, stdout=subprocess.PIPE)
+            return [w for w in words[:words.index('-o')] if re.match(r'-[ID]|-isystem|-std|/', w)] + \
+                ['-resource-dir', resources.stdout.decode().strip()]
+    raise SystemExit('no module ' + module)
+
+
+def build_with(finder):
+    """Builds everything with all breaks in it. @return the numbers of those that compile."""
+    without, header = set(), ROOT / 'test/mutants/mutant.h'
+    for _ in range(ROUNDS):
+        texts = finder.rewritten(header, without)
+        for name, text in texts.items():
+            write(TREE / name, text.encode())
+        log = make('-k', 'all')
+        (WORK / 'build.log').write_text(log)
+        places = re.findall(r'(?m)^(?:In file included from |\s+inlined from )?\S*?((?:src|include)/\S+?):(\d+):.*', log)
+        wrong = {(name, int(line)) for name, line in places if name in texts and line != '0'} - without
+        if ' error: ' not in log:
+            return {b.number for b in finder.breaks if (b.file, b.line) not in without}
+        if not wrong:
+            raise SystemExit('%s: does not compile, and not for a break' % (WORK / 'build.log'))
+        without |= wrong
+    raise SystemExit('%s: does not compile after %d rounds' % (WORK / 'build.log', ROUNDS))
+
+
+def run(command, environment, seconds):
+    """@return what it prints, and whether it ended well; nothing for the latter if it did not end."""
+    with tempfile.TemporaryFile() as out:
+        process = subprocess.Popen(command, cwd=TREE, env=dict(os.environ, RC_PARAMS=RANDOM_CASES, **environment), stdout=out,
+                                   stderr=subprocess.STDOUT, start_new_session=True)
+        try:
+            good = process.wait(seconds) == 0
+        except subprocess.TimeoutExpired:
+            good = None
+        try:
+            os.killpg(process.pid, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+        process.wait()
+        out.seek(0)
+        return out.read().decode(errors='replace'), good
+
+
+def cases_of(suite):
+    """The tests of a gtest program."""
+    text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, LEAST)
+    group = ''
+    for line in text.splitlines():
+        name = line.split('#')[0].rstrip()
+        if name.endswith('.') and not name.startswith(' '):
+            group = name
+        elif name.startswith('  ') and group:
+            yield Case(suite, group + name.strip())
+
+
+def seen_by(suite, names, number, seconds):
+    """The tests among those named that see a mutant. One that crashes ends its process: the others go on in another."""
+    seen, left = set(), list(names)
+    while left:
+        text, good = run([BINARIES / suite, '--gtest_filter=' + ':'.join(left)], {'MUTANT': str(number)}, seconds)
+        if good:
+            break
+        ended = set(re.findall(r'(?m)^\[ +(?:OK|FAILED) +\] (\S+?)(?:,.*)? \(', text))
+        seen |= set(re.findall(r'(?m)^\[ +FAILED +\] (\S+?)(?:,.*)? \(', text)) & set(left)
+        left = [name for name in left if name not in ended]
+        broken = [name for name in re.findall(r'(?m)^\[ RUN +\] (\S+)', text) if name in left]
+        if good is None or not broken:
+            # Where one hangs, the others do not get their turn; and what ends outside of a test is seen by all.
+            seen |= set(left)
+            break
+        seen.add(broken[0])
+        left.remove(broken[0])
+    return seen
+
+
+def reached_by(case):
+    """The numbers of the mutants that a test comes by, and how long it takes; none if it fails without a mutant."""
+    with tempfile.TemporaryDirectory() as folder:
+        begin = time.monotonic()
+        text, good = run([BINARIES / case.suite, '--gtest_filter=' + case.name], {'MUTANTS_REACHED': folder}, 600)
+        took = time.monotonic() - begin
+        if not good:
+            print('%s fails without a mutant: left out\n%s' % (case.name, text[-500:]), file=sys.stderr)
+            return set(), took
+        return {int(n) for file in pathlib.Path(folder).iterdir() for n in file.read_text().split()}, took
+
+
+def ask(number, cases, took, own):
+    """The tests that see a mutant. The module's own come first, and the fast ones: the next are asked what those do not see."""
+    stages = collections.defaultdict(lambda: collections.defaultdict(list))
+    for case in cases:
+        stages[case.suite not in own, took[case] > SLOW][case.suite].append(case.name)
+    for _, suites in sorted(stages.items()):
+        seen = set()
+        for suite, names in sorted(suites.items()):
+            seconds = LEAST + PATIENCE * sum(took[Case(suite, name)] for name in names)
+            seen |= {Case(suite, name) for name in seen_by(suite, names, number, seconds)}
+        if seen:
+            return seen
+    return set()
+
+
+def own_suites(module):
+    text = (TREE / 'test/CMakeLists.txt').read_text()
+    return {PREFIX + name for name, of in re.findall(r'add_unit_test\((\w+) MODULE (\w+)', text) if of == module}
+
+
+def enough(seen):
+    """Tests which together see what all do, those that see most alone first."""
+    left, chosen = {number for number in seen if seen[number]}, []
+    while left:
+        counts = collections.Counter(case for number in left for case in seen[number])
+        best = max(sorted(counts), key=lambda case: counts[case])
+        chosen.append(best)
+        left -= {number for number in left if best in seen[number]}
+    return chosen
+
+
+def report(finder, numbers, reached, seen, took, own):
+    """The result, as text."""
+    unseen = [n for n in sorted(seen) if not seen[n]]
+    everywhere = set().union(*reached.values())
+    print('breaks: %d, reached by tests: %d, asked about: %d, seen: %d (%.1f %%)' % (
+        len(numbers), len(numbers & everywhere), len(seen), len(seen) - len(unseen),
+        100 * (1 - len(unseen) / max(1, len(seen)))))
+    print('\nNo test sees:')
+    for n in unseen:
+        b = finder.breaks[n]
+        print('  %s:%d:%d %s%s' % (b.file, b.line, b.column, b.text, '' if n in everywhere else ' (no test reaches it)'))
+    print('\nTests that see (breaks, those seen by no other, seconds; -: the others see as much without it):')
+    total = collections.Counter(case for by in seen.values() for case in by)
+    alone = collections.Counter(next(iter(by)) for by in seen.values() if len(by) == 1)
+    chosen = set(enough(seen))
+    cases = [case for case in took if total[case] or (case.suite in own and reached[case] & numbers)]
+    for case in sorted(cases, key=lambda c: (c not in chosen, c)):
+        print('  %s %4d %4d %6.2f %s %s' % ('+' if case in chosen else '-', total[case], alone[case], took[case],
+                                           case.suite[len(PREFIX):], case.name))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('module', help='a folder of src/, e.g. motion')
+    parser.add_argument('--most', metavar='N', type=int, default=400, help='mutants to ask about, drawn at random (default 400)')
+    parser.add_argument('--seed', metavar='S', type=int, default=1, help='of the draw')
+    parser.add_argument('--files', metavar='REGEX', default='', help='only breaks of these files')
+    parser.add_argument('--tests', metavar='REGEX', default='', help='only gtest programs with these names')
+    parser.add_argument('--headers', action='store_true', help="also the module's headers: all is built anew")
+    parser.add_argument('--json', metavar='FILE', help='write which tests see which mutants')
+    arguments = parser.parse_args()
+    module = arguments.module
+
+    copy_tree()
+    configure()
+    folders = ['src/%s/' % module] + (['include/flute_grinder/%s/' % module] if arguments.headers else [])
+    finder = breaks.Finder(TREE, folders)
+    compiler = arguments_of(module)
+    for source in sorted((TREE / 'src' / module).glob('*.cpp')):
+        finder.add(source, compiler)
+    numbers = build_with(finder)
+    print('%d breaks, %d compile' % (len(finder.breaks), len(numbers)), file=sys.stderr)
+
+    suites = sorted(p.name for p in BINARIES.glob(PREFIX + '*') if re.search(arguments.tests, p.name))
+    cases = [case for suite in suites for case in cases_of(suite)]
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = dict(zip(cases, pool.map(reached_by, cases)))
+        reached = {case: result[0] for case, result in results.items()}
+        took = {case: result[1] for case, result in results.items()}
+        asked = [n for n in sorted(numbers) if re.search(arguments.files, finder.breaks[n].file)]
+        asked = sorted(random.Random(arguments.seed).sample(asked, min(arguments.most, len(asked))))
+        print('%d tests, %.0f s; asking about %d' % (len(cases), sum(took.values()), len(asked)), file=sys.stderr)
+        seen, own = {}, own_suites(module)
+        for n, by in zip(asked, pool.map(lambda n: ask(n, [c for c in cases if n in reached[c]], took, own), asked)):
+            seen[n] = by
+            if len(seen) % 50 == 0:
+                print('%d asked' % len(seen), file=sys.stderr)
+    report(finder, numbers, reached, seen, took, own)
+    if arguments.json:
+        found = [dict(finder.breaks[n]._asdict(), seen_by=sorted(c.suite[len(PREFIX):] + ' ' + c.name for c in seen[n]))
+                 for n in asked]
+        pathlib.Path(arguments.json).write_text(json.dumps(found, indent=1))
+
+
+if __name__ == '__main__':
+    main()

@@ -10,6 +10,7 @@ import os
 import pathlib
 import random
 import re
+import resource
 import shlex
 import shutil
 import signal
@@ -28,10 +29,14 @@ BINARIES = BUILD / 'devel/lib/flute_grinder'
 PREFIX = 'flute_grinder_test_'
 ROUNDS = 12   # of a build, each without the breaks that did not compile in the one before
 SLOW = 0.5    # [s]; a test that takes longer is asked only about what no faster one sees
-PATIENCE = 4  # times a test may take as long with a mutant as without, and
-LEAST = 5     # [s] is always left to it
-# Cases that fail are not made smaller.
-RANDOM_CASES = 'seed=20 max_success=100 noshrink=1'
+PATIENCE = 3  # times a test may take as long with a mutant as without, and
+LEAST = 3     # [s] is always left to it
+MEMORY = 4e9  # [bytes] that a process gets: some mutants never end to append
+# Fewer than in scripts/test, for time; a case that fails is not made smaller.
+RANDOM_CASES = 'seed=20 max_success=30 noshrink=1'
+
+# The rides, a test of what the control loop does, are as close to these modules as their own.
+RIDES, RIDDEN = 'rides', ('motion', 'control')
 
 Case = collections.namedtuple('Case', 'suite name')
 
@@ -100,11 +105,15 @@ def build_with(finder):
     raise SystemExit('%s: does not compile after %d rounds' % (WORK / 'build.log', ROUNDS))
 
 
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (int(MEMORY), int(MEMORY)))
+
+
 def run(command, environment, seconds):
     """@return what it prints, and whether it ended well; nothing for the latter if it did not end."""
     with tempfile.TemporaryFile() as out:
         process = subprocess.Popen(command, cwd=TREE, env=dict(os.environ, RC_PARAMS=RANDOM_CASES, **environment), stdout=out,
-                                   stderr=subprocess.STDOUT, start_new_session=True)
+                                   stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=limit_memory)
         try:
             good = process.wait(seconds) == 0
         except subprocess.TimeoutExpired:
@@ -118,8 +127,18 @@ def run(command, environment, seconds):
         return out.read().decode(errors='replace'), good
 
 
+def command(suite, names):
+    """The command of a program with some of its tests."""
+    if suite == RIDES:
+        return [BINARIES / suite, '--from', '0', '--count', '300']
+    return [BINARIES / suite, '--gtest_filter=' + ':'.join(names)]
+
+
 def cases_of(suite):
-    """The tests of a gtest program."""
+    """The tests of a program."""
+    if suite == RIDES:
+        yield Case(suite, '300')
+        return
     text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, LEAST)
     group = ''
     for line in text.splitlines():
@@ -134,7 +153,7 @@ def seen_by(suite, names, number, seconds):
     """The tests among those named that see a mutant. One that crashes ends its process: the others go on in another."""
     seen, left = set(), list(names)
     while left:
-        text, good = run([BINARIES / suite, '--gtest_filter=' + ':'.join(left)], {'MUTANT': str(number)}, seconds)
+        text, good = run(command(suite, left), {'MUTANT': str(number)}, seconds)
         if good:
             break
         ended = set(re.findall(r'(?m)^\[ +(?:OK|FAILED) +\] (\S+?)(?:,.*)? \(', text))
@@ -154,7 +173,7 @@ def reached_by(case):
     """The numbers of the mutants that a test comes by, and how long it takes; none if it fails without a mutant."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
-        text, good = run([BINARIES / case.suite, '--gtest_filter=' + case.name], {'MUTANTS_REACHED': folder}, 600)
+        text, good = run(command(case.suite, [case.name]), {'MUTANTS_REACHED': folder}, 600)
         took = time.monotonic() - begin
         if not good:
             print('%s fails without a mutant: left out\n%s' % (case.name, text[-500:]), file=sys.stderr)
@@ -163,15 +182,17 @@ def reached_by(case):
 
 
 def ask(number, cases, took, own):
-    """The tests that see a mutant. The module's own come first, and the fast ones: the next are asked what those do not see."""
+    """The tests that see a mutant: of the module's own, all fast ones, or else all slow ones; or else one of the others."""
     stages = collections.defaultdict(lambda: collections.defaultdict(list))
     for case in cases:
         stages[case.suite not in own, took[case] > SLOW][case.suite].append(case.name)
-    for _, suites in sorted(stages.items()):
+    for (others, _), suites in sorted(stages.items()):
         seen = set()
         for suite, names in sorted(suites.items()):
             seconds = LEAST + PATIENCE * sum(took[Case(suite, name)] for name in names)
             seen |= {Case(suite, name) for name in seen_by(suite, names, number, seconds)}
+            if others and seen:
+                break
         if seen:
             return seen
     return set()
@@ -179,7 +200,8 @@ def ask(number, cases, took, own):
 
 def own_suites(module):
     text = (TREE / 'test/CMakeLists.txt').read_text()
-    return {PREFIX + name for name, of in re.findall(r'add_unit_test\((\w+) MODULE (\w+)', text) if of == module}
+    suites = {PREFIX + name for name, of in re.findall(r'add_unit_test\((\w+) MODULE (\w+)', text) if of == module}
+    return suites | ({RIDES} if module in RIDDEN else set())
 
 
 def enough(seen):
@@ -211,7 +233,7 @@ def report(finder, numbers, reached, seen, took, own):
     cases = [case for case in took if total[case] or (case.suite in own and reached[case] & numbers)]
     for case in sorted(cases, key=lambda c: (c not in chosen, c)):
         print('  %s %4d %4d %6.2f %s %s' % ('+' if case in chosen else '-', total[case], alone[case], took[case],
-                                           case.suite[len(PREFIX):], case.name))
+                                           case.suite.replace(PREFIX, ''), case.name))
 
 
 def main():
@@ -220,7 +242,7 @@ def main():
     parser.add_argument('--most', metavar='N', type=int, default=400, help='mutants to ask about, drawn at random (default 400)')
     parser.add_argument('--seed', metavar='S', type=int, default=1, help='of the draw')
     parser.add_argument('--files', metavar='REGEX', default='', help='only breaks of these files')
-    parser.add_argument('--tests', metavar='REGEX', default='', help='only gtest programs with these names')
+    parser.add_argument('--tests', metavar='REGEX', default='', help='only test programs with these names')
     parser.add_argument('--headers', action='store_true', help="also the module's headers: all is built anew")
     parser.add_argument('--json', metavar='FILE', help='write which tests see which mutants')
     arguments = parser.parse_args()
@@ -236,7 +258,7 @@ def main():
     numbers = build_with(finder)
     print('%d breaks, %d compile' % (len(finder.breaks), len(numbers)), file=sys.stderr)
 
-    suites = sorted(p.name for p in BINARIES.glob(PREFIX + '*') if re.search(arguments.tests, p.name))
+    suites = [s for s in sorted(p.name for p in BINARIES.glob(PREFIX + '*')) + [RIDES] if re.search(arguments.tests, s)]
     cases = [case for suite in suites for case in cases_of(suite)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = dict(zip(cases, pool.map(reached_by, cases)))
@@ -252,7 +274,7 @@ def main():
                 print('%d asked' % len(seen), file=sys.stderr)
     report(finder, numbers, reached, seen, took, own)
     if arguments.json:
-        found = [dict(finder.breaks[n]._asdict(), seen_by=sorted(c.suite[len(PREFIX):] + ' ' + c.name for c in seen[n]))
+        found = [dict(finder.breaks[n]._asdict(), seen_by=sorted(c.suite.replace(PREFIX, '') + ' ' + c.name for c in seen[n]))
                  for n in asked]
         pathlib.Path(arguments.json).write_text(json.dumps(found, indent=1))
 

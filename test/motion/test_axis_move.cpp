@@ -65,6 +65,10 @@ TEST_P(AxisMoveAlong, GoesStraightExactlyToItsEnd) {
     ASSERT_TRUE((p.position == expected).all());
     ASSERT_GE(direction * (p.position[axis] - at), 0);
     ASSERT_NEAR(p.velocity[axis], (p.position[axis] - at) / 1e-3, 1e-9);
+    ASSERT_NEAR(p.move_fraction, std::abs(p.position[axis] - kFrom[axis]) / std::abs(to - kFrom[axis]), 1e-12);
+    // The feed at the end of the cycle, of which the velocity is the mean.
+    const double change = plainMachine().limits.max_acceleration[axis] * 1e-3;
+    ASSERT_NEAR(p.feed, axis == kA ? 0 : direction * p.velocity[axis], axis == kA ? 0 : change);
     at = p.position[axis];
     fastest = std::max(fastest, direction * p.velocity[axis]);
   }
@@ -82,6 +86,18 @@ TEST(AxisMove, ToWhereTheAxisStandsNothingMoves) {
   move.begin(MoveKind::kLift, kFrom, kY, kFrom[kY], 0.01);
   for (const Setpoint& p : all(move)) EXPECT_TRUE((p.position == kFrom).all());
   EXPECT_TRUE(move.finished());
+}
+
+TEST(AxisMove, BeginsAtItsSpeedThoughTheOneBeforeWasSlowedDown) {
+  AxisMove move(plainMachine()), fresh(plainMachine());
+  for (AxisMove* one : {&move, &fresh}) {
+    if (one == &move) {
+      move.begin(MoveKind::kLift, kFrom, kY, kFrom[kY] + 0.01, 0.01);
+      move.slowDown(0.1);
+    }
+    one->begin(MoveKind::kLift, kFrom, kY, kFrom[kY] + 0.01, 0.01);
+  }
+  EXPECT_EQ(all(move).size(), all(fresh).size());
 }
 
 TEST(AxisMove, StopsAtSpeedZeroAndGoesOnAtAnother) {

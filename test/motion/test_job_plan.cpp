@@ -48,7 +48,16 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
   EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kTooLong);
   EXPECT_NEAR(plan.reasons[0].value, 64 * 300 * pass, 1e-6 * pass);
   EXPECT_EQ(plan.reasons[0].limit, 86400);
+  EXPECT_EQ(plan.reasons[0].unit, Unit::kSecond);
   EXPECT_EQ(plan.reasons[0].count, 19200u);
+  // Of a job that goes on at tooth 10, pass 5, what is left.
+  for (const GrindOrder order : {GrindOrder::kToothMajor, GrindOrder::kPassMajor}) {
+    job.process().order = order;
+    const JobPlan rest = planJob(ValidJob(job), machine, {machine.park, {10, 5}});
+    ASSERT_EQ(rest.reasons.size(), 1u);
+    const double before = order == GrindOrder::kToothMajor ? 10 * 300 + 5 : 5 * 64 + 10;
+    EXPECT_NEAR(rest.reasons[0].value, (64 * 300 - before) * pass, 1e-6 * pass);
+  }
 }
 
 TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {

@@ -104,6 +104,7 @@ TEST_P(LimitCheckAxis, CatchesWhatIsNotFinite) {
       EXPECT_EQ(violation->quantity, LimitedQuantity::kNotFinite);
       EXPECT_EQ(violation->cycle, before.size());
       EXPECT_NE(text(reasonOf(*violation)).find("is not a finite number"), std::string::npos);
+      EXPECT_EQ(reasonOf(*violation).unit, unitOf(axis, 0));
     }
   }
 }
@@ -118,6 +119,7 @@ TEST_P(LimitCheckAxis, LetsPassAndCatchesSpeed) {
   const double faster = v * (1 + 1e-6);
   const auto violation = Feeder(axis, l).feedAll({0, 0, 0, -faster * kPeriod});
   expectViolation(violation, axis, LimitedQuantity::kVelocity, -faster, v, 1e-12);
+  EXPECT_EQ(reasonOf(*violation).unit, unitOf(axis, 1));
   EXPECT_EQ(violation->cycle, 3u);
 }
 

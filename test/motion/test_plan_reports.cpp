@@ -115,6 +115,25 @@ TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
   EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis X").size());
 }
 
+TEST(JobPlan, ReportsWhereTheToleranceIsExceededMost) {
+  GrindJob job = steepJob();
+  job.process().feed = 0.1;
+  job.interpolation.tolerance = 0.2e-6;
+  job.tooth_angles = {0, 2};
+  job.process().spark_out = 2;
+  const Machine machine = strongMachine();
+  std::vector<Setpoint> visited;
+  const JobPlan plan =
+      planJob(ValidJob(job), machine, {machine.park, {1, 2}}, [&](const Setpoint& p) { visited.push_back(p); });
+  ASSERT_EQ(plan.reasons.size(), 1u) << textOf(plan);
+  const Reason& worst = plan.reasons[0];
+  EXPECT_EQ(worst.move, MoveKind::kStroke);
+  EXPECT_EQ(worst.tooth, 1);
+  EXPECT_EQ(worst.pass, 2);
+  ASSERT_LT(worst.cycle, visited.size());
+  EXPECT_EQ(worst.x, visited[worst.cycle].position[kX]);
+}
+
 /// Every statistic once more, from the setpoints that the visitor saw.
 PathStatistics accumulate(const std::vector<Setpoint>& setpoints, const GrindJob& job, double period) {
   const ReferenceCurve curve(job.cutter, job.process().setup_x_shift);

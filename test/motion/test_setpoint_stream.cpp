@@ -95,6 +95,8 @@ TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
     EXPECT_EQ(stream.rest() == Rest::kEnd, p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
   EXPECT_EQ(stream.rest(), Rest::kEnd);
   const Setpoint last = p;
+  stream.retract();
+  EXPECT_FALSE(stream.next(p));
   stream.resume();
   EXPECT_FALSE(stream.next(p));
   EXPECT_EQ(p.cycle, last.cycle);
@@ -128,6 +130,17 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
+}
+
+TEST(SetpointStream, BeginsWithItsFirstToothAndPass) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  job.process().spark_out = 1;
+  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), {plainMachine().park, {1, 1}}));
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_EQ(p.tooth, 1);
+  EXPECT_EQ(p.pass, 1);
 }
 
 }  // namespace test_setpoint_stream

@@ -124,7 +124,9 @@ void jog(SetpointStream& stream, const Machine& machine, Setpoint& last, int axi
   Setpoint p;
   move.next(p);  // at rest
   while (move.next(p)) {
+    const Axes velocity = p.velocity;
     stream.adopt(p);
+    EXPECT_TRUE((p.velocity == velocity).all());
     last = p;
     if (seen) seen->push_back(p);
   }

@@ -161,21 +161,6 @@ TEST(SCurveProfile, CruisesAtTheTargetOnly) {
   EXPECT_EQ(law.speed(), 1);
 }
 
-TEST(SCurveProfile, FinalBrakingTakesATargetButChangesOnlyWhenSlowedDown) {
-  for (const double target : {0.0, 0.1, 2.0}) {
-    SCOPED_TRACE(target);
-    SCurveProfile law({2, 1, 1}, 20, 2);
-    law.advance(law.timeLeft() - 2);
-    SCurveProfile untouched = law;
-    EXPECT_TRUE(law.setTarget(target));
-    EXPECT_EQ(law.target(), target);
-    EXPECT_EQ(law.timeLeft(), untouched.timeLeft());
-    law.slowDown(0.5);
-    untouched.slowDown(0.5);
-    EXPECT_EQ(law.timeLeft() == untouched.timeLeft(), target == 2);
-  }
-}
-
 TEST(SCurveProfile, RefusesBadArgumentsByName) {
   const auto expectRefused = [](const MotionLimits& limits, double distance, double target, const std::string& name) {
     const std::string said =
@@ -346,19 +331,6 @@ RC_GTEST_PROP(SCurveProfileProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndCom
   assertFinished(law, m);
 }
 
-TEST(SCurveProfile, SlowedDownItTakesUpItsSpeedAnew) {
-  const MotionLimits limits{1, 2, 8};
-  SCurveProfile law(limits, 10, 1);
-  law.advance(2);
-  ASSERT_TRUE(law.cruising());
-  law.slowDown(0.25);
-  EXPECT_EQ(law.speed(), 0.25);
-  // 0.75 more, within 0.75/a + a/j.
-  law.advance(0.75 / 2 + 0.25 + 1e-9);
-  EXPECT_TRUE(law.cruising());
-  EXPECT_EQ(law.speed(), 1);
-}
-
 TEST(SCurveProfile, WhatIsNoFactorDoesNotSlowItDown) {
   for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
     SCurveProfile law({1, 2, 8}, 10, 1);
@@ -371,34 +343,6 @@ TEST(SCurveProfile, WhatIsNoFactorDoesNotSlowItDown) {
   SCurveProfile resting;
   resting.slowDown(0.5);
   EXPECT_TRUE(resting.finished());
-}
-
-RC_GTEST_PROP(SCurveProfileProperty, GoesAtMostAtTheTargetOnceItHasComeDownToIt, ()) {
-  const Motion m = Motion::draw();
-  SCurveProfile law(m.limits, m.distance, m.limits.velocity);
-  law.advance(law.timeLeft() * *uniform(0, 0.9));
-  const double target = m.limits.velocity * *uniform(0.01, 1);
-  RC_ASSERT(law.setTarget(target));
-  const double start_speed = law.speed() + std::max(0.0, law.acceleration()) * law.acceleration() / (2 * m.limits.jerk);
-  bool below = start_speed <= target;  // else the speed goes past it whatever is done
-  for (int i = 0; i < 20000 && !law.resting(); ++i) {
-    law.advance(m.dt);
-    if (below) RC_ASSERT(law.speed() <= target * (1 + 1e-9) + 1e-12 * m.limits.velocity);
-    below = below || (law.speed() <= target && law.acceleration() <= 0);
-  }
-}
-
-RC_GTEST_PROP(SCurveProfileProperty, DoesNotDependOnHowTheTimeIsCut, ()) {
-  const Motion m = Motion::draw();
-  SCurveProfile fine(m.limits, m.distance, m.limits.velocity);
-  SCurveProfile coarse(m.limits, m.distance, m.limits.velocity);
-  const int parts = *whole(2, 30);
-  for (int i = 0; i < 30; ++i) {
-    for (int part = 0; part < parts; ++part) fine.advance(m.dt / parts);
-    coarse.advance(m.dt);
-    RC_ASSERT(std::abs(fine.position() - coarse.position()) <=
-              1e-13 * m.distance + 1e-12 * m.limits.velocity * m.dt * (i + 1));
-  }
 }
 
 RC_GTEST_PROP(SCurveProfileProperty, TheTimeLeftIsWhatItThenTakes, ()) {

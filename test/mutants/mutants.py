@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Breaks a module in some hundred small ways, one at a time, and notes which tests see each: a measure of what the tests
-prove, and of which of them nobody would miss. Works in build/mutants/, on the files as they are; needs clang's python3-clang."""
+prove, and of which of them nobody would miss. Works in the user's cache, on the files as they are."""
 
 import argparse
 import collections
@@ -22,7 +22,8 @@ import time
 import breaks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-WORK = ROOT / 'build/mutants'
+# Kept for the next run; not below the clone, where roslaunch would find every file twice.
+WORK = pathlib.Path(os.environ.get('XDG_CACHE_HOME') or '~/.cache').expanduser() / 'flute_grinder_mutants' / str(ROOT)[1:]
 TREE = WORK / 'tree'
 BUILD = TREE / 'build'
 BINARIES = BUILD / 'devel/lib/flute_grinder'

@@ -48,10 +48,14 @@ def git(*arguments):
 
 def copy_tree():
     """Brings the copy up to date, so that make builds again what is different."""
-    for name in git('ls-files', '-z', '--cached', '--others', '--exclude-standard').split('\0'):
-        if name and (ROOT / name).exists():
-            write(TREE / name, (ROOT / name).read_bytes())
-            shutil.copymode(ROOT / name, TREE / name)
+    names = {name for name in git('ls-files', '-z', '--cached', '--others', '--exclude-standard').split('\0')
+             if name and (ROOT / name).exists()}
+    for path in TREE.rglob('*'):
+        if path.is_file() and BUILD not in path.parents and str(path.relative_to(TREE)) not in names:
+            path.unlink()
+    for name in names:
+        write(TREE / name, (ROOT / name).read_bytes())
+        shutil.copymode(ROOT / name, TREE / name)
 
 
 def write(path, data):

@@ -5,6 +5,7 @@
 #include <unistd.h>
 #include <xmlrpcpp/XmlRpcDispatch.h>
 #include <xmlrpcpp/XmlRpcSource.h>
+#include <boost/make_shared.hpp>
 
 #include <cerrno>
 #include <cstdint>

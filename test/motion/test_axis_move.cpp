@@ -88,18 +88,6 @@ TEST(AxisMove, ToWhereTheAxisStandsNothingMoves) {
   EXPECT_TRUE(move.finished());
 }
 
-TEST(AxisMove, BeginsAtItsSpeedThoughTheOneBeforeWasSlowedDown) {
-  AxisMove move(plainMachine()), fresh(plainMachine());
-  for (AxisMove* one : {&move, &fresh}) {
-    if (one == &move) {
-      move.begin(MoveKind::kLift, kFrom, kY, kFrom[kY] + 0.01, 0.01);
-      move.slowDown(0.1);
-    }
-    one->begin(MoveKind::kLift, kFrom, kY, kFrom[kY] + 0.01, 0.01);
-  }
-  EXPECT_EQ(all(move).size(), all(fresh).size());
-}
-
 TEST(AxisMove, StopsAtSpeedZeroAndGoesOnAtAnother) {
   AxisMove move(plainMachine());
   move.begin(MoveKind::kPosition, kFrom, kZ, kFrom[kZ] + 0.02, 0.02);

@@ -11,7 +11,7 @@ from clang.cindex import TypeKind
 # What is broken: its place in the original, and what is done to it.
 Break = collections.namedtuple('Break', 'number file line column text')
 # A rewriting: from start to end, `before` and `after` come around it, and `inside`, a list of (start, end, text), is replaced.
-_Edit = collections.namedtuple('_Edit', 'start end before after inside line numbers')
+_Edit = collections.namedtuple('_Edit', 'start end before after inside line')
 
 _ARITHMETIC = {'+': ('plus', '-'), '-': ('minus', '+'), '*': ('times', '+'), '/': ('over', '*')}
 _ORDERS = {'<': ('less', '<=', '>='), '<=': ('lessEqual', '<', '>'), '>': ('greater', '>=', '<='),
@@ -22,7 +22,10 @@ _LITERALS = (Kind.INTEGER_LITERAL, Kind.FLOATING_LITERAL, Kind.CXX_BOOL_LITERAL_
 _NUMBERS = (TypeKind.BOOL, TypeKind.INT, TypeKind.UINT, TypeKind.LONG, TypeKind.ULONG, TypeKind.LONGLONG,
             TypeKind.ULONGLONG, TypeKind.SHORT, TypeKind.USHORT, TypeKind.UCHAR, TypeKind.SCHAR, TypeKind.DOUBLE,
             TypeKind.FLOAT)
-_STATEMENTS = (Kind.CALL_EXPR, Kind.COMPOUND_ASSIGNMENT_OPERATOR, Kind.UNARY_OPERATOR, Kind.BINARY_OPERATOR)
+_STATEMENTS = (Kind.CALL_EXPR, Kind.COMPOUND_ASSIGNMENT_OPERATOR, Kind.UNARY_OPERATOR, Kind.BINARY_OPERATOR,
+               Kind.UNEXPOSED_EXPR, Kind.CONTINUE_STMT)
+# Neither comparisons nor made of others.
+_CONDITIONS = (Kind.CALL_EXPR, Kind.UNEXPOSED_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR)
 
 
 def _is_number(cursor):
@@ -50,8 +53,8 @@ class _File:
     def of(self, cursor):
         return self.text[cursor.extent.start.offset:cursor.extent.end.offset].decode()
 
-    def rewritten(self, header, without):
-        """The source with its breaks but those in lines to be left out."""
+    def rewritten(self, header, count, without):
+        """The source with its breaks but those in lines to be left out. @param count of the breaks of all files."""
         edits = [edit for edit in self.edits if edit.line not in without]
         inserts = collections.defaultdict(lambda: ([], []))
         replaced = {}
@@ -60,7 +63,7 @@ class _File:
             inserts[edit.end][0].insert(0, edit.after)
             for start, end, text in edit.inside:
                 replaced[start] = (end, text)
-        out, at = ['#include "%s"\n#line 1\n' % header], 0
+        out, at = ['#define MUTANTS %d\n#include "%s"\n#line 1\n' % (count, header)], 0
         for place in sorted(set(inserts) | set(replaced)):
             out.append(self.text[at:place].decode())
             at = max(at, place)
@@ -92,7 +95,7 @@ class Finder:
 
     def rewritten(self, header, without):
         """The sources by their names. @param without pairs of a name and a line whose breaks do not compile."""
-        return {file.name: file.rewritten(header, {line for name, line in without if name == file.name})
+        return {file.name: file.rewritten(header, len(self.breaks), {line for name, line in without if name == file.name})
                 for file in self._files.values()}
 
     def _file(self, cursor):
@@ -120,20 +123,22 @@ class Finder:
             for child in cursor.get_children():
                 self._outside(child)
 
-    def _inside(self, file, cursor, parent=None):
+    def _inside(self, file, cursor):
         if self._is_fixed(file, cursor):
             return
         children = list(cursor.get_children())
         if cursor.kind == Kind.COMPOUND_STMT:
             for child in children:
                 self._statement(file, child)
-        elif cursor.kind in (Kind.IF_STMT, Kind.WHILE_STMT, Kind.CONDITIONAL_OPERATOR):
-            self._condition(file, children)
+        elif cursor.kind in (Kind.IF_STMT, Kind.WHILE_STMT, Kind.CONDITIONAL_OPERATOR) and children:
+            self._condition(file, children[0])
+        elif cursor.kind == Kind.RETURN_STMT and children and _is_bool(children[0]):
+            self._condition(file, children[0])
         self._expression(file, cursor, children)
         for i, child in enumerate(children):
             if cursor.kind == Kind.CASE_STMT and i == 0:
                 continue
-            self._inside(file, child, cursor)
+            self._inside(file, child)
 
     @staticmethod
     def _is_fixed(file, cursor):
@@ -143,26 +148,20 @@ class Finder:
 
     def _break(self, file, cursor, texts, before, after, inside=()):
         """Adds the breaks of an expression, with %d in `before` for the number of the first."""
-        start, end = cursor.extent.start.offset, cursor.extent.end.offset
-        numbers = []
+        start, end = cursor.extent.start, cursor.extent.end
+        file.edits.append(_Edit(start.offset, end.offset, before.replace('%d', str(len(self.breaks))), after, inside, start.line))
         for text in texts:
-            numbers.append(len(self.breaks))
-            self.breaks.append(Break(len(self.breaks), file.name, cursor.extent.start.line, cursor.extent.start.column,
+            self.breaks.append(Break(len(self.breaks), file.name, start.line, start.column,
                                      '%s: %s' % (' '.join(file.of(cursor).split())[:100], text)))
-        file.edits.append(_Edit(start, end, before.replace('%d', str(numbers[0])), after, list(inside), cursor.extent.start.line, numbers))
 
     def _statement(self, file, cursor):
         """A statement that is left out."""
-        if cursor.kind not in _STATEMENTS + (Kind.UNEXPOSED_EXPR, Kind.CONTINUE_STMT):
-            return
-        if cursor.kind == Kind.UNEXPOSED_EXPR and not file.of(cursor).endswith(')'):
-            return
-        self._break(file, cursor, ['left out'], 'if (mutants::at(%d)) {} else ', '')
+        if cursor.kind in _STATEMENTS:
+            self._break(file, cursor, ['left out'], 'if (mutants::at(%d)) {} else ', '')
 
-    def _condition(self, file, children):
-        """A condition that is neither a comparison nor made of others."""
-        if children and children[0].kind in (Kind.CALL_EXPR, Kind.UNEXPOSED_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR):
-            self._break(file, children[0], ['the opposite'], '(mutants::at(%d) != static_cast<bool>(', '))')
+    def _condition(self, file, cursor):
+        if cursor.kind in _CONDITIONS:
+            self._break(file, cursor, ['the opposite'], '(mutants::at(%d) != static_cast<bool>(', '))')
 
     def _expression(self, file, cursor, children):
         if cursor.kind == Kind.BINARY_OPERATOR and len(children) == 2:
@@ -181,9 +180,6 @@ class Finder:
             around = file.text[cursor.extent.start.offset - 1:cursor.extent.start.offset]
             if around != b'<' and _is_number(cursor):
                 self._break(file, cursor, ['not' if _is_bool(cursor) else 'another'], 'mutants::value(%d, ', ')')
-        elif cursor.kind == Kind.RETURN_STMT and children and _is_bool(children[0]) and \
-                children[0].kind in (Kind.CALL_EXPR, Kind.UNEXPOSED_EXPR, Kind.DECL_REF_EXPR, Kind.MEMBER_REF_EXPR):
-            self._break(file, children[0], ['the opposite'], '(mutants::at(%d) != static_cast<bool>(', '))')
 
     @staticmethod
     def _is_constant(cursor):
@@ -201,8 +197,8 @@ class Finder:
             self._break(file, cursor, ['%s for %s' % (other, operator)], 'mutants::' + name + '(%d, ', ')',
                         [(start, end, ', ')])
         elif operator in _ORDERS and all(_is_number(child) and not _is_real(child) for child in children):
-            name, near, opposite = _ORDERS[operator]
-            self._break(file, cursor, ['%s for %s' % (other, operator) for other in (near, opposite)],
+            name, *others = _ORDERS[operator]
+            self._break(file, cursor, ['%s for %s' % (other, operator) for other in others],
                         'mutants::' + name + '(%d, ', ')', [(start, end, ', ')])
         elif operator in ('==', '!=', *_ORDERS):  # of real numbers, hardly ever are two equal
             self._break(file, cursor, ['the opposite'], '(mutants::at(%d) != (', '))')

@@ -10,10 +10,9 @@
 #include <string>
 #include <type_traits>
 
-/// Mutants: small breaks of a module, all compiled in, of which a process has at most one. breaks.py writes the calls.
+/// Mutants: small breaks of a module, all compiled in, of which a process has at most one. breaks.py writes the calls,
+/// and defines how many there are (MUTANTS).
 namespace mutants {
-
-constexpr int kMost = 20000;  ///< largest number of a mutant, plus one
 
 /// Which mutant this process has, by the environment variable MUTANT, and which of them it has come by. At the end of
 /// the process the latter are written into the folder MUTANTS_REACHED, if it is set.
@@ -28,7 +27,7 @@ class Process {
   ~Process() {
     if (folder_.empty()) return;
     std::ofstream file(folder_ + "/" + std::to_string(getpid()), std::ios::app);
-    for (int i = 0; i < kMost; ++i) {
+    for (int i = 0; i < MUTANTS; ++i) {
       if (reached_[static_cast<std::size_t>(i)].load(std::memory_order_relaxed)) file << i << '\n';
     }
   }
@@ -40,7 +39,7 @@ class Process {
  private:
   int own_ = -1;
   std::string folder_;
-  std::array<std::atomic<bool>, kMost> reached_{};
+  std::array<std::atomic<bool>, MUTANTS> reached_{};
 };
 inline Process process;
 

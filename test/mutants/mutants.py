@@ -5,6 +5,7 @@ prove, and of which of them nobody would miss. Works in the user's cache, on the
 import argparse
 import collections
 import concurrent.futures
+import fcntl
 import json
 import os
 import pathlib
@@ -253,6 +254,12 @@ def main():
     arguments = parser.parse_args()
     module = arguments.module
 
+    WORK.mkdir(parents=True, exist_ok=True)
+    lock = open(WORK / 'lock', 'w')
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise SystemExit('%s: another run works there' % WORK) from None
     copy_tree()
     configure()
     folders = ['src/%s/' % module] + (['include/flute_grinder/%s/' % module] if arguments.headers else [])

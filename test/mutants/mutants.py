@@ -12,6 +12,7 @@ import pathlib
 import random
 import re
 import resource
+import select
 import shlex
 import shutil
 import signal
@@ -115,22 +116,30 @@ def limit_memory():
     resource.setrlimit(resource.RLIMIT_AS, (int(MEMORY), int(MEMORY)))
 
 
-def run(command, environment, seconds):
-    """@return what it prints, and whether it ended well; nothing for the latter if it did not end."""
-    with tempfile.TemporaryFile() as out:
-        process = subprocess.Popen(command, cwd=TREE, env=dict(os.environ, RC_PARAMS=RANDOM_CASES, **environment), stdout=out,
-                                   stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=limit_memory)
-        try:
-            good = process.wait(seconds) == 0
-        except subprocess.TimeoutExpired:
-            good = None
-        try:
-            os.killpg(process.pid, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
-        process.wait()
-        out.seek(0)
-        return out.read().decode(errors='replace'), good
+def run(command, environment, patience):
+    """@param patience the seconds that a test by the name of the key may take, and by no name what is no test.
+    @return what it prints, and whether it ended well; nothing for the latter if it did not end."""
+    process = subprocess.Popen(command, cwd=TREE, env=dict(os.environ, RC_PARAMS=RANDOM_CASES, **environment),
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True, preexec_fn=limit_memory)
+    text, deadline, hangs = b'', time.monotonic() + patience[''], False
+    while not hangs:
+        ready, _, _ = select.select([process.stdout], [], [], max(0, deadline - time.monotonic()))
+        chunk = os.read(process.stdout.fileno(), 1 << 16) if ready else b''
+        hangs = not ready
+        if ready and not chunk:
+            break
+        text += chunk
+        begun = re.findall(r'(?m)^\[ RUN +\] (\S+)\n', chunk.decode(errors='replace'))
+        if begun:
+            deadline = time.monotonic() + patience.get(begun[-1], patience[''])
+    good = None if hangs else process.wait() == 0
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+    process.stdout.close()
+    return text.decode(errors='replace'), good
 
 
 def command(suite, names):
@@ -145,7 +154,7 @@ def cases_of(suite):
     if suite == RIDES:
         yield Case(suite, '300')
         return
-    text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, LEAST)
+    text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, {'': LEAST})
     group = ''
     for line in text.splitlines():
         name = line.split('#')[0].rstrip()
@@ -155,22 +164,24 @@ def cases_of(suite):
             yield Case(suite, group + name.strip())
 
 
-def seen_by(suite, names, number, seconds):
-    """The tests among those named that see a mutant. One that crashes ends its process: the others go on in another."""
+def seen_by(suite, names, number, patience):
+    """The tests among those named that see a mutant. One that crashes ends its process: the others go on in another; one that
+    hangs is enough."""
     seen, left = set(), list(names)
     while left:
-        text, good = run(command(suite, left), {'MUTANT': str(number)}, seconds)
+        text, good = run(command(suite, left), {'MUTANT': str(number)}, patience)
         if good:
             break
         ended = set(re.findall(r'(?m)^\[ +(?:OK|FAILED) +\] (\S+?)(?:,.*)? \(', text))
         seen |= set(re.findall(r'(?m)^\[ +FAILED +\] (\S+?)(?:,.*)? \(', text)) & set(left)
         left = [name for name in left if name not in ended]
         broken = [name for name in re.findall(r'(?m)^\[ RUN +\] (\S+)', text) if name in left]
-        if good is None or not broken:
-            # Where one hangs, the others do not get their turn; and what ends outside of a test is seen by all.
+        if not broken:  # what ends outside of a test is seen by all
             seen |= set(left)
             break
         seen.add(broken[0])
+        if good is None:
+            break
         left.remove(broken[0])
     return seen
 
@@ -179,7 +190,7 @@ def reached_by(case):
     """The numbers of the mutants that a test comes by, and how long it takes; none if it fails without a mutant."""
     with tempfile.TemporaryDirectory() as folder:
         begin = time.monotonic()
-        text, good = run(command(case.suite, [case.name]), {'MUTANTS_REACHED': folder}, 600)
+        text, good = run(command(case.suite, [case.name]), {'MUTANTS_REACHED': folder}, {'': 600})
         took = time.monotonic() - begin
         if not good:
             print('%s fails without a mutant: left out\n%s' % (case.name, text[-500:]), file=sys.stderr)
@@ -195,8 +206,9 @@ def ask(number, cases, took, own):
     for (others, _), suites in sorted(stages.items()):
         seen = set()
         for suite, names in sorted(suites.items()):
-            seconds = LEAST + PATIENCE * sum(took[Case(suite, name)] for name in names)
-            seen |= {Case(suite, name) for name in seen_by(suite, names, number, seconds)}
+            patience = {name: LEAST + PATIENCE * took[Case(suite, name)] for name in names}
+            patience[''] = max(patience.values())
+            seen |= {Case(suite, name) for name in seen_by(suite, names, number, patience)}
             if others and seen:
                 break
         if seen:

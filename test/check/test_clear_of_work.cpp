@@ -178,9 +178,9 @@ rc::Gen<GrindJob> randomJob() {
   });
 }
 
-/// Of each rapid move, positions among its setpoints, its last one with them.
+/// Of each rapid move, positions among its setpoints, its last one with them; of those that differ in A alone, one.
 std::vector<Setpoint> rapidsOf(const GrindProgram& program) {
-  constexpr int kOfEachMove = 4;
+  constexpr int kOfEachMove = 2;
   std::vector<std::vector<Setpoint>> moves(program.moves().size());
   SetpointStream stream(program);
   Setpoint p;
@@ -190,7 +190,11 @@ std::vector<Setpoint> rapidsOf(const GrindProgram& program) {
   std::vector<Setpoint> rapids;
   for (const std::vector<Setpoint>& move : moves) {
     for (std::size_t i = 0; i < kOfEachMove && !move.empty(); ++i) {
-      rapids.push_back(move[(move.size() - 1) * (i + 1) / kOfEachMove]);
+      const Setpoint& at = move[(move.size() - 1) * (i + 1) / kOfEachMove];
+      const bool known = std::any_of(rapids.begin(), rapids.end(), [&](const Setpoint& p) {
+        return p.move == at.move && (p.position - at.position).head<3>().matrix().norm() < 1e-9;
+      });
+      if (!known) rapids.push_back(at);
     }
   }
   return rapids;

@@ -100,15 +100,25 @@ struct Bench {
     return {};
   }
 
-  /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
-  End wall(double x, double r, int side) const {
+  struct Way {
+    double from, to;
+  };
+
+  /// Of the wheel's centre, while the wheel may reach a circle.
+  Way way(double x, double r) const {
     const double large = tool.wheel.maxRadius(), rise = large * std::abs(std::tan(tool.cutter.cone_angle));
     const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
                          (tool.wheel.upperFace() - tool.wheel.lowerFace());
-    double from = x - 1.5 * reach, to = x + 1.5 * reach;
+    Way way{x - 1.5 * reach, x + 1.5 * reach};
     const double apex = -tool.cutter.end_diameter / 2 / std::tan(tool.cutter.cone_angle);
-    if (tool.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
-    if (tool.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
+    if (tool.cutter.cone_angle > 0) way.from = std::max(way.from, 0.98 * (apex + std::max(0.0, x_shift)));
+    if (tool.cutter.cone_angle < 0) way.to = std::min(way.to, 0.98 * (apex + std::min(0.0, x_shift)));
+    return way;
+  }
+
+  /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
+  End wall(double x, double r, int side) const {
+    const auto [from, to] = way(x, r);
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
@@ -140,15 +150,41 @@ struct Bench {
   /// The angle of the edge at X [rad].
   double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
 
-  /// The minimum radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
-  double core(double x) const {
-    double out = 0, in = radius(x);
-    for (int i = 0; i < 20; ++i) {
-      const double middle = (out + in) / 2;
-      (std::isfinite(wall(x, middle, 1).angle) ? in : out) = middle;
+  /// The minimum radius that the wheel reaches at X [m]. A disc of the wheel is a line across the section there, of
+  /// which the near end counts, or its height where it passes the axis: the least over all discs and poses.
+  double core(double x, const Way& way) const {
+    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);
+    const double lower = tool.wheel.lowerFace(), upper = tool.wheel.upperFace();
+    double best = std::numeric_limits<double>::infinity(), best_s = x, best_w = lower;
+    const auto look = [&](double pose, double disc) {
+      const double s = std::clamp(pose, way.from, way.to), w = std::clamp(disc, lower, upper);
+      const double dz = (w + (x - s) * sn) / cs, t = dz * sn + (x - s) * cs;
+      const double squared = tool.wheel.radius(w) * tool.wheel.radius(w) - t * t;
+      if (squared < 0) return;
+      const double z = height + s * tan_cone * zPerY(tool) + z_correction.at(s).z + dz;
+      const double y =
+          tool.cutter.end_diameter / 2 + tool.nominal_radius - depth + s * (tan_cone + tool.y_per_x + taper);
+      const double r = std::hypot(z, std::max(0.0, y - std::sqrt(squared)));
+      if (r < best) best = r, best_s = s, best_w = w;
+    };
+    double step = (way.to - way.from) / poses, disc = (upper - lower) / places;
+    for (int i = 0; i <= poses; ++i) {
+      for (int k = 0; k <= places; ++k) look(way.from + i * step, lower + k * disc);
     }
-    return in;
+    for (int closer = 0; closer < 16; ++closer) {
+      step /= 3, disc /= 3;
+      for (double before = 2 * best; best < before;) {
+        before = best;
+        const double s = best_s, w = best_w;
+        for (int i = -3; i <= 3; ++i) {
+          for (int k = -3; k <= 3; ++k) look(s + i * step, w + k * disc);
+        }
+      }
+    }
+    return best;
   }
+
+  double core(double x) const { return core(x, way(x, radius(x))); }
 
   int rakeSide() const { return tool.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
 

@@ -56,20 +56,22 @@ GrindJob cylinder(double swivel_deg) {
 }
 
 TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
-  int jobs = 0;
   for (const std::string& entry : test_support::shippedJobs()) {
     SCOPED_TRACE(entry);
     const GrindJob job = readJobFile(entry, "flute");
-    const CutterCheck check = checked(job);
+    const GroundCutter cutter = groundCutterOf(ValidJob(job));
+    const CutterCheck check = checkGroundCutter(ValidJob(job));
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
-    const GroundCutter cutter = groundCutterOf(ValidJob(job));
     double min_rake = 90 * kDegree, max_spiral = -90 * kDegree;
-    for (int i = 0; i <= 8; ++i) {
-      for (const ToothSection& tooth : cutter.section(i / 8.0 * job.cutter.flute_length).teeth) {
-        min_rake = std::min(min_rake, tooth.rake.value());
+    for (int i = 0; i <= 16; ++i) {
+      for (const ToothSection& tooth : cutter.section(i / 16.0 * job.cutter.flute_length).teeth) {
+        ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);
+        EXPECT_NEAR(*tooth.rake, job.cutter.rake_angle, job.cutter.rake_tolerance);
+        if (i % 2 != 0) continue;  // between the checked sections
+        min_rake = std::min(min_rake, *tooth.rake);
         max_spiral = std::max(max_spiral, tooth.spiral.value());
       }
     }
@@ -79,16 +81,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     for (const auto& at : {figure(ToolFigure::kCoreDiameter).least, figure(ToolFigure::kCoreDiameter).largest}) {
       EXPECT_NEAR(at.value, 2 * cutter.section(at.x).core_radius, 1e-8);
     }
-    // Between the checked sections too.
-    for (int i = 0; i <= 20; ++i) {
-      for (const ToothSection& tooth : cutter.section(i / 20.0 * job.cutter.flute_length).teeth) {
-        ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);
-        EXPECT_NEAR(*tooth.rake, job.cutter.rake_angle, job.cutter.rake_tolerance);
-      }
-    }
-    ++jobs;
   }
-  EXPECT_GE(jobs, 8);
 }
 
 /// How deep a point is in the wheel of a tooth's deepest stroke while its centre is at `wheel_x`; negative beside it
@@ -374,13 +367,13 @@ double spoiledByTrying(const GrindJob& job, double core) {
   tool.cutter = job.cutter;
   tool.wheel = wheelOf(job);
   tool.nominal_radius = job.process().wheel_diameter / 2;
-  const brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120, 400};
+  const brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120, 100};
   double first = 12 * kMillimetre;
   for (int i = 1; i <= 6; ++i) {
     for (const int side : {-1, 1}) {
       const double r = core + (job.cutter.end_diameter / 2 - core) * i / 6;
       const auto end = [&](double s) { return bench.endAt(0, r, s, side).angle; };
-      constexpr double kStep = 0.002 * kMillimetre;
+      constexpr double kStep = 0.005 * kMillimetre;
       double farthest = -10, overtravel = 9.2 * kMillimetre;
       for (double s = 20 * kMillimetre; s >= -overtravel; s -= kStep) farthest = std::max(farthest, end(s));
       while (overtravel < first && !(end(-overtravel) > farthest)) overtravel += kStep;

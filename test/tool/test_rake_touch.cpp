@@ -17,6 +17,7 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace grinder {
@@ -117,7 +118,7 @@ class Groove {
       if (values[i] < std::max(values[before], values[after])) continue;
       double from = before, to = after;
       const double golden = 0.6180339887498949;
-      for (int k = 0; k < 45; ++k) {
+      for (int k = 0; k < 28; ++k) {
         const double left = to - golden * (to - from), right = from + golden * (to - from);
         const double one = depth(left), other = depth(right);
         best = std::max({best, one, other});
@@ -147,7 +148,7 @@ class Groove {
     return std::min({wheel_.radius(within) - from_spindle, w - wheel_.lowerFace(), wheel_.upperFace() - w});
   }
 
-  static constexpr int kPlaces = 400;
+  static constexpr int kPlaces = 100;
   const ValidJob job_;
   WheelProfile wheel_;
   ZCorrection z_correction_;
@@ -202,23 +203,19 @@ class RandomJobs {
 };
 
 TEST(RakeTouch, APlaneRakeFaceIsTouchedAtTheBallsRadiusFromIt) {
-  for (const double angle : {0.0, -2.5}) {
-    for (const double diameter : {0.2, 1.5}) {
-      for (const double from_axis : {4.2, 4.5}) {
-        const Ball ball{10 * kMillimetre, from_axis * kMillimetre, angle, diameter * kMillimetre};
-        // The upper face stands by 2 mm above the wheel's middle, the lower one by 2 mm below.
-        const double high = std::asin((0.7 - diameter / 2) / from_axis) - angle;
-        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kRightHand)), ball), high, 1e-9);
-        EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kLeftHand)), ball), -high - 2 * angle, 1e-9);
-      }
-    }
+  for (const auto& [angle, diameter, from_axis] : {std::tuple{0.0, 0.2, 4.2}, {0.0, 1.5, 4.5}, {-2.5, 1.5, 4.2}}) {
+    const Ball ball{10 * kMillimetre, from_axis * kMillimetre, angle, diameter * kMillimetre};
+    // The upper face stands by 2 mm above the wheel's middle, the lower one by 2 mm below.
+    const double high = std::asin((0.7 - diameter / 2) / from_axis) - angle;
+    EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kRightHand)), ball), high, 1e-9);
+    EXPECT_NEAR(touch(ValidJob(straight(CutDirection::kLeftHand)), ball), -high - 2 * angle, 1e-9);
   }
 }
 
 TEST(RakeTouch, TheBallIsFreeBeforeItTouchesAndInTheCutterBeyond) {
   RandomJobs random;
   int touched = 0, of_hand[2] = {0, 0};
-  const int cases = test_support::randomCases(24);
+  const int cases = test_support::randomCases(16);
   for (int i = 0; i < cases; ++i) {
     SCOPED_TRACE(i);
     const ValidJob job(random.job());
@@ -248,15 +245,15 @@ TEST(RakeTouch, NearTheCornerOfTheFloorTheBallIsRefusedUntilItTouchesTheRakeFace
   asked.process().wheel_wear_per_pass = 0;
   const ValidJob job(asked);
   int touched = 0, refused = 0;
-  for (int i = 0; i < 8; ++i) {
+  for (int i = 0; i < 4; ++i) {
     SCOPED_TRACE(i);
-    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.00125 * i) * kMillimetre, 0, 0.8 * kMillimetre};
+    const Ball ball{job->cutter.flute_length / 2, (6.0155 + 0.0025 * i) * kMillimetre, 0, 0.8 * kMillimetre};
     if (refusal(job, ball)) {
       ++refused;
       EXPECT_EQ(touched, 0);
     } else {
       ++touched;
-      expectTouch(job, ball, touch(job, ball), 48);
+      expectTouch(job, ball, touch(job, ball), 24);
     }
   }
   EXPECT_GT(touched, 1);
@@ -270,8 +267,8 @@ TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWo
     const char* what;
   };
   for (const Wrong& wrong :
-       {Wrong{1, "else it touches the flute's floor first"}, Wrong{3.2, "else it touches the flute's floor first"},
-        Wrong{4.1, "else it touches the cutting edge"}, Wrong{4.6, "else it touches nothing of the flute"}}) {
+       {Wrong{3.2, "else it touches the flute's floor first"}, Wrong{4.1, "else it touches the cutting edge"},
+        Wrong{4.6, "else it touches nothing of the flute"}}) {
     SCOPED_TRACE(wrong.from_axis_mm);
     Ball ball{10 * kMillimetre, wrong.from_axis_mm * kMillimetre, 0, 0.5 * kMillimetre};
     const auto reason = refusal(job, ball);
@@ -280,7 +277,7 @@ TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWo
     EXPECT_EQ(reason->field, "ball's distance from the axis");
     EXPECT_EQ(reason->detail, wrong.what);
     EXPECT_NEAR(reason->value, ball.from_axis, 1e-6);
-    for (const double part : {0.0, 0.5, 1.0}) {
+    for (const double part : {0.0, 1.0}) {
       ball.from_axis = reason->low + part * (reason->limit - reason->low);
       EXPECT_FALSE(refusal(job, ball)) << part;
     }

@@ -161,11 +161,11 @@ TEST(RunStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
     });
     const GroundCutter cutter = runOf(ValidJob(job), read).cutter();
     for (int k = 0; k < kPoints; ++k) {
-      const double x = uniform(0, 0.022), edge = cutter.section(x).teeth.front().edge.value();
+      const double x = uniform(0, 0.022);
       const double r = uniform(0.6, 1) * 0.005;
       const auto arc = cutter.arc(cutter.flutes().front(), x, r);
       // About one of the ends.
-      const double end = arc ? (k % 2 == 0 ? arc->low : arc->high) : edge;
+      const double end = !arc ? cutter.section(x).teeth.front().edge.value() : k % 2 == 0 ? arc->low : arc->high;
       const double theta = end + uniform(-1, 1) * (k % 3 == 0 ? 0.5 : 0.005);
       const bool is = removed(cutter, x, r, theta);
       taken += is;

@@ -404,38 +404,31 @@ TEST(SimulatedDriveHoming, FindsTheReferenceAnewThatItHasLostByAFaultOrByTheRequ
   EXPECT_TRUE(bench.status().homed);
 }
 
-TEST(SimulatedDriveHoming, EndsUnhomedWhenTheCommandIsTakenBack) {
+TEST(SimulatedDriveHoming, EndsUnhomedWithTheCommandAndWithPowerAndDoesNotGoOnWithThat) {
   HomingBench bench;
-  bench.home(5);
-  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, bench.position(axis));
-  bench.asked.home = false;
-  const Axes before = bench.positions();
-  bench.run(20);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
-  EXPECT_TRUE(((bench.positions() - before).abs() < 1e-12).all());
-}
-
-TEST(SimulatedDriveHoming, NeedsPowerEndsWithItAndDoesNotGoOnWithIt) {
-  HomingBench bench;
+  const auto expectRest = [&](int cycles) {
+    const Axes before = bench.positions();
+    bench.run(cycles);
+    EXPECT_FALSE(bench.status().homing);
+    EXPECT_FALSE(bench.status().homed);
+    EXPECT_TRUE(((bench.positions() - before).abs() < 1e-12).all());
+  };
+  bench.asked.home = true;
   bench.asked.enable = false;
-  bench.home(50);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_TRUE((bench.positions() == 0).all());
+  expectRest(50);
   bench.asked.home = false;
   bench.asked.enable = true;
   bench.run(1);
   bench.home(5);
   EXPECT_TRUE(bench.status().homing);
+  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, bench.position(axis));
+  bench.asked.home = false;
+  expectRest(20);
+  bench.home(5);
   bench.drive.inject(Fault::kEmergencyStop);
-  bench.run(1);
-  const Axes before = bench.positions();
-  EXPECT_FALSE(bench.status().homing);
+  expectRest(1);
   bench.drive.inject(Fault::kNone);
-  bench.run(50);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
-  EXPECT_TRUE(sameBits(bench.positions(), before));
+  expectRest(50);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

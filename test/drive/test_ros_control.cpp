@@ -222,7 +222,7 @@ class Parameters : public testing::Test {
 };
 
 TEST_F(Parameters, HaveJointsOfTheAxesNamesAndNothingElseUnlessStated) {
-  const RosControlParameters p = read();
+  RosControlParameters p = read();
   EXPECT_EQ(p.robot_hw, "maker/Machine");
   EXPECT_EQ(p.joints, (std::array<std::string, 4>{"axis_x", "axis_y", "axis_z", "axis_a"}));
   EXPECT_EQ(p.signals.enabled, "always");
@@ -231,16 +231,13 @@ TEST_F(Parameters, HaveJointsOfTheAxesNamesAndNothingElseUnlessStated) {
   EXPECT_EQ(p.signals.probe_contact, "never");
   EXPECT_FALSE(p.commands.power || p.commands.home || p.commands.spindle || p.commands.coolant || p.commands.reset);
   EXPECT_FALSE(p.read_is_clock);
-}
-
-TEST_F(Parameters, TakeWhatIsStated) {
   all["joints"]["axis_a"] = "work_head";
   all["clock"] = "read";
   all["signals"]["fault"] = "/plc/fault";
   all["commands"]["spindle"]["topic"] = "/plc/spindle";
   all["commands"]["power"] = XmlRpc::XmlRpcValue();
   all["commands"]["power"]["service"] = "/plc/power";
-  const RosControlParameters p = read();
+  p = read();
   EXPECT_EQ(p.joints, (std::array<std::string, 4>{"axis_x", "axis_y", "axis_z", "work_head"}));
   EXPECT_TRUE(p.read_is_clock);
   EXPECT_EQ(p.signals.fault, "/plc/fault");

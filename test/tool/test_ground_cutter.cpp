@@ -68,15 +68,13 @@ struct RandomCase {
   WheelProfile wheel;
   double x, outer;
 
-  brute::Tool tool() const {
-    brute::Tool tool;
-    tool.cutter = {c.cutter().cone()};
-    tool.wheel = wheel;
-    tool.nominal_radius = c.wheel / 2 * kMillimetre;
-    return tool;
-  }
-  brute::Bench bench(const brute::Tool& tool, int poses, int places) const {
-    return {tool, c.setup().swivel, c.setup().height, c.depth * kMillimetre, poses, places};
+  brute::Bench bench(int poses, int places) const {
+    return {{{c.cutter().cone()}, wheel, c.wheel / 2 * kMillimetre},
+            c.setup().swivel,
+            c.setup().height,
+            c.depth * kMillimetre,
+            poses,
+            places};
   }
   brute::Bench::Way way() const {
     return {std::max(c.from * kMillimetre, x - 0.04), std::min(c.to * kMillimetre, x + 0.04)};
@@ -117,8 +115,7 @@ std::optional<RandomCase> randomCase(std::mt19937& random, int i) {
 /// never beyond the true one.
 double bruteEnd(const RandomCase& k, double r, bool high, int poses, int places) {
   constexpr int kCloser = 14;
-  const brute::Tool tool = k.tool();
-  const brute::Bench bench = k.bench(tool, poses, places);
+  const brute::Bench bench = k.bench(poses, places);
   const auto [from, to] = k.way();
   double step = (to - from) / poses, best = -1e9, best_at = from;
   const auto tryAll = [&, from = from, to = to](double first, int count) {
@@ -262,8 +259,7 @@ TEST(GroundCutter, TheCoreIsThatOfBruteForce) {
     const double core = k->c.sweep(k->wheel).minRadius(k->x, k->outer);
     if (!(core < k->outer - 1e-5)) continue;
     ++checked;
-    const brute::Tool tool = k->tool();
-    EXPECT_NEAR(core, k->bench(tool, 400, 60).core(k->x, k->way()), 0.1e-6) << "case " << i;
+    EXPECT_NEAR(core, k->bench(400, 60).core(k->x, k->way()), 0.1e-6) << "case " << i;
   }
   EXPECT_EQ(checked, cases);
 }

@@ -175,7 +175,7 @@ class TestPeers(unittest.TestCase):
 
     @classmethod
     def into_stroke(cls):
-        """Unless it is in one; the stroke takes five minutes, and what is ahead of it is fast."""
+        """Unless it is in one; the stroke takes five minutes, and the infeed ahead of it a second."""
         if cls.run_ and not cls.run_.done:
             if cls.grinder.fresh_state().state == GrinderState.HELD:
                 assert cls.grinder.resume().success
@@ -183,11 +183,12 @@ class TestPeers(unittest.TestCase):
             if cls.grinder.fresh_state().state == GrinderState.RUNNING:
                 assert cls.grinder.set_feed_override(SLOW).success
                 return
-        rest = cls.grinder.make_ready(SLOW)
+        rest = cls.grinder.make_ready(0.05)
         for axis, work in enumerate(cls.grinder.fresh_state().work_position):
             assert work == rest[axis] or cls.grinder.set_offset(axis, 0.0).success
         cls.run_ = cls.grinder.send(gc.paper(flute_length=2 * MM, feed=400 * MM_MIN, clearance=0.2 * MM, depth=0.1 * MM, infeed=0.1 * MM))
-        cls.run_.wait_in_stroke(-0.998 * MM)
+        cls.run_.wait_in_stroke(-0.9 * MM)
+        assert cls.grinder.set_feed_override(SLOW).success
 
     def setUp(self):
         self.into_stroke()

@@ -81,9 +81,9 @@ class TestRecords(gc.OwnNode):
         canceled = self.record_of(cancel)
         self.check_command(done, canceled)
         self.grinder.make_ready()
-        record = self.record_of(lambda: self.grinder.run(JOB, first_tooth=1, first_pass=1))
-        self.assertEqual(record['first'], {'tooth': 2, 'pass': 2})
-        self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(2, 2)])
+        record = self.record_of(lambda: self.grinder.run(JOB, first_pass=1))
+        self.assertEqual(record['first'], {'tooth': 1, 'pass': 2})
+        self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(1, 2), (2, 1), (2, 2)])
 
         record = self.record_of(lambda: (self.send_into_stroke(job_name='broken off'), self.restart(signal.SIGTERM)))
         self.assertEqual((record['outcome'], record['job']), ('canceled', 'broken off'))

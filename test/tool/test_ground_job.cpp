@@ -6,13 +6,11 @@
 
 #include "brute_force.h"
 #include "jobs.h"
-#include "motion/examples.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 namespace grinder {
@@ -20,16 +18,11 @@ namespace test_ground_job {
 
 using test_support::jobOf;
 using test_support::paper;
-using test_support::roomyMachine;
 using units::kDegree;
 using units::kMillimetre;
 using units::kPi;
 
-CutterCheck checked(const GrindJob& job) {
-  const JobPlan plan = planJob(ValidJob(job), roomyMachine(), roomyMachine().park);
-  EXPECT_TRUE(plan.good()) << text(plan.reasons);
-  return checkGroundCutter(ValidJob(job));
-}
+CutterCheck checked(const GrindJob& job) { return checkGroundCutter(ValidJob(job)); }
 
 /// The one reason of a kind.
 Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
@@ -59,7 +52,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     SCOPED_TRACE(entry);
     const GrindJob job = readJobFile(entry, "flute");
     const GroundCutter cutter = groundCutterOf(ValidJob(job));
-    const CutterCheck check = checkGroundCutter(ValidJob(job));
+    const CutterCheck check = checked(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);

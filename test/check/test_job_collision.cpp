@@ -3,7 +3,7 @@
 #include "curve/reference.h"
 #include "flute_grinder/base/units.h"
 #include "machine.h"
-#include "motion/generators.h"
+#include "motion/examples.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/tool/z_law.h"
 #include "jobs.h"
-#include "motion/generators.h"
+#include "motion/examples.h"
 #include "refusal.h"
 
 #include <gtest/gtest.h>

@@ -6,8 +6,7 @@
 #include "flute_grinder/tool/z_law.h"
 
 #include "check/machine.h"
-#include "flute_grinder/messages/conversions.h"
-#include "motion/generators.h"
+#include "motion/examples.h"
 
 #include <gtest/gtest.h>
 

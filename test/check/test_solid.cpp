@@ -82,8 +82,8 @@ TEST(Solid, AWheelHasTheReachOfItsProfile) {
   for (double angle = -89; angle < 90; angle += 0.7) {
     const Vector3d direction(std::cos(angle * kDegree), 0, std::sin(angle * kDegree));
     double reach = -1;
-    for (int i = 0; i <= 200000; ++i) {
-      const double w = profile.lowerFace() + (profile.upperFace() - profile.lowerFace()) * i / 200000;
+    for (int i = 0; i <= 20000; ++i) {
+      const double w = profile.lowerFace() + (profile.upperFace() - profile.lowerFace()) * i / 20000;
       reach = std::max(reach, profile.radius(w) * direction.x() + w * direction.z());
     }
     EXPECT_NEAR(wheel.farthest(direction).dot(direction), reach, 5e-6) << angle;

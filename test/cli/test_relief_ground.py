@@ -26,7 +26,7 @@ import grinder_client as gc  # noqa: E402
 
 REAMER = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
 KINDS = ('flute', 'primary', 'secondary')
-USUAL_CASES = 10  # with RapidCheck's 100
+USUAL_CASES = 5  # with RapidCheck's 100
 RATE, SLOW = 1000, 200  # [Hz] of the setpoints; with SLOW they are as close together at the reamer's feeds
 TURN = 2 * math.pi
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Shows that `grind setup` writes the set-up for the tool that a job asks for into its set-up file, which `grind plan` accepts, what
-its sheet says, and that a refusal leaves the file as it was."""
+its sheet says, and that a refusal leaves the files as they were."""
 
 import math
 import os
@@ -20,46 +20,42 @@ from grind_command import CommandLine  # noqa: E402
 from grinder_client import DEG  # noqa: E402
 
 JOBS = gc.package_file('jobs')
-PAPER_JOB = os.path.join(JOBS, 'paper.yaml')
-URDF = gc.package_file('urdf/grinder.urdf')
 
 
 class TestSetup(CommandLine):
-    def job(self, name, source=PAPER_JOB, **changes):
-        """Writes a shipped job, to be solved, with other values as text, `None` to leave a key out; the keys are unique in it."""
-        text = self.text(source).replace('../wheels', gc.package_file('wheels')).replace('paper.setup', 'job.setup')
+    def job(self, **changes):
+        """Writes the paper's job, to be solved, with other values as text, `None` to leave a key out; the keys are unique in it."""
+        text = self.text(JOBS + '/paper.yaml').replace('../wheels', gc.package_file('wheels')).replace('paper.setup', 'job.setup')
         for key, value in changes.items():
             pattern = r'(?m)^( *)%s: *(\{.*?\}|\[.*?\]|[^ #\n]+)(.*)\n' % key
             self.assertEqual(len(re.findall(pattern, text)), 1, key)
             text = re.sub(pattern, '' if value is None else r'\g<1>%s: %s\g<3>\n' % (key, value), text)
-        return self.write(name, text)
+        return self.write('job.yaml', text)
 
     def text(self, path):
-        with open(path, newline='') as file:
-            return file.read()
+        return pathlib.Path(path).read_text()
 
-    def setup(self, job, *arguments, status=0):
-        return self.json(status, 'setup', job, *arguments)[0]
-
-
-class TestFigures(TestSetup):
-    def test_the_papers_cutter_without_a_setup(self):
-        job = self.job('job.yaml')
+    def test_what_is_written_is_planned_and_on_the_sheet(self):
+        job = self.job()
         self.assertRegex(self.grind(2, 'plan', job).stderr, "job.setup.yaml: cannot be read: .*; 'grind setup --write' solves it")
-        found = self.setup(job, '--write')
+        found, said = self.json(0, 'setup', job, '--write')
+        self.assertEqual((said, found['wheel_above_swivel_mm']), ('', None))
         self.grind(0, 'plan', job)
-        self.assertEqual(self.setup(job), found)
-        again = self.job('job.yaml', rake_angle_deg=9)
-        self.assertIn('solved for cutter.rake_angle_deg = 8; the job now has cutter.rake_angle_deg = 9',
-                      self.grind(2, 'plan', again).stderr)
+        written = self.text(self.path('job.setup.yaml'))
 
-    def test_what_the_job_asks_for_is_kept(self):
-        job = self.job('job.yaml', setup='{file: job.setup.yaml, swivel_deg: 32.5}', rake_tolerance_deg=2, core_tolerance_mm=0.2)
-        self.assertEqual(self.setup(job, '--write')['swivel_deg'], 32.5)
-        self.grind(0, 'plan', job)
+        def full_disk():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
 
-    def test_sheet(self):
-        sheet, found = self.grind(0, 'setup', PAPER_JOB).stdout, self.setup(PAPER_JOB)
+        done = subprocess.run([gc.program('grind'), 'setup', job, '--write'], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=full_disk)
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, 'job.setup.yaml: cannot be written: File too large\n$')
+        self.assertEqual(self.text(self.path('job.setup.yaml')), written)
+        self.assertEqual(set(os.listdir(self.folder)), {'job.yaml', 'job.setup.yaml'})
+        self.check_sheet(self.grind(0, 'setup', job).stdout, found)
+
+    def check_sheet(self, sheet, found):
         swivel, height = found['swivel_deg'] * DEG, found['height_mm']
         lines = [r"swivel +%.3f deg; the machine's range is -60 to 60 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
                  'shift in X +%.3f mm' % found['x_shift_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
@@ -74,71 +70,23 @@ class TestFigures(TestSetup):
         for line in lines:
             self.assertRegex(sheet, line)
 
-
-class TestRefusals(TestSetup):
-    def test_figures_by_hand_are_not_written_over(self):
-        job = gc.job_file(self.path('hand.yaml'))
-        before = self.text(job)
-        self.assertEqual(self.grind(2, 'setup', job, '--write').stderr,
-                         job + ': the figures of the set-up are written by hand; to have them written, put setup: {file: '
-                         'hand.setup.yaml} in place of setup, depth_mm, depth_end_mm and overtravel_mm\n')
-        self.assertEqual(self.text(job), before)
-        self.grind(0, 'setup', job)
-
-    def test_urdf_without_a_swivel(self):
-        urdf = self.write('none.urdf', self.text(URDF).replace('"wheel_swivel"', '"other"'))
-        self.assertIn('no joint wheel_swivel', self.grind(2, 'setup', PAPER_JOB, '--urdf', urdf).stderr)
-
-
     def test_what_a_plan_refuses_is_not_written(self):
         # Each tooth has a helix of its own, and the set-up is for the middle.
-        job = self.job('job.yaml', teeth=2, spiral_angle_deg=None, cut='right_hand\n  spiral_angles_deg: [27, 33]')
-        said = self.grind(1, 'setup', job, '--write').stderr
-        self.assertRegex(said, r'^a plan would refuse this tool: cutter\.rake_angle_deg = 8 deg: tooth \d is ground with .*, or set '
-                               r'process\.z_law: constant_rake\n(a plan would refuse this tool: .*\n)*.*job\.setup\.yaml: nothing was written\n$')
+        job = self.job(teeth=2, spiral_angle_deg=None, cut='right_hand\n  spiral_angles_deg: [27, 33]')
+        self.assertRegex(self.grind(1, 'setup', job, '--write').stderr, r'^(a plan would refuse this tool: .*\n)+.*job\.setup\.yaml: nothing was written\n$')
         self.assertEqual(os.listdir(self.folder), ['job.yaml'])
-        self.assertIn('a plan would refuse this tool', self.grind(1, 'setup', job).stderr)
-        job = self.job('job.yaml', rake_tolerance_deg='0.01', clearance_mm='5\n  z_law: constant_rake')
-        self.setup(job, '--write')
-        self.grind(0, 'plan', job)
 
     def test_what_else_a_plan_refuses_is_said_beforehand(self):
-        job = self.job('job.yaml', shank_diameter_mm='40')
-        done = self.grind(0, 'setup', job, '--write')
+        done = self.grind(0, 'setup', self.job(shank_diameter_mm='40'), '--write')
         self.assertRegex(done.stderr, r'(?m)^a plan of it is refused: collision_clearance = 1 mm: .* shank .*; change .*$')
-        self.assertIn('shank', self.grind(1, 'plan', job).stderr)
-        self.assertEqual(self.grind(0, 'setup', PAPER_JOB).stderr, '')
 
-
-class TestTouchOff(TestSetup):
     def test_wheel_above_the_swivel(self):
-        source = os.path.join(JOBS, 'unequal_d12_t4.yaml')
         machine = self.write('machine.yaml', self.text(gc.package_file('config/grinder.yaml')).replace(
             'flange: 0.0035 ', 'flange: 0.0235 '))
-        higher = self.setup(source, '--machine', machine)
+        higher, _ = self.json(0, 'setup', JOBS + '/unequal_d12_t4.yaml', '--machine', machine)
         self.assertAlmostEqual(higher['wheel_above_swivel_mm'], 20, delta=1e-9)
         lowered = 20 * (1 - math.cos(higher['swivel_deg'] * DEG))
         self.assertAlmostEqual(higher['touch_z_mm'], 1.5 - higher['height_mm'] - lowered, delta=1e-9)
-        self.assertIn('with the wheel\'s middle 20.000 mm above', self.grind(0, 'setup', source, '--machine', machine).stdout)
-        self.assertIsNone(self.setup(PAPER_JOB)['wheel_above_swivel_mm'])
-
-
-class TestFile(TestSetup):
-    def test_full_disk_leaves_the_old_file(self):
-        job = self.job('job.yaml')
-        self.grind(0, 'setup', job, '--write')
-        before = self.text(self.path('job.setup.yaml'))
-
-        def full_disk():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
-
-        done = subprocess.run([gc.program('grind'), 'setup', job, '--write'], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=full_disk)
-        self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, 'job.setup.yaml: cannot be written: File too large\n$')
-        self.assertEqual(self.text(self.path('job.setup.yaml')), before)
-        self.assertEqual(set(os.listdir(self.folder)), {'job.yaml', 'job.setup.yaml'})
 
 
 if __name__ == '__main__':

@@ -19,6 +19,8 @@ from free_port import free_port  # noqa: E402
 
 # Much longer than any command takes, even on a host that stalls.
 PATIENCE = 600
+TYPED = 'rosrun flute_grinder grind '
+GRIND = str(ROOT / 'build/devel/lib/flute_grinder/grind') + ' '
 # States that pass by themselves.
 PASSING = {'starting', 'holding', 'retracting', 'resuming', 'canceling', 'homing', 'lifting'}
 
@@ -62,9 +64,14 @@ class Session:
         self.in_hal = 'INSIDE_HAL' in os.environ
         self.launched = []
         self.outputs = {}
+        self.found = False  # whether rosrun has been asked for grind
 
     def _start(self, command, log, keep=False):
-        """A command in a shell that knows what those before it have set and, with `keep`, hands it on."""
+        """A command in a shell that knows what those before it have set and, with `keep`, hands it on. Where rosrun has found grind
+        once, it looks no more, which takes seconds."""
+        if self.found:
+            command = command.replace(TYPED, GRIND)
+        self.found |= TYPED in command
         script = 'cd "$(cat %(f)s/cwd)"; . %(f)s/env; %(c)s\n' % {'f': self.folder, 'c': command}
         if keep:
             script += 'status=$?; declare -px >%(f)s/env; pwd >%(f)s/cwd; exit $status\n' % {'f': self.folder}
@@ -100,8 +107,8 @@ class Session:
             poll(lambda: re.search(seen, self.grind('status')), seen)
 
     def grind(self, arguments, node=''):
-        """What a command prints that no page asks for; without rosrun, which takes its time."""
-        command = ' '.join([str(ROOT / 'build/devel/lib/flute_grinder/grind'), node, arguments])
+        """What a command prints that no page asks for."""
+        command = GRIND + ' '.join([node, arguments])
         self.type(command)
         return self.outputs[command]
 

@@ -20,12 +20,9 @@ TEST(DriveAbi, LayoutOfTheVersion) {
   EXPECT_EQ(sizeof(Drive), 24U);
 }
 
-TEST(DriveStatus, SaysNothingGoodUntilReported) {
+TEST(DriveAbi, NothingGoodIsSaidNorStatedUnlessADriveDoesSo) {
   const DriveStatus status;
   EXPECT_FALSE(status.enabled || status.homed || status.spindle_at_speed || status.coolant_on);
-}
-
-TEST(DriveCapabilities, AreNoneUntilStated) {
   const DriveCapabilities can;
   EXPECT_FALSE(can.homing || can.spindle || can.coolant || can.probe || can.swivel);
 }

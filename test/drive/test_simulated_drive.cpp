@@ -72,13 +72,14 @@ TEST(SimulatedDriveInit, IsHomedAndReadsDecimalStartPositionsToTheLastBit) {
   for (int i = 1; i <= 2; ++i) {
     EXPECT_TRUE(sameBits(bench.positions(), start)) << "reading " << i;
     EXPECT_TRUE(bench.status().homed);
+    EXPECT_FALSE(bench.status().probe_contact) << "without a blank";
     EXPECT_EQ(bench.status().feedback_count, static_cast<std::uint64_t>(i));
     bench.read();
   }
 }
 
 // From x toward c, each period takes the fraction 1 / (1 + tau/T) of what is left: with q = tau / (tau + T), after n
-// periods the axis is at c - (c - x) q^n.
+// periods the axis is at c - (c - x) q^n. The velocity is the mean over the period.
 TEST(SimulatedDriveMotion, EveryAxisHasAFirstOrderLagOfItsOwn) {
   SimulatedDrive::Model model = plainModel();
   for (std::size_t i = 0; i < model.size(); ++i) model[i].time_constant = 0.001 * static_cast<double>(i);
@@ -87,31 +88,25 @@ TEST(SimulatedDriveMotion, EveryAxisHasAFirstOrderLagOfItsOwn) {
   for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, 1);
   for (int n = 1; n <= 20; ++n) {
     SCOPED_TRACE(n);
+    const Axes before = bench.positions();
     bench.run(1);
     EXPECT_EQ(bench.position(kX), 1) << "without lag at once";
-    EXPECT_NEAR(bench.position(kY), 1 - std::pow(1.0 / 2, n), 1e-12);
-    EXPECT_NEAR(bench.position(kZ), 1 - std::pow(2.0 / 3, n), 1e-12);
-    EXPECT_NEAR(bench.position(kA), 1 - std::pow(3.0 / 4, n), 1e-12);
+    for (int axis = kY; axis < kAxisCount; ++axis) {
+      EXPECT_NEAR(bench.position(axis), 1 - std::pow(axis / (axis + 1.0), n), 1e-12);
+      EXPECT_NEAR(bench.velocity(axis), (bench.position(axis) - before[axis]) / 0.001, 1e-8);
+    }
   }
 }
 
-TEST(SimulatedDriveMotion, VelocityIsTheMeanOverThePeriod) {
-  Bench bench{plainModel(0.002)};
-  bench.asked.enable = true;
-  bench.command(kX, 0.3);
-  bench.run(1);
-  EXPECT_NEAR(bench.velocity(kX), 0.3 / 3 / 0.001, 1e-9);
-  bench.run(200);
-  EXPECT_NEAR(bench.velocity(kX), 0, 1e-9);
-}
-
-TEST(SimulatedDriveMotion, NeedsPowerAndEndsWithIt) {
+TEST(SimulatedDriveMotion, NeedsPowerAndTheCommandToBeWritten) {
   Bench bench{plainModel()};
   bench.command(kX, 0.1);
   bench.run(10);
   EXPECT_EQ(bench.position(kX), 0);
   EXPECT_FALSE(bench.status().enabled);
   bench.asked.enable = true;
+  for (int i = 0; i < 10; ++i) bench.read();
+  EXPECT_EQ(bench.position(kX), 0);
   bench.run(1);
   EXPECT_TRUE(bench.status().enabled);
   const Axes before = bench.positions();
@@ -120,16 +115,6 @@ TEST(SimulatedDriveMotion, NeedsPowerAndEndsWithIt) {
   bench.run(10);
   EXPECT_TRUE(sameBits(bench.positions(), before));
   EXPECT_FALSE(bench.status().enabled);
-}
-
-TEST(SimulatedDriveMotion, NeedsTheCommandToBeWritten) {
-  Bench bench{plainModel()};
-  bench.asked.enable = true;
-  bench.command(kX, 0.1);
-  for (int i = 0; i < 10; ++i) bench.read();
-  EXPECT_EQ(bench.position(kX), 0);
-  bench.run(1);
-  EXPECT_GT(bench.position(kX), 0);
 }
 
 TEST(SimulatedDriveMotion, NoTimeIsNoMotionAndNoDivisionByZero) {
@@ -141,75 +126,55 @@ TEST(SimulatedDriveMotion, NoTimeIsNoMotionAndNoDivisionByZero) {
   EXPECT_EQ(bench.velocity(kX), 0);
 }
 
-TEST(SimulatedDriveEncoder, RoundsToTheNearestCount) {
-  Bench bench{plainModel(0, 1000)};
-  bench.asked.enable = true;
+TEST(SimulatedDriveEncoder, RoundsToTheNearestCountAndDoesNotHoldTheMotorBack) {
+  Bench coarse{plainModel(0, 1000)};
+  coarse.asked.enable = true;
   for (const auto& [commanded, counted] :
        {std::pair(0.0124, 0.012), {0.0126, 0.013}, {-0.0124, -0.012}, {-0.0126, -0.013}}) {
-    bench.command(kX, commanded);
-    bench.run(1);
-    EXPECT_EQ(bench.position(kX), counted) << commanded;
+    coarse.command(kX, commanded);
+    coarse.run(1);
+    EXPECT_EQ(coarse.position(kX), counted) << commanded;
   }
-}
-
-TEST(SimulatedDriveEncoder, DoesNotHoldTheMotorBack) {
-  Bench bench{plainModel(0.002, 10)};  // counts of 0.1
-  bench.asked.enable = true;
+  Bench coarser{plainModel(0.002, 10)};  // counts of 0.1
+  coarser.asked.enable = true;
   for (int i = 1; i <= 100; ++i) {
-    bench.command(kX, 0.01 * i);  // steps far below a count
-    bench.run(1);
+    coarser.command(kX, 0.01 * i);  // steps far below a count
+    coarser.run(1);
   }
-  bench.run(100);
-  EXPECT_EQ(bench.position(kX), 1);
+  coarser.run(100);
+  EXPECT_EQ(coarser.position(kX), 1);
 }
 
-/// Injects a fault that takes power and motion away.
-void expectToStop(MovingBench& bench, Fault fault) {
-  const Axes before = bench.positions();
-  bench.drive.inject(fault);
-  bench.run(10);
-  EXPECT_EQ(bench.status().emergency_stop, fault == Fault::kEmergencyStop);
-  EXPECT_EQ(bench.status().fault, fault == Fault::kDriveFault);
-  EXPECT_FALSE(bench.status().enabled);
-  EXPECT_TRUE(sameBits(bench.positions(), before));
-  bench.drive.inject(Fault::kNone);
-}
-
-TEST(SimulatedDriveFault, EmergencyStopTakesPowerAndMotionAwayUntilItIsTakenBack) {
-  MovingBench bench;
-  expectToStop(bench, Fault::kEmergencyStop);
-  bench.run(1);
-  EXPECT_FALSE(bench.status().emergency_stop);
-}
-
-TEST(SimulatedDriveFault, DriveFaultTakesThemAwayUntilItIsTakenBackAndReset) {
-  MovingBench bench;
-  expectToStop(bench, Fault::kDriveFault);
-  bench.run(10);
-  EXPECT_TRUE(bench.status().fault);
-  EXPECT_FALSE(bench.status().enabled);
-  bench.asked.enable = false;
-  bench.asked.reset = true;
-  bench.run(1);
-  EXPECT_FALSE(bench.status().fault);
-  bench.asked.enable = true;
-  bench.asked.reset = false;
-  bench.run(1);
-  EXPECT_FALSE(bench.status().fault);
-  EXPECT_TRUE(bench.status().enabled);
-}
-
-TEST(SimulatedDriveFault, DriveFaultOutlastsAResetWhileItsCauseIsThere) {
-  MovingBench bench;
-  bench.drive.inject(Fault::kDriveFault);
-  bench.asked.enable = false;
-  bench.asked.reset = true;
-  bench.run(3);
-  EXPECT_TRUE(bench.status().fault);
-  bench.drive.inject(Fault::kNone);
-  bench.asked.reset = false;
-  bench.run(1);
-  EXPECT_TRUE(bench.status().fault);
+TEST(SimulatedDriveFault, EmergencyStopAndDriveFaultTakePowerAndMotionAwayTheLatterUntilReset) {
+  for (const Fault fault : {Fault::kEmergencyStop, Fault::kDriveFault}) {
+    const bool stays = fault == Fault::kDriveFault;
+    MovingBench bench;
+    const Axes before = bench.positions();
+    bench.drive.inject(fault);
+    bench.run(10);
+    EXPECT_EQ(bench.status().emergency_stop, !stays);
+    EXPECT_EQ(bench.status().fault, stays);
+    EXPECT_FALSE(bench.status().enabled);
+    EXPECT_TRUE(sameBits(bench.positions(), before));
+    // A reset while the cause is there.
+    bench.asked.enable = !stays;
+    bench.asked.reset = true;
+    bench.run(3);
+    EXPECT_EQ(bench.status().fault, stays);
+    bench.asked.reset = false;
+    bench.drive.inject(Fault::kNone);
+    bench.run(10);
+    EXPECT_FALSE(bench.status().emergency_stop);
+    EXPECT_EQ(bench.status().fault, stays);
+    bench.asked.reset = true;
+    bench.run(1);
+    EXPECT_FALSE(bench.status().fault);
+    bench.asked.enable = true;
+    bench.asked.reset = false;
+    bench.run(1);
+    EXPECT_FALSE(bench.status().fault);
+    EXPECT_TRUE(bench.status().enabled);
+  }
 }
 
 TEST(SimulatedDriveFault, AStuckAxisStandsAlone) {
@@ -242,54 +207,37 @@ TEST(SimulatedDriveFault, StaleFeedbackStandsWhileTheAxesGoOn) {
   EXPECT_NEAR(bench.position(kX), 0.01, 1e-12) << "the axes have gone on meanwhile";
 }
 
-TEST(SimulatedDriveFault, NanFeedbackIsOfOneAxisAndGoesWhenTakenBack) {
+TEST(SimulatedDriveFault, NanFeedbackIsOfOneAxisUntilAnotherTakesItsPlace) {
   for (int failing = 0; failing < kAxisCount; ++failing) {
     SCOPED_TRACE(axisLetter(failing));
     MovingBench bench;
     bench.drive.inject(Fault::kNanFeedback, failing);
     bench.run(1);
     for (int axis = 0; axis < kAxisCount; ++axis) EXPECT_EQ(std::isnan(bench.position(axis)), axis == failing) << axis;
-    bench.drive.inject(Fault::kNone);
+    const int stuck = (failing + 1) % kAxisCount;
+    const double before = bench.position(stuck);
+    bench.drive.inject(Fault::kStuckAxis, stuck);
     bench.run(100);
     EXPECT_NEAR(bench.position(failing), 0.01 * (failing + 1), 1e-12);
+    EXPECT_EQ(bench.position(stuck), before);
   }
-}
-
-TEST(SimulatedDriveFault, OneTakesThePlaceOfAnother) {
-  MovingBench bench;
-  bench.drive.inject(Fault::kNanFeedback, kY);
-  bench.run(1);
-  bench.drive.inject(Fault::kStuckAxis, kZ);
-  bench.run(1);
-  const double stuck = bench.position(kZ);
-  bench.run(3);
-  EXPECT_FALSE(std::isnan(bench.position(kY)));
-  EXPECT_EQ(bench.position(kZ), stuck);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Spindle, coolant, swivel, reference and homing
 
-/// With a spindle that reaches its speed in 7.5 periods, and turns.
-class SpindleBench : public Bench {
- public:
-  SpindleBench() : Bench(plainModel(), 0.001, {true, 0.0075}) {
-    expectToRunUp();
-    run(50);
-    EXPECT_TRUE(status().spindle_at_speed);
-  }
-  /// From rest.
-  void expectToRunUp() {
-    asked.spindle = true;
-    for (int i = 1; i <= 8; ++i) {
-      run(1);
-      EXPECT_EQ(status().spindle_at_speed, i == 8) << "after " << i << " periods";
+TEST(SimulatedDriveSpindle, RunsDownAsItRunsUpAndAnewWhenItWasLost) {
+  Bench bench(plainModel(), 0.001, {true, 0.0075});
+  const auto expectAtSpeedAfter = [&](int periods) {
+    for (int i = 1; i <= periods; ++i) {
+      bench.run(1);
+      EXPECT_EQ(bench.status().spindle_at_speed, i == periods) << "after " << i << " periods";
     }
-  }
-};
-
-TEST(SimulatedDriveSpindle, RunsDownAsItRanUp) {
-  SpindleBench bench;
+  };
+  bench.asked.spindle = true;
+  expectAtSpeedAfter(8);
+  bench.run(50);
+  EXPECT_TRUE(bench.status().spindle_at_speed);
   bench.asked.spindle = false;
   bench.run(1);
   EXPECT_FALSE(bench.status().spindle_at_speed);
@@ -300,15 +248,11 @@ TEST(SimulatedDriveSpindle, RunsDownAsItRanUp) {
   EXPECT_FALSE(bench.status().spindle_at_speed);
   bench.run(2);
   EXPECT_TRUE(bench.status().spindle_at_speed);
-}
-
-TEST(SimulatedDriveSpindle, ThatIsLostRunsUpAnew) {
-  SpindleBench bench;
   bench.drive.inject(Fault::kSpindleLost);
   bench.run(20);
   EXPECT_FALSE(bench.status().spindle_at_speed);
   bench.drive.inject(Fault::kNone);
-  bench.expectToRunUp();
+  expectAtSpeedAfter(8);
 }
 
 TEST(SimulatedDriveSpindle, AndCoolantWithoutATimeAreThereAtOnceAndGoneAtOnce) {
@@ -387,7 +331,7 @@ TEST(SimulatedDriveHoming, IncrementalEncodersCountFromWhereTheAxesStoodAndKnowN
   EXPECT_NEAR(bench.position(kZ), 0.004, 1e-12);
 }
 
-TEST(SimulatedDriveHoming, GoesHomeWithTheHomingVelocity) {
+TEST(SimulatedDriveHoming, TakesOneAxisAfterTheOtherWithItsVelocityAndFirstTheWheelFromTheWork) {
   HomingBench bench;
   bench.home(6);
   EXPECT_TRUE(bench.status().homing);
@@ -397,11 +341,6 @@ TEST(SimulatedDriveHoming, GoesHomeWithTheHomingVelocity) {
   EXPECT_TRUE(((bench.positions() - way).abs() < 1e-12).all()) << bench.positions().transpose();
   EXPECT_NEAR(bench.velocity(kY), 1, 1e-9);
   EXPECT_EQ(bench.velocity(kX), 0);
-}
-
-TEST(SimulatedDriveHoming, TakesOneAxisAfterTheOtherAndFirstTheWheelFromTheWork) {
-  HomingBench bench;
-  bench.home(1);
   std::vector<int> order;
   Axes last = bench.positions();
   while (bench.status().homing) {
@@ -421,10 +360,10 @@ TEST(SimulatedDriveHoming, EndsAtHomeWhateverIsCommandedAndFollowsTheCommandsFro
   bench.home(46);
   EXPECT_TRUE(bench.status().homing) << "it has 46 periods to go";
   EXPECT_NEAR(bench.position(kX), -0.013, 1e-12) << "X is there, and waits";
-  bench.run(6);
-  bench.expectAtHome();
-  bench.run(30);
-  bench.expectAtHome();
+  for (const int cycles : {6, 30}) {
+    bench.run(cycles);
+    bench.expectAtHome();
+  }
   bench.asked.home = false;
   bench.command(kX, 0.45);
   bench.command(kY, 1.5);
@@ -444,7 +383,7 @@ TEST(SimulatedDriveHoming, ShowsInOneReadingHoweverShortTheWay) {
   bench.expectAtHome();
 }
 
-TEST(SimulatedDriveHoming, LosesTheReferenceThatItHadUntilItHasItAnew) {
+TEST(SimulatedDriveHoming, FindsTheReferenceAnewThatItHasLostByAFaultOrByTheRequest) {
   HomingBench bench(true);
   EXPECT_TRUE(bench.status().homed);
   EXPECT_NEAR(bench.position(kX), 0.513, 1e-12);
@@ -453,53 +392,43 @@ TEST(SimulatedDriveHoming, LosesTheReferenceThatItHadUntilItHasItAnew) {
   EXPECT_FALSE(bench.status().homed);
   bench.run(50);
   EXPECT_TRUE(bench.status().homed);
-}
-
-TEST(SimulatedDriveHoming, EndsUnhomedWhenTheCommandIsTakenBack) {
-  HomingBench bench;
-  bench.home(5);
-  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, bench.position(axis));
   bench.asked.home = false;
-  const Axes before = bench.positions();
-  bench.run(20);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
-  EXPECT_TRUE(((bench.positions() - before).abs() < 1e-12).all());
-}
-
-TEST(SimulatedDriveHoming, NeedsPowerEndsWithItAndDoesNotGoOnWithIt) {
-  HomingBench bench;
-  bench.asked.enable = false;
-  bench.home(50);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_TRUE((bench.positions() == 0).all());
-  bench.asked.home = false;
-  bench.asked.enable = true;
-  bench.run(1);
-  bench.home(5);
-  EXPECT_TRUE(bench.status().homing);
-  bench.drive.inject(Fault::kEmergencyStop);
-  bench.run(1);
-  const Axes before = bench.positions();
-  EXPECT_FALSE(bench.status().homing);
-  bench.drive.inject(Fault::kNone);
-  bench.run(50);
-  EXPECT_FALSE(bench.status().homing);
-  EXPECT_FALSE(bench.status().homed);
-  EXPECT_TRUE(sameBits(bench.positions(), before));
-}
-
-TEST(SimulatedDriveFault, ALostReferenceStaysLostUntilHomed) {
-  HomingBench bench(true);
   bench.drive.inject(Fault::kReferenceLost);
   bench.run(1);
   EXPECT_FALSE(bench.status().homed);
   EXPECT_TRUE(bench.status().enabled);
   bench.drive.inject(Fault::kNone);
   bench.run(20);
-  EXPECT_FALSE(bench.status().homed);
+  EXPECT_FALSE(bench.status().homed) << "though its cause is gone";
   bench.home(80);
   EXPECT_TRUE(bench.status().homed);
+}
+
+TEST(SimulatedDriveHoming, EndsUnhomedWithTheCommandAndWithPowerAndDoesNotGoOnWithThat) {
+  HomingBench bench;
+  const auto expectRest = [&](int cycles) {
+    const Axes before = bench.positions();
+    bench.run(cycles);
+    EXPECT_FALSE(bench.status().homing);
+    EXPECT_FALSE(bench.status().homed);
+    EXPECT_TRUE(((bench.positions() - before).abs() < 1e-12).all());
+  };
+  bench.asked.home = true;
+  bench.asked.enable = false;
+  expectRest(50);
+  bench.asked.home = false;
+  bench.asked.enable = true;
+  bench.run(1);
+  bench.home(5);
+  EXPECT_TRUE(bench.status().homing);
+  for (int axis = 0; axis < kAxisCount; ++axis) bench.command(axis, bench.position(axis));
+  bench.asked.home = false;
+  expectRest(20);
+  bench.home(5);
+  bench.drive.inject(Fault::kEmergencyStop);
+  expectRest(1);
+  bench.drive.inject(Fault::kNone);
+  expectRest(50);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -537,28 +466,19 @@ double edge(double free, double touching, const std::function<bool(double)>& tou
   return touching;
 }
 
-TEST(SimulatedProbe, WithoutABlankItTouchesNothing) {
-  Bench bench;
-  bench.run(3);
-  EXPECT_FALSE(bench.status().probe_contact);
-}
-
-TEST(SimulatedProbe, TouchesTheEndFaceBeforeItsCentreIsThere) {
-  const auto at = [](double y) { return edge(0, 0.07, [y](double x) { return touches(blank(), Axes(x, y, 0, 0)); }); };
-  EXPECT_NEAR(at(0), 0.0595, 1e-9);
-  EXPECT_NEAR(at(0.005), 0.0595, 1e-9);
+TEST(SimulatedProbe, TouchesEndFaceAndCylinderBeforeItsCentreIsThere) {
+  const auto end = [](double y) { return edge(0, 0.07, [y](double x) { return touches(blank(), Axes(x, y, 0, 0)); }); };
+  EXPECT_NEAR(end(0), 0.0595, 1e-9);
+  EXPECT_NEAR(end(0.005), 0.0595, 1e-9);
   // Over the face's edge, by 0.3 of the ball's 0.5 mm.
-  EXPECT_NEAR(at(0.0053), 0.0596, 1e-9);
+  EXPECT_NEAR(end(0.0053), 0.0596, 1e-9);
   EXPECT_FALSE(touches(blank(), Axes(0.07, 0.00551, 0, 0)));
-}
-
-TEST(SimulatedProbe, TouchesTheCylinder) {
-  const auto from = [](double z) {
+  const auto side = [](double z) {
     return edge(0.02, 0, [z](double y) { return touches(blank(), Axes(0.1, y, z, 0)); });
   };
-  EXPECT_NEAR(from(0), 0.0055, 1e-9);
-  EXPECT_NEAR(from(0.0033), 0.0044, 1e-9);
-  EXPECT_NEAR(from(-0.0033), 0.0044, 1e-9);
+  EXPECT_NEAR(side(0), 0.0055, 1e-9);
+  EXPECT_NEAR(side(0.0033), 0.0044, 1e-9);
+  EXPECT_NEAR(side(-0.0033), 0.0044, 1e-9);
 }
 
 TEST(SimulatedProbe, TheRunOutTurnsWithTheWork) {

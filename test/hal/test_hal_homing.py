@@ -49,17 +49,12 @@ class TestHoming(unittest.TestCase):
         self.grinder.wait_state(GrinderState.READY)
         self.limits, self.period = self.grinder.limits(), self.grinder.period()
 
-    def begin(self):
-        """Homing, as far as HAL says that it is under way; returns the number of the first row of it."""
+    def machine_homes(self, reading):
+        """Returns the rows until the machine is ready, and some in which the new commands count."""
         first = RECORDER.now()
         self.assertTrue(self.grinder.home().success)
         wait_signal('home', 'TRUE')
         hal_bench.halcmd('sets', 'homing', 'true')
-        return first
-
-    def machine_homes(self, reading):
-        """To the end; returns the rows until the machine is ready, and some in which the new commands count."""
-        first = self.begin()
         set_reference(RECORDER.over(1)[0].position, reading)
         # More than the FIFO holds, so that some of it has the old reference and some of it the new one.
         RECORDER.over(int(hal_bench.BUFFER / self.period / 2))
@@ -120,18 +115,6 @@ class TestHoming(unittest.TestCase):
             self.check_reading(reading)
             self.check_job(reading)
         self.check_steps(RECORDER.read()[first:])
-
-    def test_disable_breaks_homing_off(self):
-        first = self.begin()
-        set_reference(RECORDER.over(1)[0].position, FIRST)
-        self.assertTrue(self.grinder.disable().success)
-        wait_signal('home', 'FALSE')
-        gc.poll(lambda: not RECORDER.over(1)[-1].enabled, 'the power off')
-        hal_bench.halcmd('sets', 'homing', 'false')
-        self.assertTrue(self.grinder.enable().success)
-        self.grinder.wait_state(GrinderState.READY)
-        self.check_not_homed()
-        self.assertEqual(len({row.position for row in RECORDER.read()[first:]}), 1)
 
 
 if __name__ == '__main__':

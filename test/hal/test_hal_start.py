@@ -1,7 +1,6 @@
-#!/usr/bin/env python3
-"""Shows how the node starts on HAL: not at all, with the reason, where HAL, its FIFO, a signal or a permission is missing; and
-that a start that fails leaves HAL as it was; and that it takes the swivel's encoder from HAL where there is one, and offers
-what HAL has a signal for."""
+"""Shows how the node starts on HAL: not at all, with the reason, where HAL, its FIFO, a signal or a permission is missing, and that a
+start that fails leaves HAL as it was; and that it takes the swivel's encoder from HAL where there is one, and offers what HAL has a
+signal for."""
 
 import ctypes
 import math
@@ -12,7 +11,6 @@ import tempfile
 import unittest
 
 import rospy
-import rostest
 from flute_grinder.msg import GrinderState, MachineInfo
 
 import hal_bench
@@ -23,15 +21,24 @@ IN_TEMPLATE = ('env', '-u', 'INSIDE_HAL', 'HAL_FILE=' + hal_bench.ROOT + '/hal/t
 NAMESPACE = ('unshare', '--ipc') if os.getuid() == 0 else ('unshare', '--user', '--map-current-user', '--ipc')
 
 
-class TestRefusals(unittest.TestCase):
-    def check(self, *texts, prefix=(), **hardware):
+class HalStart(unittest.TestCase):
+    def start(self, name, **options):
+        """A node and its client, both closed after the test."""
+        node = hal_bench.Node(name, **options)
+        self.addCleanup(node.end, signal.SIGKILL)
+        grinder = gc.Grinder(name)
+        self.addCleanup(grinder.close)
+        return node, grinder
+
+
+class TestRefusals(HalStart):
+    def check(self, text, prefix=(), **hardware):
         """The node ends by itself with status 1 and says why."""
         node = hal_bench.Node('refused', prefix=prefix, **hardware)
         self.assertEqual(node.end(None), 1, node.output)
-        for text in texts:
-            self.assertIn(text, node.output)
+        self.assertIn(text, node.output)
 
-    def check_in_hal(self, old, new, *texts, **hardware):
+    def check_in_hal(self, old, new, text, **hardware):
         """The same on a HAL of its own, from the bench's file with another text in it."""
         with open(hal_bench.ROOT + '/hal/bench.hal') as bench:
             file = bench.read()
@@ -40,22 +47,27 @@ class TestRefusals(unittest.TestCase):
             changed.write(file.replace(old, new))
             changed.flush()
             os.chmod(changed.name, 0o644)
-            self.check(*texts, prefix=('env', '-u', 'INSIDE_HAL', 'HAL_FILE=' + changed.name, IN_HAL), **hardware)
+            self.check(text, prefix=('env', '-u', 'INSIDE_HAL', 'HAL_FILE=' + changed.name, IN_HAL), **hardware)
 
-    def tearDown(self):
-        """A node can start after all of them."""
-        node = hal_bench.Node('well')
-        try:
-            grinder = gc.Grinder('well')
-            self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
-            grinder.close()
-        finally:
-            status = node.end()
-        self.assertEqual(status, 0, node.output)
+    def test_servo_thread_not_started(self):
+        self.check_in_hal('\nstart\n', '\n', "HAL's servo thread runs at 0 Hz (0 if it was not started); allowed: "
+                          'control_rate = 1000 Hz')
 
-    def test_hal_absent(self):
-        self.check("LinuxCNC's HAL is not there (No such file or directory); start it first: halcmd -f FILE.hal",
-                   prefix=NAMESPACE)
+    def test_hal_that_lacks_something(self):
+        signals = 'newsig probe-free bit\nsets probe-free true\n'
+        for old, new, text, hardware in (
+                ('depth=4096 cfg=ffffu\n', 'depth=4096,4096 cfg=ffffu,fffsu\n',
+                 "HAL's streamer.1 has other columns; allowed: cfg=ffffu (X, Y, Z, A, number)", {'streamer': 1}),
+                ('cfg=ffffu\n', 'cfg=ffffub\n', "HAL's streamer.0 has other columns; allowed: cfg=ffffu", {}),
+                ('streamer    depth=4096', 'streamer    depth=90',
+                 "HAL's streamer.0 has depth=90; allowed: 100 or more for this buffer", {'buffer': 0.05}),
+                (signals, '', 'HAL lacks the signals probe-free;', {}),
+                (signals, 'newsig probe-free float\n', "HAL's signal 'probe-free' is of type float; allowed: bit", {}),
+                ('net heartbeat ', 'net heartbeat chain.fault-out\nnet heartbeat ',
+                 "HAL's signal 'heartbeat' has a writer already; allowed: none beside flute-grinder.heartbeat", {}),
+                ('period1=1000000', 'period1=2000000', "HAL's servo thread runs at 500 Hz", {})):
+            with self.subTest(text):
+                self.check_in_hal(old, new, text, **hardware)
 
     @unittest.skipUnless(os.getuid() == 0, 'only root may become somebody else')
     def test_no_permission(self):
@@ -66,48 +78,9 @@ class TestRefusals(unittest.TestCase):
             os.chmod(home, 0o777)
             self.check("no permission to use LinuxCNC's HAL as user 65533", prefix=('env', 'HOME=' + home, *somebody))
 
-    def test_no_streamer_of_that_number(self):
-        self.check("HAL's streamer.1 is not there (No such file or directory); load it: loadrt streamer cfg=ffffu",
-                   streamer=1)
-
-    def test_fifo_of_another_type(self):
-        self.check_in_hal('depth=4096 cfg=ffffu\n', 'depth=4096,4096 cfg=ffffu,fffsu\n',
-                          "HAL's streamer.1 has other columns; allowed: cfg=ffffu (X, Y, Z, A, number)", streamer=1)
-
-    def test_fifo_with_one_column_more(self):
-        self.check_in_hal('cfg=ffffu\n', 'cfg=ffffub\n', "HAL's streamer.0 has other columns; allowed: cfg=ffffu")
-
-    def test_fifo_not_deep_enough(self):
-        self.check_in_hal('streamer    depth=4096', 'streamer    depth=90',
-                          "HAL's streamer.0 has depth=90; allowed: 100 or more for this buffer", buffer=0.05)
-
-    def test_signals_missing(self):
-        self.check_in_hal('newsig probe-free bit\nsets probe-free true\n', '', 'HAL lacks the signals probe-free;')
-
-    def test_signal_of_another_type(self):
-        self.check_in_hal('newsig probe-free bit\nsets probe-free true\n', 'newsig probe-free float\n',
-                          "HAL's signal 'probe-free' is of type float; allowed: bit")
-
-    def test_signal_with_another_writer(self):
-        self.check_in_hal('net heartbeat ', 'net heartbeat chain.fault-out\nnet heartbeat ',
-                          "HAL's signal 'heartbeat' has a writer already; allowed: none beside flute-grinder.heartbeat")
-
-    def test_servo_thread_not_started(self):
-        self.check_in_hal('\nstart\n', '\n', "HAL's servo thread runs at 0 Hz (0 if it was not started); allowed: "
-                          'control_rate = 1000 Hz')
-
-    def test_servo_thread_of_another_rate(self):
-        self.check_in_hal('period1=1000000', 'period1=2000000', "HAL's servo thread runs at 500 Hz")
-
-    def test_component_of_a_running_node(self):
-        node = hal_bench.Node('first')
-        grinder = gc.Grinder('first')
-        self.check("HAL has a component 'flute-grinder' already, of the running process %d" % node.process.pid)
-        self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
-        grinder.close()
-        self.assertEqual(node.end(), 0)
-
-    def test_component_of_another_program(self):
+    def test_refused_on_this_hal_it_leaves_it_as_it_was(self):
+        self.check("LinuxCNC's HAL is not there (No such file or directory); start it first: halcmd -f FILE.hal", prefix=NAMESPACE)
+        self.check("HAL's streamer.1 is not there (No such file or directory); load it: loadrt streamer cfg=ffffu", streamer=1)
         hal = ctypes.CDLL('liblinuxcnchal.so.0')
         other = hal.hal_init(b'flute-grinder')
         self.assertGreater(other, 0)
@@ -115,59 +88,31 @@ class TestRefusals(unittest.TestCase):
             self.check("HAL has a component 'flute-grinder' already, and it is not a grinder's; allowed: another name")
         finally:
             hal.hal_exit(other)
-
-
-class TestTakeover(unittest.TestCase):
-    def test_node_takes_over_from_a_killed_one_again_and_again(self):
-        for _ in range(3):
-            node = hal_bench.Node('killed')
-            grinder = gc.Grinder('killed')
-            grinder.make_ready()
-            grinder.close()
-            node.end(signal.SIGKILL)
-        node = hal_bench.Node('killed')
-        grinder = gc.Grinder('killed')
-        grinder.make_ready()
-        grinder.close()
+        node, grinder = self.start('first')
+        self.check("HAL has a component 'flute-grinder' already, of the running process %d" % node.process.pid)
+        self.assertEqual(grinder.fresh_state().state, GrinderState.DISABLED)
         self.assertEqual(node.end(), 0, node.output)
         self.assertNotIn('flute-grinder ', hal_bench.halcmd('show', 'comp'))
 
 
-class TestTemplate(unittest.TestCase):
-    def test_node_starts_and_offers_what_it_has_signals_for(self):
-        node = hal_bench.Node('templated', prefix=IN_TEMPLATE)
-        self.addCleanup(node.end, signal.SIGKILL)
-        grinder = gc.Grinder('templated')
-        self.addCleanup(grinder.close)
+class TestSignals(HalStart):
+    def test_template_offers_what_it_has_signals_for(self):
+        _, grinder = self.start('templated', prefix=IN_TEMPLATE)
         self.assertTrue(grinder.fresh_state().emergency_stop)
         machine = rospy.wait_for_message('/templated/machine', MachineInfo, gc.PATIENCE)
         self.assertEqual((machine.homing, machine.spindle, machine.coolant), (False, True, True))
 
-
-class TestSwivel(unittest.TestCase):
-    def start(self):
-        node = hal_bench.Node('swivelled')
-        self.addCleanup(node.end)
-        grinder = gc.Grinder('swivelled')
-        self.addCleanup(grinder.close)
-        return grinder
-
-    def test_without_a_signal_it_is_not_measured(self):
-        state = self.start().fresh_state()
+    def test_swivel_is_measured_where_there_is_a_signal(self):
+        node, grinder = self.start('unswivelled')
+        state = grinder.fresh_state()
         self.assertTrue(math.isnan(state.swivel))
         self.assertFalse(state.swivel_measured)
-
-    def test_signal_is_its_encoder(self):
+        node.end()
         hal_bench.halcmd('newsig', 'swivel', 'float')
         self.addCleanup(hal_bench.halcmd, 'delsig', 'swivel')
         hal_bench.halcmd('sets', 'swivel', '0.25')
-        grinder = self.start()
+        _, grinder = self.start('swivelled')
         state = grinder.fresh_state()
         self.assertEqual((state.swivel, state.swivel_measured), (0.25, True))
         hal_bench.halcmd('sets', 'swivel', '-0.125')
         gc.poll(lambda: grinder.fresh_state().swivel == -0.125, 'the other angle')
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_hal_start')
-    rostest.rosrun('flute_grinder', 'hal_start', '__main__')

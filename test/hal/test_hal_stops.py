@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Shows on the real HAL what stops the axes in the midst of a stroke: the emergency stop, a node that no longer lives, a node
 that is late, a motor that does not follow. HAL does it by itself, the node reports it, nothing that was still to come is
 played later, and the axes start again from where they stand."""
@@ -7,8 +6,6 @@ import re
 import signal
 import unittest
 
-import rospy
-import rostest
 from flute_grinder.msg import GrinderState, GrindResult
 
 import hal_bench
@@ -94,33 +91,20 @@ class TestEmergencyStop(Stop, unittest.TestCase):
     # So much that it cannot be its end that stops the axes.
     buffer = 1.0
 
-    def check_stopped_at_once(self):
-        """In the very servo cycle, or the next."""
+    def test_hal_stops_without_the_node_which_reports_it(self):
+        self.node.send(signal.SIGSTOP)
+        hal_bench.press_emergency_stop(True)
+        self.wait_power_off()
+        self.check_standing()
+        # In the very servo cycle, or the next.
         rows = RECORDER.read()
         pressed = next(i for i in range(self.first, len(rows)) if rows[i].emergency_stop)
         self.assertTrue(rows[pressed - 1].enabled)
         self.assertFalse(rows[pressed + 1].enabled)
         self.assertEqual(len({row.command for row in rows[pressed + 1:]}), 1)
-
-    def test_hal_stops_without_the_node(self):
-        self.node.send(signal.SIGSTOP)
-        hal_bench.press_emergency_stop(True)
-        self.wait_power_off()
-        self.check_standing()
-        self.check_stopped_at_once()
-        hal_bench.press_emergency_stop(False)
-        self.check_standing()
         self.node.send(signal.SIGCONT)
-        self.check_goal(GrindResult.HARDWARE_FAULT, r'^the drive has switched its power off')
-        self.check_start_from_standing()
-
-    def test_hal_stops_and_the_node_reports_it(self):
-        hal_bench.press_emergency_stop(True)
         self.check_goal(GrindResult.EMERGENCY_STOP, r'^emergency stop')
-        self.check_standing()
-        self.check_stopped_at_once()
-        state = self.grinder.wait_state(GrinderState.FAULT)
-        self.assertTrue(state.emergency_stop)
+        self.assertTrue(self.grinder.wait_state(GrinderState.FAULT).emergency_stop)
         self.assertFalse(self.grinder.reset().success)
         hal_bench.press_emergency_stop(False)
         self.check_standing()
@@ -203,29 +187,16 @@ class TestFollowingError(Stop, unittest.TestCase):
         self.assertTrue(self.grinder.reset().success)
         self.check_start_from_standing()
 
-    def test_node_compares_with_the_command_that_was_played(self):
-        hal_bench.halcmd('setp', 'motor-x.maxv', '0.0001')
-        self.addCleanup(hal_bench.halcmd, 'setp', 'motor-x.maxv', '0.25')
-        self.check_goal(GrindResult.PATH_TOLERANCE_VIOLATED, r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm')
-        self.check_standing()
-
 
 class TestHold(Stop, unittest.TestCase):
-    def test_hold_takes_the_buffer_and_the_ramp(self):
-        self.assertTrue(self.grinder._call('hold', gc.Trigger).success)
+    def test_it_takes_the_buffer_and_a_cancel_then_lifts(self):
+        self.assertTrue(self.grinder.hold().success)
         self.grinder.wait_state(GrinderState.HELD)
         # Held is reported when the axes have got the last setpoint.
         row = RECORDER.over(1)[0]
         self.assertEqual(row.command, row.position)
         self.assertEqual({r.command for r in RECORDER.over(300)}, {row.command})
         self.assertTrue(all(r.enabled for r in RECORDER.read()[self.first:]))
-        self.assertTrue(self.grinder._call('resume', gc.Trigger).success)
-        self.goal_run.wait_complete()
-        self.assertEqual((self.goal_run.status, self.goal_run.text), ('SUCCEEDED', ''))
-        self.assertTrue(checks.is_gapless(self.goal_run.setpoints))
-        self.check_steps(RECORDER.read()[self.first:])
-
-    def test_cancel_stops_on_the_path_and_lifts(self):
         self.goal_run.cancel()
         self.goal_run.wait()
         self.assertEqual((self.goal_run.status, self.goal_run.code), ('PREEMPTED', GrindResult.CANCELED))
@@ -240,8 +211,3 @@ class TestHold(Stop, unittest.TestCase):
         for axis in (X, Z, A):
             self.assertEqual(len({s.position[axis] for s in setpoints[stroke_end:]}), 1)
         self.assertEqual(checks.excesses(self.goal_run.setpoints, self.limits, self.period), [])
-
-
-if __name__ == '__main__':
-    rospy.init_node('test_hal_stops')
-    rostest.rosrun('flute_grinder', 'hal_stops', '__main__')

@@ -1,9 +1,8 @@
 #include "flute_grinder/job/valid_job.h"
 
-#include "motion/generators.h"
+#include "motion/examples.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 
 #include <cmath>
 #include <functional>
@@ -105,7 +104,7 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
 }
 
 TEST(GrindJob, TakesAsMuchAsIsAllowed) {
-  const std::function<void(GrindJob&)> changes[]{
+  std::vector<std::function<void(GrindJob&)>> changes{
       [](GrindJob& j) { j.process().overtravel_end = 57e-3; },
       [](GrindJob& j) { backTaper(j, 18e-3, 1e-3), j.process().overtravel_end = 100e-3; },
       [](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 - 1e-6)); },
@@ -114,17 +113,12 @@ TEST(GrindJob, TakesAsMuchAsIsAllowed) {
       [](GrindJob& j) {
         j.tooth_angles = {0, 88 * kDeg, 180 * kDeg, 268 * kDeg, 359.999 * kDeg};
       },
-      // The ends of angles, however they were computed.
-      [](GrindJob& j) { j.cutter.spiral_angle = 60 * kPi / 180; },
-      [](GrindJob& j) { j.cutter.spiral_angle = 60 * kDeg; },
-      [](GrindJob& j) { j.cutter.spiral_angle = kPi / 3; },
-      [](GrindJob& j) { j.cutter.spiral_angle = -60 * kPi / 180; },
-      [](GrindJob& j) { j.cutter.spiral_angle = -60 * kDeg; },
-      [](GrindJob& j) { j.cutter.spiral_angle = -kPi / 3; },
-      [](GrindJob& j) { j.cutter.cone_angle = 30 * kPi / 180; },
-      [](GrindJob& j) { j.cutter.cone_angle = 30 * kDeg; },
-      [](GrindJob& j) { j.cutter.cone_angle = kPi / 6; },
   };
+  // The ends of angles, however they were computed.
+  for (const double end : {60 * kPi / 180, 60 * kDeg, kPi / 3}) {
+    for (const int side : {-1, 1}) changes.emplace_back([=](GrindJob& j) { j.cutter.spiral_angle = side * end; });
+    changes.emplace_back([=](GrindJob& j) { j.cutter.cone_angle = end / 2; });
+  }
   for (const auto& change : changes) {
     GrindJob job = paperJob();
     change(job);
@@ -238,28 +232,6 @@ TEST(AskedDepth, IsThatOfTheCore) {
   EXPECT_DOUBLE_EQ(askedDepth(job, 0), 1.05e-3);
   EXPECT_DOUBLE_EQ(askedDepth(job, 10e-3), 1.3e-3);
   EXPECT_DOUBLE_EQ(askedDepth(job, 20e-3), 1.55e-3);
-}
-
-RC_GTEST_PROP(PassDepthsProperty, GoDownByTheInfeedAtMostToTheDepth, ()) {
-  GrindProcess p;
-  p.depth = *test_support::logUniform(0.01e-3, 10e-3);
-  p.infeed = p.depth * *test_support::logUniform(0.003, 2);
-  p.finish_infeed = *rc::gen::arbitrary<bool>() ? p.depth * *test_support::uniform(0, 1) : 0;
-  p.spark_out = *test_support::whole(0, 5);
-  const auto depths = passDepths(p);
-  RC_ASSERT(!depths.empty());
-  RC_ASSERT(depths.back() == p.depth);
-  double before = 0;
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    const double step = depths[i] - before;
-    if (i + static_cast<std::size_t>(p.spark_out) >= depths.size()) {
-      RC_ASSERT(step == 0);
-    } else {
-      RC_ASSERT(step > 0);
-      RC_ASSERT(step <= std::max(p.infeed, p.finish_infeed) * (1 + 1e-8));
-    }
-    before = depths[i];
-  }
 }
 
 }  // namespace test_grind_job

@@ -104,37 +104,39 @@ bool hasLine(const std::string& text, const std::string& wanted) {
 
 TEST(JobFile, TurnsEveryFigureIntoSi) {
   const GrindJob job = parseJob(kGood, "job.yaml");
-  EXPECT_DOUBLE_EQ(job.cutter.end_diameter, 0.006);
-  EXPECT_DOUBLE_EQ(job.cutter.cone_angle, -kPi / 180);
-  EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
-  EXPECT_DOUBLE_EQ(job.cutter.rake_angle, kPi / 15);
-  EXPECT_DOUBLE_EQ(job.cutter.flute_length, 0.025);
-  EXPECT_DOUBLE_EQ(job.process().feed, 0.2 / 60);
-  EXPECT_DOUBLE_EQ(job.process().depth, 0.0015);
-  EXPECT_DOUBLE_EQ(job.process().infeed, 0.0005);
-  EXPECT_DOUBLE_EQ(job.process().finish_infeed, 0.00005);
-  EXPECT_EQ(job.process().spark_out, 1);
-  EXPECT_DOUBLE_EQ(job.process().clearance, 0.005);
-  EXPECT_DOUBLE_EQ(job.process().overtravel_end, 0.001);
-  EXPECT_DOUBLE_EQ(job.process().overtravel_shank, 0.002);
-  EXPECT_EQ(job.process().order, GrindOrder::kPassMajor);
-  EXPECT_EQ(job.process().direction, StrokeDirection::kToEnd);
-  EXPECT_DOUBLE_EQ(job.process().wheel_diameter, 0.1);
-  EXPECT_DOUBLE_EQ(job.process().wheel_width, 0.008);
-  EXPECT_DOUBLE_EQ(job.process().wheel_wear, 0.0003);
-  EXPECT_EQ(job.cutter.cut, CutDirection::kLeftHand);
-  EXPECT_DOUBLE_EQ(job.cutter.rake_tolerance, kPi / 720);
-  EXPECT_DOUBLE_EQ(job.cutter.shank_diameter, 0.01);
-  EXPECT_EQ(job.process().wheel_profile, WheelShape::kAngled);
-  EXPECT_DOUBLE_EQ(job.process().wheel_angle, kPi / 9);
-  EXPECT_EQ(job.process().wheel_side, WheelFace::kLower);
-  EXPECT_DOUBLE_EQ(job.process().wheel_corner_radius_lower, 0.0001);
-  EXPECT_DOUBLE_EQ(job.process().wheel_corner_radius_upper, 0.0002);
-  EXPECT_DOUBLE_EQ(job.process().setup_swivel, -46 * kPi / 180);
-  EXPECT_DOUBLE_EQ(job.process().setup_height, 0.00125);
-  EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kThirdOrder);
-  EXPECT_DOUBLE_EQ(job.interpolation.tolerance, 2e-6);
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process();
+  const std::vector<double> lengths{c.end_diameter,
+                                    c.flute_length,
+                                    c.shank_diameter,
+                                    p.depth,
+                                    p.infeed,
+                                    p.finish_infeed,
+                                    p.clearance,
+                                    p.overtravel_end,
+                                    p.overtravel_shank,
+                                    p.wheel_diameter,
+                                    p.wheel_width,
+                                    p.wheel_wear,
+                                    p.wheel_corner_radius_lower,
+                                    p.wheel_corner_radius_upper,
+                                    p.setup_height,
+                                    job.interpolation.tolerance};
+  const std::vector<double> millimetres{6, 25, 10, 1.5, 0.5, 0.05, 5, 1, 2, 100, 8, 0.3, 0.1, 0.2, 1.25, 0.002};
+  for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_DOUBLE_EQ(lengths[i], millimetres.at(i) / 1000) << i;
+  const std::vector<double> angles{c.cone_angle,     c.spiral_angle, c.rake_angle,
+                                   c.rake_tolerance, p.wheel_angle,  p.setup_swivel};
+  const std::vector<double> degrees{-1, -45, 12, 0.25, 20, -46};
+  for (std::size_t i = 0; i < angles.size(); ++i) EXPECT_DOUBLE_EQ(angles[i], degrees.at(i) * kPi / 180) << i;
+  EXPECT_DOUBLE_EQ(p.feed, 0.2 / 60);
   EXPECT_DOUBLE_EQ(job.interpolation.rotary_scale, 0.0015);
+  EXPECT_EQ(p.spark_out, 1);
+  EXPECT_EQ(c.cut, CutDirection::kLeftHand);
+  EXPECT_EQ(p.order, GrindOrder::kPassMajor);
+  EXPECT_EQ(p.direction, StrokeDirection::kToEnd);
+  EXPECT_EQ(p.wheel_profile, WheelShape::kAngled);
+  EXPECT_EQ(p.wheel_side, WheelFace::kLower);
+  EXPECT_EQ(job.interpolation.even_step, EvenStepRule::kThirdOrder);
 }
 
 GrindJob jobWith(const std::string& piece, const std::string& replacement) {
@@ -156,17 +158,18 @@ TEST(JobFile, ReadsWhatMayBeLeftOut) {
   EXPECT_DOUBLE_EQ(wearing.wheel_wear, 0.0003);
 }
 
-TEST(JobFile, ReadsASpiralAnglePerTooth) {
-  const GrindJob job = jobWith("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]");
+const char* const kAngled = "    profile: angled\n    angle_deg: 20\n    side: lower\n";
+
+TEST(JobFile, ReadsItsLists) {
+  GrindJob job = jobWith("spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44, -43, -42]");
   EXPECT_DOUBLE_EQ(job.cutter.spiral_angle, -kPi / 4);
   ASSERT_EQ(job.spiral_angles.size(), 4u);
   for (int i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(ValidJob(job).cutterOf(i).spiral_angle, (i - 45) * kPi / 180);
-}
-
-const char* const kAngled = "    profile: angled\n    angle_deg: 20\n    side: lower\n";
-
-TEST(JobFile, ReadsAWheelOfPoints) {
-  const GrindJob job = jobWith(kAngled, "    profile: points\n    points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n");
+  const std::vector<double> angles = jobWith("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]").tooth_angles;
+  const std::vector<double> degrees{0, 88, 180, 268};
+  ASSERT_EQ(angles.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(angles[i], degrees[i] * kPi / 180);
+  job = jobWith(kAngled, "    profile: points\n    points_mm: [[-4, 49], [0, 50], [4, 48.5]]\n");
   ASSERT_EQ(job.process().wheel_points.size(), 3u);
   EXPECT_DOUBLE_EQ(job.process().wheel_points[0].w, -0.004);
   EXPECT_DOUBLE_EQ(job.process().wheel_points[2].radius, 0.0485);
@@ -179,13 +182,6 @@ TEST(JobFile, SpacesEveryAllowedCountOfTeethEvenly) {
     for (int i = 0; i < teeth; ++i)
       EXPECT_NEAR(job.tooth_angles[static_cast<std::size_t>(i)], 2 * kPi * i / teeth, 1e-14);
   }
-}
-
-TEST(JobFile, ReadsUnequalTeeth) {
-  const std::vector<double> angles = jobWith("teeth: 4", "tooth_angles_deg: [0, 88, 180, 268]").tooth_angles;
-  const std::vector<double> degrees{0, 88, 180, 268};
-  ASSERT_EQ(angles.size(), 4u);
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_DOUBLE_EQ(angles[i], degrees[i] * kPi / 180);
 }
 
 TEST(JobFile, ReadsEveryChoice) {
@@ -205,18 +201,14 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
       {"  teeth: 4\n", "  teeth: 4\n  colour: red\n",
        "job.yaml:8 ... cutter.colour is not a key of a job file; allowed: cutter."},
       {"interpolation:", "paint: 3\ninterpolation:", "job.yaml:35 ... paint"},
-      {"  teeth: 4\n", "  teeth: 4\n  colour: {}\n", "job.yaml:8 ... cutter.colour"},
       {"  teeth: 4\n", "  teeth: 4\n  colour: []\n", "job.yaml:8 ... cutter.colour"},
-      {"  teeth: 4\n", "  teeth: 4\n  colour:\n", "job.yaml:8 ... cutter.colour"},
       {"[1, 2]", "[1, 2, 3]", "job.yaml:23 ... process.overtravel_mm[2]"},
-      {"  depth_mm: 1.5\n", "", "job.yaml ... process.depth_mm ... missing ... 0.001 to 50 mm"},
       {"  depth_mm: 1.5\n", "  depth_mm: 1.5\n  depth_mm: 1.6\n", "job.yaml:19 ... process.depth_mm ... appears twice"},
       {"feed_mm_min: 200", "feed_mm_min:", "job.yaml:17 ... process.feed_mm_min ... (nothing) ... 0.1 to 10000 mm/min"},
       {"teeth: 4", "teeth: 4.5", "job.yaml:7 ... cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"},
       {"spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
        "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
       {"teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
-      {"teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
       {"teeth: 4", "teeth: 0o10", "job.yaml:7 ... cutter.teeth = 0o10 ... octal"},
       {"teeth: 4", "teeth: 0x10", "job.yaml:7 ... cutter.teeth = 0x10 ... hexadecimal"},
       {"teeth: 4", "teeth: 99999999999", "job.yaml:7 ... cutter.teeth = 99999999999 is out of range ... 1 to 64"},
@@ -229,7 +221,6 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
       {"depth_mm: 1.5", "depth_mm: *deep", "job.yaml:18 ... anchor"},
       {"pass_major", "\"pass\\nmajor\"", "job.yaml:24 ... process.order = pass\\nmajor"},
       {"depth_mm: 1.5", "depth_mm: .nan", "job.yaml:18 ... process.depth_mm ... nan ... 0.001 to 50 mm"},
-      {"depth_mm: 1.5", "depth_mm: 1e999", "job.yaml:18 ... process.depth_mm ... 0.001 to 50 mm"},
       {"  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: [0, 90]\n",
        "job.yaml:7 ... cutter.teeth ... cutter.tooth_angles_deg ... one of the two"},
       {"  teeth: 4\n", "  teeth: 4\n  tooth_angles_deg: []\n", "job.yaml: ... cutter.t"},
@@ -296,11 +287,8 @@ TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
            {"cutter:\n  teeth: 4\n bad: : :\n", "job.yaml:3"},
            {std::string(kGood) + "? [1, 2]\n: 3\n", "job.yaml:39"},
            {"3", "job.yaml:1 ... not a map"},
-           {"[1, 2]", "job.yaml:1 ... not a map"},
-           {"just words", "job.yaml:1 ... not a map"},
            {"", "job.yaml:1 ... not a map"},
-           {"# a comment only\n", "job.yaml:1 ... not a map"},
-           {"~", "job.yaml:1 ... not a map"}};
+           {"# a comment only\n", "job.yaml:1 ... not a map"}};
   for (const auto& row : rows) {
     const std::string error = errorOf(row.text);
     EXPECT_TRUE(hasLine(error, row.message)) << row.text << "\ngot: " << error << "\nwanted: " << row.message;
@@ -357,15 +345,14 @@ TEST_F(JobFileOnDisk, ThatIsTooLong) {
   EXPECT_EQ(fileErrorOf(path_), path_ + ": is too long; allowed: 65536 bytes");
 }
 
-TEST(JobFile, ReportsTheFirstOfManyErrorsAndHowManyMore) {
+TEST(JobFile, ReportsTheFirstOfManyErrorsAndHowManyMoreAndCutsALongOne) {
   std::string text;
   for (int i = 1; i <= 25; ++i) text += "key_" + std::to_string(i) + ": 1\n";
   const std::string error = errorOf(kGood + text);
   EXPECT_EQ(linesOf(error), 21) << error;
   EXPECT_EQ(error.substr(error.rfind('\n') + 1), "job.yaml: and 5 more");
+  EXPECT_LT(errorOf(with("pass_major", std::string(60000, 'x'))).size(), 3000u);
 }
-
-TEST(JobFile, CutsALongError) { EXPECT_LT(errorOf(with("pass_major", std::string(60000, 'x'))).size(), 3000u); }
 
 TEST(JobFile, RefusesALaughBeforeItIsBuilt) {
   std::string text = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n";
@@ -400,7 +387,7 @@ std::string spoiled(std::mt19937& dice) {
 TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
   std::mt19937 dice(1);
   int read = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     const std::string text = spoiled(dice);
     const std::string error = errorOf(text);
     std::istringstream lines(error);
@@ -410,8 +397,8 @@ TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
     EXPECT_LE(reported, 21) << text;
     read += reported == 0 ? 1 : 0;
   }
-  EXPECT_GT(read, 10);
-  EXPECT_LT(read, 2000);
+  EXPECT_GT(read, 3);
+  EXPECT_LT(read, 750);
 }
 
 }  // namespace test_job_file

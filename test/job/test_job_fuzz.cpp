@@ -1,7 +1,7 @@
 #include "flute_grinder/job/job_fields.h"
 #include "flute_grinder/motion/job_plan.h"
 
-#include "motion/generators.h"
+#include "motion/examples.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <cstdint>
 #include <limits>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -71,23 +70,21 @@ double hostileOrAny(Dice& dice, double min, double max) {
 }
 
 std::vector<double> anyTeeth(Dice& dice) {
-  switch (dice.below(12)) {
-    case 0: return {};
-    case 1: return {0, kNaN, 1};
-    case 2: return {kNaN};
-    case 3: return {0, 2, 1};
-    case 4: return {0, 1, 1};
-    case 5: return {0, 2 * units::kPi};
-    case 6: return {0, std::nextafter(2 * units::kPi, 0)};
-    case 7: return {-0.0, kTiny};
-    case 8: return std::vector<double>(100000, 0.5);
-    case 9: {
-      std::vector<double> teeth;
-      for (int i = 0; i < kMaxTeeth + dice.below(2); ++i) teeth.push_back(i * 0.09);
-      return teeth;
-    }
-    default: return {0, dice.within(0, 7)};
-  }
+  static const std::vector<std::vector<double>> hostile{{},
+                                                        {0, kNaN, 1},
+                                                        {kNaN},
+                                                        {0, 2, 1},
+                                                        {0, 1, 1},
+                                                        {0, units::kTurn},
+                                                        {0, std::nextafter(units::kTurn, 0)},
+                                                        {-0.0, kTiny},
+                                                        std::vector<double>(100000, 0.5)};
+  const auto which = static_cast<std::size_t>(dice.below(12));
+  if (which < hostile.size()) return hostile[which];
+  if (which > hostile.size()) return {0, dice.within(0, 7)};
+  std::vector<double> most;
+  for (int i = 0; i < kMaxTeeth + dice.below(2); ++i) most.push_back(i * 0.09);
+  return most;
 }
 
 /// Choices, counts and teeth that are out of range now and then.
@@ -225,13 +222,6 @@ Case anyCase(Dice& dice, const GrindJob& job) {
   return c;
 }
 
-std::string textOf(const Case& c) {
-  std::ostringstream text;
-  text << c.job << "; " << c.machine << "; start " << c.start.transpose() << "; first " << c.first.tooth << " "
-       << c.first.pass;
-  return text.str();
-}
-
 /// Whether a reason names something, and says something of it. That a setpoint is not a number is the last resort,
 /// which nothing comes to.
 bool sane(const std::string& reason) {
@@ -271,7 +261,8 @@ struct Tally {
   int refused = 0;
 
   void judge(const Case& c) {
-    SCOPED_TRACE(textOf(c));
+    SCOPED_TRACE(testing::Message() << c.job << "; " << c.machine << "; start " << c.start.transpose() << "; first "
+                                    << c.first.tooth << " " << c.first.pass);
     ++(planAndJudge(c) ? good : refused);
     if ((good + refused) % 16 != 0) return;
     const JobPlan one = c.plan();
@@ -301,16 +292,16 @@ TEST(JobFuzz, EveryHostileValueOfEveryFieldIsAnswered) {
 TEST(JobFuzz, SpoiledJobsAreAnswered) {
   Dice dice(2);
   Tally tally;
-  for (int i = 0; i < 16000 && !HasFailure(); ++i) tally.judge(anyCase(dice, spoiledJob(dice)));
-  EXPECT_GT(tally.refused, 4000);
+  for (int i = 0; i < 7000 && !HasFailure(); ++i) tally.judge(anyCase(dice, spoiledJob(dice)));
+  EXPECT_GT(tally.refused, 2000);
 }
 
 TEST(JobFuzz, AllowedJobsOfAllKindsAreAnswered) {
   Dice dice(3);
   Tally tally;
-  for (int i = 0; i < 6000 && !HasFailure(); ++i) tally.judge(anyCase(dice, allowedJob(dice)));
-  EXPECT_GT(tally.good, 300);
-  EXPECT_GT(tally.refused, 300);
+  for (int i = 0; i < 2500 && !HasFailure(); ++i) tally.judge(anyCase(dice, allowedJob(dice)));
+  EXPECT_GT(tally.good, 150);
+  EXPECT_GT(tally.refused, 150);
 }
 
 }  // namespace test_job_fuzz

@@ -2,17 +2,18 @@
 
 #include "flute_grinder/job/job_fields.h"
 
+#include "random_cases.h"
 #include "refusal.h"
 #include "temp_folder.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -156,25 +157,25 @@ TEST_F(WheelOfAJob, IsTheSameAsWithKeysOfItsOwn) {
 }
 
 TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
-  EXPECT_TRUE(rc::check("a wear to a nanometre", [&] {
-    const int wear = *rc::gen::inRange(0, 20'000'000);  // [nm]
-    const int diameter = *rc::gen::inRange(60'000'000, 400'000'000);
-    const auto decimal = [](long long nanometres) {
-      char text[40];
-      std::snprintf(text, sizeof text, "%lld.%06lld", nanometres / 1000000, nanometres % 1000000);
-      return std::string(text);
-    };
+  std::mt19937 random(20);
+  const auto decimal = [](long long nanometres) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%lld.%06lld", nanometres / 1000000, nanometres % 1000000);
+    return std::string(text);
+  };
+  for (int i = 0, cases = test_support::randomCases(100); i < cases; ++i) {
+    const long long wear = random() % 20'000'000, diameter = 60'000'000 + random() % 340'000'000;  // [nm]
     write("wheels/wheel.yaml",
           "profile: straight\ndiameter_mm: " + decimal(diameter) +
-              "\nwidth_mm: 3\nmeasured: {date: 2026-11-20, diameter_mm: " + decimal(diameter - 2LL * wear) + "}\n");
+              "\nwidth_mm: 3\nmeasured: {date: 2026-11-20, diameter_mm: " + decimal(diameter - 2 * wear) + "}\n");
     const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
     const std::string own =
         write("jobs/own.yaml", jobText("    profile: straight\n    diameter_mm: " + decimal(diameter) +
                                        "\n    width_mm: 3\n    wear_mm: " + decimal(wear) + "\n"));
     const GrindProcess a = readJobFile(named).process(), b = readJobFile(own).process();
-    RC_ASSERT(a.wheel_wear == b.wheel_wear);
-    RC_ASSERT(a.wheel_diameter == b.wheel_diameter);
-  }));
+    ASSERT_EQ(a.wheel_wear, b.wheel_wear) << decimal(diameter);
+    ASSERT_EQ(a.wheel_diameter, b.wheel_diameter) << decimal(diameter);
+  }
 }
 
 TEST_F(WheelOfAJob, CanBeFound) {
@@ -250,7 +251,6 @@ TEST(WheelFile, ReportsAMistakeWithFileLineKeyAndWhatIsAllowed) {
        "measured.by, dressed"},
       {"angle_deg: 20\n", "angle_deg: 20\ndressed: yesterday\n",
        "6: dressed = yesterday; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},
-      {"[0.1, 0.2]", "[0.1]", "1: corner_radius_mm[1] is missing; allowed: 0 to 50 mm"},
       {"angle_deg: 20", "angle_deg: 0", "5: angle_deg = 0 deg; allowed: more than 0 for this profile"},
       {"99.4", ".nan", "10: measured.diameter_mm = nan mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
       {"width_mm: 7.9", "width_mm: 0.25",

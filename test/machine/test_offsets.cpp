@@ -27,6 +27,12 @@ OffsetBasis basisOf(OffsetMethod method = OffsetMethod::kTouchOff) {
           0.003,  30 * kDegree, 0.0015,   std::string(64, 'c')};
 }
 
+OffsetBasis basisOfNoJob(OffsetMethod method) {
+  OffsetBasis basis;
+  basis.method = method;
+  return basis;
+}
+
 WorkOffset offsetFor(const OffsetBasis& basis) { return {0.001, "anna@grinder", 1.7e9, basis}; }
 
 /// All set for a job, A never; its wheel is mounted.
@@ -63,8 +69,6 @@ TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsTheFlutes) {
 TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
   WorkOffsets unreadable;
   unreadable.axes[kX].value = kNan;
-  OffsetBasis no_job;
-  no_job.method = OffsetMethod::kTouchOff;
   const struct {
     WorkOffsets offsets;
     std::vector<std::string> reasons;
@@ -75,7 +79,7 @@ TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
             {"X was set, not known for which job", "Y was set, not known for which job",
              "Z was set, not known for which job"}},
            // X depends on no job.
-           {offsetsFor(no_job),
+           {offsetsFor(basisOfNoJob(OffsetMethod::kTouchOff)),
             {"Y was touched off, not known for which job", "Z was touched off, not known for which job"}}};
   for (const auto& row : rows) {
     WorkOffsets offsets = row.offsets;
@@ -86,23 +90,13 @@ TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
   }
 }
 
-TEST(OffsetFit, ItsReasonGivesWhatItWasSetForAndWhatTheJobHas) {
-  OffsetBasis job = basisOf();
-  job.job_name = "d10.yaml";
-  job.end_diameter = 0.01;
-  const auto found = mismatches(offsetsFor(basisOf()), job);
-  ASSERT_EQ(axesOf(found), "Y");
-  EXPECT_EQ(found[0].reason, "Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); this job has D 10 mm");
-}
-
 // Where X does not fit, the wheel is another or stands elsewhere: nothing can be computed from the figures.
 TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
-  struct Row {
+  const struct {
     const char* axes;
     const char* has;
     void (*change)(OffsetBasis&);
-  };
-  const Row rows[]{
+  } rows[]{
       {"Y", "D 6.001 mm", [](OffsetBasis& b) { b.end_diameter += 1e-6; }},
       {"Z", "height -1.5 mm", [](OffsetBasis& b) { b.height *= -1; }},
       {"XZ", "swivel 30.06 deg", [](OffsetBasis& b) { b.swivel += 0.06 * kDegree; }},
@@ -117,7 +111,7 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
       {"", "", [](OffsetBasis& b) { b.swivel += 0.04 * kDegree; }},
       {"", "", [](OffsetBasis& b) { b.end_diameter += 1e-12; }},
   };
-  for (const Row& row : rows) {
+  for (const auto& row : rows) {
     OffsetBasis job = basisOf();
     row.change(job);
     const auto found = mismatches(offsetsFor(basisOf()), job);
@@ -127,6 +121,9 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
       EXPECT_EQ(mismatch.reason.substr(mismatch.reason.find("; ")), std::string("; this job has ") + row.has);
       if (row.axes[0] == 'X') {
         EXPECT_FALSE(mismatch.change) << row.has;
+      }
+      if (row.axes == std::string("Y")) {
+        EXPECT_EQ(mismatch.reason.find("Y was touched off for D 6 mm, wheel a.yaml, D 100 mm (d6.yaml); "), 0U);
       }
     }
   }
@@ -156,16 +153,13 @@ TEST(OffsetFit, WhatIsComputedIsWhereTheGeometryHasTheZeroPoints) {
     is.cutter.end_diameter = between(0.0001, 0.1);
     is.process().setup_height = between(-0.05, 0.05);
     const auto basis = [](const GrindJob& job) {
-      return OffsetBasis{OffsetMethod::kComputed,
-                         "",
-                         "",
-                         std::string(64, 'a'),
-                         job.cutter.end_diameter,
-                         job.process().wheel_diameter,
-                         job.process().wheel_width,
-                         job.process().setup_swivel,
-                         job.process().setup_height,
-                         ""};
+      OffsetBasis basis = basisOf(OffsetMethod::kComputed);
+      basis.end_diameter = job.cutter.end_diameter;
+      basis.wheel_diameter = job.process().wheel_diameter;
+      basis.wheel_width = job.process().wheel_width;
+      basis.swivel = job.process().setup_swivel;
+      basis.height = job.process().setup_height;
+      return basis;
     };
     WorkOffsets offsets = offsetsFor(basis(was));
     const Eigen::Vector3d before = workZero(machine, was, mounting), after = workZero(machine, is, mounting);
@@ -215,8 +209,7 @@ TEST(OffsetFit, TheWheelIsOneNeedAndTheOffsetsAreAnother) {
 
 TEST(OffsetFit, WhatWasSetWithAWheelDoesNotFitOnceAnotherWasOnTheSpindle) {
   WorkOffsets offsets = offsetsFor(basisOf());
-  offsets.axes[kX].basis = OffsetBasis{};
-  offsets.axes[kX].basis.method = OffsetMethod::kTouchOff;
+  offsets.axes[kX].basis = basisOfNoJob(OffsetMethod::kTouchOff);
   ++offsets.wheel.mounting;
   offsets.axes[kZ].mounting = offsets.wheel.mounting;
   const auto found = mismatches(offsets, basisOf());
@@ -275,17 +268,21 @@ TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
 }
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {
-  EXPECT_EQ(basisText(kY, WorkOffset{}), "never set");
+  const OffsetBasis none = basisOfNoJob(OffsetMethod::kByHand);
   WorkOffset unknown;
-  unknown.value = std::nan("");
-  EXPECT_EQ(basisText(kY, unknown), "cannot be read");
-  EXPECT_EQ(basisText(kX, offsetFor(basisOf(OffsetMethod::kProbe))),
-            "probed for swivel 30 deg, wheel a.yaml, D 100 mm, width of the wheel 3 mm (d6.yaml)");
-  EXPECT_EQ(basisText(kA, offsetFor(basisOf())), "touched off (d6.yaml)");
-  OffsetBasis none;
-  none.method = OffsetMethod::kByHand;
-  EXPECT_EQ(basisText(kX, offsetFor(none)), "set by hand");
-  EXPECT_EQ(basisText(kZ, offsetFor(none)), "set by hand, not known for which job");
+  unknown.value = kNan;
+  const struct {
+    int axis;
+    WorkOffset offset;
+    const char* text;
+  } rows[]{{kY, {}, "never set"},
+           {kY, unknown, "cannot be read"},
+           {kX, offsetFor(basisOf(OffsetMethod::kProbe)),
+            "probed for swivel 30 deg, wheel a.yaml, D 100 mm, width of the wheel 3 mm (d6.yaml)"},
+           {kA, offsetFor(basisOf()), "touched off (d6.yaml)"},
+           {kX, offsetFor(none), "set by hand"},
+           {kZ, offsetFor(none), "set by hand, not known for which job"}};
+  for (const auto& row : rows) EXPECT_EQ(basisText(row.axis, row.offset), row.text);
 }
 
 const double kInf = std::numeric_limits<double>::infinity();
@@ -298,22 +295,21 @@ OffsetLimits limitsOf(double a) {
   return offsetLimits(travel, {0.005, 0.005, 0.005, kTurn});
 }
 
-TEST(OffsetLimits, AreTheTravelAndOfAOneTurnMore) {
-  const OffsetLimits limits = limitsOf(1);
-  for (const double good : {-0.02, 0.0, 0.15}) EXPECT_EQ(travelRefusal(limits, kY, good), "");
+TEST(OffsetLimits, AreTheTravelAndOfAOneTurnMoreAndAnyOffsetIfItTurnsForEver) {
+  const OffsetLimits limits = limitsOf(1), for_ever = limitsOf(kInf);
   EXPECT_EQ(travelRefusal(limits, kY, 0.1501),
             "work offset of axis Y = 150.1 mm; allowed: -20 to 150 mm, the travel of the axis");
-  for (const double wrong : {-0.0201, 6.203, 1000.0, kNan, kInf, -kInf})
-    EXPECT_NE(travelRefusal(limits, kY, wrong), "");
-  EXPECT_EQ(travelRefusal(limits, kA, 1 + kTurn), "");
-  EXPECT_NE(travelRefusal(limits, kA, 1.001 + kTurn), "");
-}
-
-TEST(OffsetLimits, OfAnAxisThatTurnsForEverAreThoseOfAnyOffset) {
-  const OffsetLimits limits = limitsOf(kInf);
-  EXPECT_EQ(travelRefusal(limits, kA, kMaxOffset), "");
-  EXPECT_NE(travelRefusal(limits, kA, kMaxOffset * 1.001), "");
-  EXPECT_NE(travelRefusal(limits, kA, kNan), "");
+  const struct {
+    const OffsetLimits& limits;
+    int axis;
+    std::vector<double> good, wrong;
+  } rows[]{{limits, kY, {-0.02, 0.0, 0.15}, {-0.0201, 6.203, 1000.0, kNan, kInf, -kInf}},
+           {limits, kA, {1 + kTurn}, {1.001 + kTurn}},
+           {for_ever, kA, {kMaxOffset}, {kMaxOffset * 1.001, kNan}}};
+  for (const auto& row : rows) {
+    for (const double good : row.good) EXPECT_EQ(travelRefusal(row.limits, row.axis, good), "");
+    for (const double wrong : row.wrong) EXPECT_NE(travelRefusal(row.limits, row.axis, wrong), "");
+  }
 }
 
 TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {

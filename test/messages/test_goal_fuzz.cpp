@@ -1,6 +1,6 @@
 #include "flute_grinder/messages/conversions.h"
 
-#include "motion/generators.h"
+#include "any_tool.h"
 
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
@@ -42,36 +42,19 @@ std::vector<std::uint8_t> bytesOf(const flute_grinder::GrindGoal& goal) {
   return bytes;
 }
 
-/// @return whether the bytes are a goal's.
-bool goalOf(std::vector<std::uint8_t> bytes, flute_grinder::GrindGoal& goal) {
-  ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  try {
-    ros::serialization::deserialize(stream, goal);
-    return true;
-  } catch (const ros::serialization::StreamOverrunException&) {
-    return false;
-  }
-}
-
-/// The goal whose job is what comes back of it.
-flute_grinder::GrindGoal thereAndBack(flute_grinder::GrindGoal goal) {
-  const flute_grinder::GrindGoal back = goalFromJob(jobFromGoal(goal));
-  goal.cutter = back.cutter;
-  goal.interpolation = back.interpolation;
-  goal.operations = back.operations;
-  goal.operation = back.operation;
-  return goal;
-}
-
 /// @return whether its job is good.
 bool answer(const flute_grinder::GrindGoal& goal) {
-  EXPECT_EQ(bytesOf(thereAndBack(goal)), bytesOf(goal));
+  flute_grinder::GrindGoal there_and_back = goal;
+  const flute_grinder::GrindGoal back = goalFromJob(jobFromGoal(goal));
+  there_and_back.cutter = back.cutter;
+  there_and_back.interpolation = back.interpolation;
+  there_and_back.operations = back.operations;
+  there_and_back.operation = back.operation;
+  EXPECT_EQ(bytesOf(there_and_back), bytesOf(goal));
   const std::vector<Reason> reasons = validate(jobFromGoal(goal));
   for (const Reason& reason : reasons) EXPECT_GT(text(reason).size(), 10u);
   return reasons.empty();
 }
-
-TEST(GoalFuzz, TheGoodGoalIsGood) { EXPECT_TRUE(answer(goodGoal())); }
 
 /// Where a goal's bytes say how many elements an array has; no client writes a wrong count.
 template <typename Array>
@@ -104,13 +87,20 @@ std::vector<std::uint8_t> spoiledBytes(std::mt19937& dice) {
   return bytes;
 }
 
-TEST(GoalFuzz, GoalsWithSpoiledBytesAreAnswered) {
+TEST(GoalFuzz, GoodGoalsAndThoseWithSpoiledBytesAreAnswered) {
+  EXPECT_TRUE(answer(goodGoal()));
   std::mt19937 dice(1);
   int goals = 0;
   int good_jobs = 0;
   for (int i = 0; i < 20000 && !HasFailure(); ++i) {
     flute_grinder::GrindGoal goal;
-    if (!goalOf(spoiledBytes(dice), goal)) continue;
+    std::vector<std::uint8_t> bytes = spoiledBytes(dice);
+    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    try {
+      ros::serialization::deserialize(stream, goal);
+    } catch (const ros::serialization::StreamOverrunException&) {
+      continue;
+    }
     for (flute_grinder::Process& process : goal.operations) process.incomplete_ok = process.incomplete_ok != 0;
     ++goals;
     if (answer(goal)) ++good_jobs;

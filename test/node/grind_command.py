@@ -132,14 +132,6 @@ class RunTest(unittest.TestCase):
         return gc.job_file(os.path.join(self.folder, 'short.yaml'), flute_length_mm=3, feed_mm_min=3000,
                            clearance_mm=1, **changes)
 
-    def grind_into_stroke(self, *arguments, client=None, **options):
-        """The paper's job, whatever the journal keeps; once it is in its stroke, with how many batches there were ahead of it."""
-        client = client or gc.grinder()
-        seen = len(client.batches)
-        command = self.grind('--node', client.name, 'run', PAPER_JOB, '--answer', 'discard', '--answer', 'ignore-offsets', *arguments, **options)
-        self.wait_in_stroke(client, seen)
-        return command, seen
-
     @staticmethod
     def wait_in_stroke(client, seen):
         def past():

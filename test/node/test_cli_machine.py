@@ -22,23 +22,12 @@ class TestMachine(CommandLine):
         super().setUp()
         grinder().make_ready()
 
-    def test_status(self):
+    def test_status_power_spindle_coolant_and_override(self):
         printed = self.grind(0, 'status').stdout
         self.assertTrue(printed.startswith('grinder         /grinder\n'), printed)
-        self.assertRegex(printed, r'state +ready\n')
-        self.assertRegex(printed, r'enabled +yes\n')
-        self.assertRegex(printed, r'emergency stop +released\n')
-        self.assertRegex(printed, r'wheel in work +no\n')
+        for line in ('state +ready', 'enabled +yes', 'emergency stop +released', 'wheel in work +no'):
+            self.assertRegex(printed, '(?m)^%s$' % line)
         self.assertNotIn('fault ', printed)
-
-    def test_disable_and_enable(self):
-        self.grind(0, 'disable')
-        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
-        self.assertRegex(self.grind(0, 'status').stdout, r'state +disabled\nenabled +no\n')
-        self.assertEqual(self.grind(0, 'enable').stdout, 'the power is on\n')
-        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-
-    def test_spindle_and_coolant_by_hand(self):
         self.assertEqual(self.grind(0, 'spindle', 'on').stdout, 'spindle on: done\n')
         self.assertEqual(self.grind(0, 'coolant', 'on').stdout, 'coolant on: done\n')
         gc.poll(lambda: (lambda s: s.spindle_at_speed and s.coolant_on)(grinder().fresh_state()), 'spindle and coolant')
@@ -46,11 +35,19 @@ class TestMachine(CommandLine):
         self.grind(0, 'coolant', 'off')
         self.assertEqual((grinder().fresh_state().spindle_commanded, grinder().fresh_state().coolant_commanded), (True, False))
         self.grind(0, 'disable')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.DISABLED)
         self.assertFalse(grinder().fresh_state().spindle_commanded)
+        self.assertRegex(self.grind(0, 'status').stdout, r'state +disabled\nenabled +no\n')
         self.assertRegex(self.grind(1, 'spindle', 'on').stderr, r'^spindle on refused: the machine is in state disabled; allowed: ')
         self.grind(0, 'spindle', 'off')
-        self.grind(0, 'enable')
+        self.assertEqual(self.grind(0, 'enable').stdout, 'the power is on\n')
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
         self.assertFalse(grinder().fresh_state().spindle_commanded)
+        self.addCleanup(grinder().set_feed_override, 1)
+        for percent in ('0', '120', '12.5'):
+            self.grind(0, 'override', percent)
+            self.assertEqual(grinder().fresh_state().override, float(percent) / 100)
+        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^feed +0\.0 mm/min, override 1[23] %$')
 
     def test_reset(self):
         self.assertRegex(self.grind(1, 'reset').stderr, r'^reset refused: the machine is in state ready; allowed: ')
@@ -102,15 +99,8 @@ class TestMachine(CommandLine):
         with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
             self.assertRegex(self.grind(2, 'run', job).stderr, re.escape(missing) + r'secondary \([-0-9]{10} [:0-9]{8}\)\n')
 
-    def test_override(self):
-        self.addCleanup(grinder().set_feed_override, 1)
-        for percent in ('50', '0', '120', '12.5'):
-            self.grind(0, 'override', percent)
-            self.assertEqual(grinder().fresh_state().override, float(percent) / 100)
-        self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^feed +0\.0 mm/min, override 1[23] %$')
-
     def test_hold_retract_and_resume(self):
-        self.grind(0, 'override', '10')
+        self.grind(0, 'override', '20')
         self.addCleanup(grinder().set_feed_override, 1)
         batches = len(grinder().batches)
         command = Command('run', PAPER_JOB, '--answer', 'discard', '--answer', 'ignore-offsets')
@@ -120,7 +110,7 @@ class TestMachine(CommandLine):
         grinder().wait_state(GrinderState.HELD)
         printed = self.grind(0, 'status').stdout
         self.assertRegex(printed, r'(?m)^state +held$')
-        self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 10 %$')
+        self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 20 %$')
         self.grind(0, 'retract')
         grinder().wait_state(GrinderState.RETRACTED)
         self.grind(0, 'override', '120')
@@ -130,45 +120,38 @@ class TestMachine(CommandLine):
         for state in ('running', 'held', 'retracted'):
             self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, command.text)
 
-    def test_stops_need_no_home(self):
-        grinder().make_ready(0.1)
+    def test_stops_need_no_home_and_status_reports_why_the_job_is_held(self):
+        grinder().make_ready(0.2)
         run = grinder().send(gc.PAPER).wait_in_stroke(0)
+        self.assertTrue(grinder().set_feed_override(0.1).success)
+        reported, _ = self.json(0, 'status')
+        self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
+                         ('running', 1, 1, False, True))
+        self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
         with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
             self.grind(0, 'hold')
             grinder().wait_state(GrinderState.HELD)
             self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^state +held$')
             self.grind(0, 'resume')
             grinder().wait_state(GrinderState.RUNNING)
+            if grinder().injects_faults():
+                grinder().inject('coolant_lost')
+                grinder().wait_state(GrinderState.RETRACTED)
+                self.assertEqual(self.json(0, 'status')[0]['hold_reason'], 'no coolant flows')
+                printed = self.grind(0, 'status').stdout
+                for line in ('state +retracted', 'coolant +off', 'held because +no coolant flows'):
+                    self.assertRegex(printed, '(?m)^%s$' % line)
+                self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
             self.grind(0, 'cancel')
             self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
         self.assertEqual(run.wait().code, GrindResult.CANCELED)
-
-    def test_status_reports_why_the_job_is_held(self):
-        grinder().make_ready(0.1)
-        run = grinder().send(gc.PAPER).wait_in_stroke(0)
-        reported, _ = self.json(0, 'status')
-        self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
-                         ('running', 1, 1, False, True))
-        self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
-        grinder().inject('coolant_lost')
-        grinder().wait_state(GrinderState.RETRACTED)
-        self.assertEqual(self.json(0, 'status')[0]['hold_reason'], 'no coolant flows')
-        printed = self.grind(0, 'status').stdout
-        self.assertRegex(printed, r'(?m)^state +retracted$')
-        self.assertRegex(printed, r'(?m)^coolant +off$')
-        self.assertRegex(printed, r'(?m)^held because +no coolant flows$')
-        self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
-        run.cancel()
-        run.wait()
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
 
-    def test_dry_run_reports_what_plan_reports(self):
+    def test_dry_run_reports_what_plan_reports_and_output_that_cannot_be_printed_is_no_success(self):
         grinder().make_ready_at_park()
         reported = self.grind(0, 'plan', PAPER_JOB).stdout
         self.assertRegex(reported, r'(?m)^setpoints +\d{4}')
         self.assertEqual(self.grind(0, 'run', PAPER_JOB, '--dry-run').stdout, reported)
-
-    def test_output_that_cannot_be_printed_is_no_success(self):
         for arguments in (['status'], ['status', '--json'], ['run', PAPER_JOB, '--dry-run']):
             self.check_not_printed(*arguments)
 

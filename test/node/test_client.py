@@ -20,13 +20,6 @@ from pages import read_page, write_file  # noqa: E402
 
 
 class TestClient(CommandLine):
-    def setUp(self):
-        super().setUp()
-        page = pathlib.Path(gc.package_file('docs/ros-interface.md')).read_text()
-        client, = [item for item in read_page(page) if item.kind == 'file']
-        write_file(pathlib.Path(self.path('client.py')), client.lines)
-        grinder().make_ready()
-
     def run_client(self, job):
         return subprocess.run([sys.executable, self.path('client.py'), job], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               universal_newlines=True, timeout=gc.PATIENCE)
@@ -40,7 +33,11 @@ class TestClient(CommandLine):
         goal.serialize(bits)
         return bits.getvalue()
 
-    def test_client_grinds_a_job_with_the_goal_of_grind_run(self):
+    def test_client_grinds_a_job_with_the_goal_of_grind_run_and_says_why_one_is_refused(self):
+        page = pathlib.Path(gc.package_file('docs/ros-interface.md')).read_text()
+        client, = [item for item in read_page(page) if item.kind == 'file']
+        write_file(pathlib.Path(self.path('client.py')), client.lines)
+        grinder().make_ready()
         job = gc.job_file(self.path('short.yaml'), flute_length_mm=3, feed_mm_min=3000, clearance_mm=1, teeth=2)
         self.grind(0, 'run', job, '--answer', 'discard', '--answer', 'ignore-offsets')
         of_run = self.bits_of_job(answers=['ignore-offsets'], sent_by='')
@@ -52,8 +49,6 @@ class TestClient(CommandLine):
         *shown, last = done.stdout.splitlines()
         self.assertEqual(last, 'done: %d setpoints' % setpoints)
         self.assertTrue([line for line in shown if re.fullmatch(r'running, tooth [12], pass 1: \d+ %', line)], done.stdout)
-
-    def test_client_says_why_a_job_is_refused(self):
         done = self.run_client(gc.job_file(self.path('long.yaml'), flute_length_mm=400))
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertIn('axis X position 401 mm is 101 mm beyond its limit', done.stdout.splitlines()[-1])

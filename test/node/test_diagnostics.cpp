@@ -7,13 +7,21 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 namespace grinder {
 namespace test_diagnostics {
 
 using diagnostic_msgs::DiagnosticStatus;
 using Report = void (Diagnostics::*)(Diagnostics::Status&);
+using Values = std::map<std::string, std::string>;
 
+constexpr int kOk = DiagnosticStatus::OK, kWarn = DiagnosticStatus::WARN, kError = DiagnosticStatus::ERROR;
+constexpr Report kLoop = &Diagnostics::reportLoop, kDrive = &Diagnostics::reportDrive,
+                 kFollowing = &Diagnostics::reportFollowing, kLimits = &Diagnostics::reportLimits,
+                 kBuffer = &Diagnostics::reportBuffer, kJournal = &Diagnostics::reportJournal,
+                 kHistory = &Diagnostics::reportHistory;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 DiagnosticThresholds thresholds() { return {{0.01, 0.25}, {0.5, 0.9}, {0.8, 1.000001}, {0.5, 0.2}}; }
@@ -45,12 +53,14 @@ class DiagnosticsTest : public ::testing::Test {
     (diagnostics_.*report)(status);
     return status;
   }
+  int levelOf(Report report) { return ask(report).level; }
 
-  /// Asks, and expects this answer.
-  Diagnostics::Status expect(Report report, int level, const std::string& message) {
+  /// Asks, and expects this answer, and these values of it.
+  Diagnostics::Status expect(Report report, int level, const std::string& message, const Values& values = {}) {
     const Diagnostics::Status status = ask(report);
     EXPECT_EQ(status.level, level) << status.message;
     EXPECT_EQ(status.message, message);
+    for (const auto& [key, expected] : values) EXPECT_EQ(value(status, key), expected) << key;
     return status;
   }
 
@@ -59,6 +69,9 @@ class DiagnosticsTest : public ::testing::Test {
       if (item.key == key) return item.value;
     }
     return "no " + key;
+  }
+  static double number(const Diagnostics::Status& status, const std::string& key) {
+    return std::stod(value(status, key));
   }
 
   /// Watches a setpoint at the positions, the next of its job.
@@ -80,29 +93,26 @@ class DiagnosticsTest : public ::testing::Test {
 };
 
 TEST_F(DiagnosticsTest, LoopThatHasNotRunOrStopsIsAnError) {
-  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "not running");
+  expect(kLoop, kError, "not running");
   watch(10);
-  EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::OK);
-  EXPECT_EQ(ask(&Diagnostics::reportLoop).level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(levelOf(kLoop), kOk);
+  EXPECT_EQ(levelOf(kLoop), kError);
 }
 
 TEST_F(DiagnosticsTest, LoopReportsItsPeriods) {
   watch(3);
   sample_.period = 0.0012;
   watch();
-  const auto status = expect(&Diagnostics::reportLoop, DiagnosticStatus::OK, "running");
-  EXPECT_EQ(value(status, "State"), "ready");
-  EXPECT_EQ(value(status, "Nominal period [s]"), "0.001");
-  EXPECT_EQ(value(status, "Mean period [s]"), "0.00105");
-  EXPECT_EQ(value(status, "Longest period [s]"), "0.0012");
-  EXPECT_EQ(value(status, "Late cycles"), "0");
-  EXPECT_EQ(value(status, "Cycles"), "4");
+  expect(kLoop, kOk, "running",
+         {{"State", "ready"},
+          {"Nominal period [s]", "0.001"},
+          {"Mean period [s]", "0.00105"},
+          {"Longest period [s]", "0.0012"},
+          {"Late cycles", "0"},
+          {"Cycles", "4"}});
 }
 
 TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
-  const auto seconds = [&](const Diagnostics::Status& status, const std::string& key) {
-    return std::stod(value(status, key));
-  };
   sample_.busy = 2e-6;
   watch(60);
   sample_.busy = 5e-6;
@@ -111,80 +121,77 @@ TEST_F(DiagnosticsTest, LoopReportsItsCyclesDurationsAndItsWakeUpsDelays) {
   sample_.busy = 70e-6;
   sample_.period = 0.0012;
   watch();
-  auto status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
+  const auto status = expect(kLoop, kOk, "running",
+                             {{"Longest cycle duration [s]", "7e-05"},
+                              {"Median wake-up delay [s]", "0"},
+                              {"Longest wake-up delay [s]", "0.0002"}});
   // Quantiles are reported to 4.4 %.
-  EXPECT_NEAR(seconds(status, "Median cycle duration [s]"), 2e-6, 0.1e-6);
-  EXPECT_NEAR(seconds(status, "99 % cycle duration [s]"), 5e-6, 0.25e-6);
-  EXPECT_EQ(value(status, "Longest cycle duration [s]"), "7e-05");
-  EXPECT_EQ(value(status, "Median wake-up delay [s]"), "0");
-  EXPECT_NEAR(seconds(status, "99 % wake-up delay [s]"), 30e-6, 1.5e-6);
-  EXPECT_EQ(value(status, "Longest wake-up delay [s]"), "0.0002");
+  EXPECT_NEAR(number(status, "Median cycle duration [s]"), 2e-6, 0.1e-6);
+  EXPECT_NEAR(number(status, "99 % cycle duration [s]"), 5e-6, 0.25e-6);
+  EXPECT_NEAR(number(status, "99 % wake-up delay [s]"), 30e-6, 1.5e-6);
 
   sample_.busy = 1e-6;
   sample_.period = 0.0009;
   watch();
-  status = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(value(status, "Longest cycle duration [s]"), "1e-06");
-  EXPECT_EQ(value(status, "Longest wake-up delay [s]"), "0");
+  expect(kLoop, kOk, "running", {{"Longest cycle duration [s]", "1e-06"}, {"Longest wake-up delay [s]", "0"}});
 }
 
 TEST_F(DiagnosticsTest, LateCyclesAreAWarningAndThenAnError) {
-  const auto late = [&](int of_hundred) {
+  const struct {
+    int late, level;
+    const char* message;
+  } rows[]{{1, kOk, "running"},
+           {2, kWarn, "2 of 100 cycles were late"},
+           {25, kWarn, "25 of 100 cycles were late"},
+           {26, kError, "26 of 100 cycles were late"},
+           {0, kOk, "running"}};
+  for (const auto& row : rows) {
     sample_.period = 0.0016;
-    watch(of_hundred);
+    watch(row.late);
     sample_.period = 0.0015;  // not late yet
-    watch(100 - of_hundred);
-    return ask(&Diagnostics::reportLoop);
-  };
-  EXPECT_EQ(late(1).level, DiagnosticStatus::OK);
-  const auto warning = late(2);
-  EXPECT_EQ(warning.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(warning.message, "2 of 100 cycles were late");
-  EXPECT_EQ(late(25).level, DiagnosticStatus::WARN);
-  EXPECT_EQ(late(26).level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(late(0).level, DiagnosticStatus::OK);
+    watch(100 - row.late);
+    expect(kLoop, row.level, row.message);
+  }
 }
 
 TEST_F(DiagnosticsTest, SchedulingThatWasNotGrantedIsAWarning) {
   scheduling_ = {false, true};
   watch();
-  expect(&Diagnostics::reportLoop, DiagnosticStatus::WARN, "no real-time scheduling");
+  expect(kLoop, kWarn, "no real-time scheduling");
   scheduling_ = {true, false};
   watch();
-  const auto status = expect(&Diagnostics::reportLoop, DiagnosticStatus::WARN, "memory is not locked");
-  EXPECT_EQ(value(status, "Memory locked"), "False");
+  expect(kLoop, kWarn, "memory is not locked", {{"Memory locked", "False"}});
 }
 
-TEST_F(DiagnosticsTest, RecordsLostAreAnErrorOnce) {
+TEST_F(DiagnosticsTest, WhatIsLostOrMissedIsAnErrorOnce) {
   sample_.samples_lost = 7;
+  sample_.drive.commands_waiting = 50;
+  sample_.drive.underruns = 3;
   watch();
-  expect(&Diagnostics::reportLoop, DiagnosticStatus::ERROR, "7 cycle samples were lost");
+  expect(kLoop, kError, "7 cycle samples were lost");
+  expect(kBuffer, kError, "3 underruns");
   watch();
-  const auto next = ask(&Diagnostics::reportLoop);
-  EXPECT_EQ(next.level, DiagnosticStatus::OK);
-  EXPECT_EQ(value(next, "Samples lost"), "7");
+  expect(kLoop, kOk, "running", {{"Samples lost", "7"}});
+  expect(kBuffer, kOk, "filled", {{"Underruns", "3"}});
 }
 
 TEST_F(DiagnosticsTest, DriveIsOkWhenHomedAndItsInterlocksAreClosed) {
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "enabled");
+  expect(kDrive, kOk, "enabled");
   sample_.drive.enabled = false;
   watch();
-  const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::OK, "disabled");
-  EXPECT_EQ(value(status, "Enabled"), "False");
+  expect(kDrive, kOk, "disabled", {{"Enabled", "False"}});
   sample_.power_stays = true;
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR,
-         "the drive still reports power, though it was switched off");
+  expect(kDrive, kError, "the drive still reports power, though it was switched off");
   sample_.power_stays = false;
   sample_.drive.homed = false;
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "not homed");
+  expect(kDrive, kWarn, "not homed");
   sample_.drive.homed = true;
   sample_.interlock = Interlock::kCoolant;
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::WARN, "no coolant flows");
+  expect(kDrive, kWarn, "no coolant flows");
 }
 
 TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
@@ -192,10 +199,9 @@ TEST_F(DiagnosticsTest, OneCycleOfEmergencyStopIsNotMissed) {
   watch();
   sample_.drive.emergency_stop = false;
   watch(100);
-  const auto status = expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop");
-  EXPECT_EQ(value(status, "Emergency stop"), "True");
+  expect(kDrive, kError, "emergency stop", {{"Emergency stop", "True"}});
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportDrive).level, DiagnosticStatus::OK);
+  EXPECT_EQ(levelOf(kDrive), kOk);
 }
 
 TEST_F(DiagnosticsTest, FaultIsReportedOnceAndWithAllElse) {
@@ -204,7 +210,7 @@ TEST_F(DiagnosticsTest, FaultIsReportedOnceAndWithAllElse) {
   sample_.drive.emergency_stop = sample_.drive.fault = true;
   sample_.drive.homed = false;
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "emergency stop; the drive reports a fault; not homed");
+  expect(kDrive, kError, "emergency stop; the drive reports a fault; not homed");
 }
 
 TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
@@ -212,12 +218,10 @@ TEST_F(DiagnosticsTest, FeedbackAgeIsTheLongest) {
   watchStale();
   watchStale();
   watch();
-  auto status = ask(&Diagnostics::reportDrive);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);  // 2 ms of 2.5 ms
-  EXPECT_EQ(value(status, "Longest feedback age [s]"), "0.002");
-  EXPECT_EQ(value(status, "Allowed feedback age [s]"), "0.0025");
+  // 2 ms of 2.5 ms
+  expect(kDrive, kOk, "enabled", {{"Longest feedback age [s]", "0.002"}, {"Allowed feedback age [s]", "0.0025"}});
   for (int i = 0; i < 3; ++i) watchStale();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "no fresh positions for 0.003 s");
+  expect(kDrive, kError, "no fresh positions for 0.003 s");
 }
 
 TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
@@ -225,38 +229,36 @@ TEST_F(DiagnosticsTest, PositionThatIsNoNumberIsAnError) {
   watch();
   sample_.position[kZ] = 0;
   watch();
-  expect(&Diagnostics::reportDrive, DiagnosticStatus::ERROR, "axis_z position is nan");
-  const auto following = ask(&Diagnostics::reportFollowing);
-  EXPECT_EQ(following.level, DiagnosticStatus::ERROR);
+  expect(kDrive, kError, "axis_z position is nan");
+  const auto following = ask(kFollowing);
+  EXPECT_EQ(following.level, kError);
   EXPECT_EQ(value(following, "axis_z max [m]"), "nan");
 }
 
-TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxis) {
+TEST_F(DiagnosticsTest, FollowingErrorIsTheMaxOfEachAxisAndAWarningAndThenAnError) {
   sample_.command_in_effect << 0.1, 0, 0, 3;
   sample_.position << 0.1004, 0, 0, 3;
   watch();
   sample_.position << 0.1, 0.0002, 0, 2.975;
   watch();
-  const auto status = ask(&Diagnostics::reportFollowing);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK);
-  EXPECT_EQ(value(status, "axis_x max [m]"), "0.0004");
-  EXPECT_EQ(value(status, "axis_x of the allowed [%]"), "40");
-  EXPECT_EQ(value(status, "axis_y of the allowed [%]"), "20");
-  EXPECT_EQ(value(status, "axis_z of the allowed [%]"), "0");
-  EXPECT_EQ(value(status, "axis_a max [rad]"), "0.025");
-}
-
-TEST_F(DiagnosticsTest, FollowingErrorIsAWarningAndThenAnError) {
-  sample_.position << 0, 0.0006, 0, 0;
+  const auto status = ask(kFollowing);
+  EXPECT_EQ(status.level, kOk);
+  for (const auto& [key, expected] : Values{{"axis_x max [m]", "0.0004"},
+                                            {"axis_x of the allowed [%]", "40"},
+                                            {"axis_y of the allowed [%]", "20"},
+                                            {"axis_z of the allowed [%]", "0"},
+                                            {"axis_a max [rad]", "0.025"}}) {
+    EXPECT_EQ(value(status, key), expected);
+  }
+  sample_.position << 0.1, 0.0006, 0, 3;
   watch();
-  expect(&Diagnostics::reportFollowing, DiagnosticStatus::WARN, "axis_y 0.0006 m of 0.001 m");
-  sample_.position << 0, 0.0006, 0, -0.046;
+  expect(kFollowing, kWarn, "axis_y 0.0006 m of 0.001 m");
+  sample_.position[kA] = 2.954;
   watch();
-  expect(&Diagnostics::reportFollowing, DiagnosticStatus::ERROR,
-         "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
-  sample_.position.setZero();
+  expect(kFollowing, kError, "axis_y 0.0006 m of 0.001 m; axis_a 0.046 rad of 0.05 rad");
+  sample_.position = sample_.command_in_effect;
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+  EXPECT_EQ(levelOf(kFollowing), kOk);
 }
 
 TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
@@ -264,75 +266,70 @@ TEST_F(DiagnosticsTest, FollowingErrorCountsInTheCycleOfTheFaultAndNotAfter) {
   sample_.state = MachineState::kFault;
   sample_.position[kX] = 0.002;
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::ERROR);
+  EXPECT_EQ(levelOf(kFollowing), kError);
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+  EXPECT_EQ(levelOf(kFollowing), kOk);
   sample_.state = MachineState::kDisabled;
   watch();
-  EXPECT_EQ(ask(&Diagnostics::reportFollowing).level, DiagnosticStatus::OK);
+  EXPECT_EQ(levelOf(kFollowing), kOk);
 }
 
 TEST_F(DiagnosticsTest, MarginOfPositionIsTheNearerLimits) {
   // X from -0.1 to 0.3: 0.05 of half a range of 0.2 are left; Y from -0.02 to 0.15: 0.015 of 0.085.
   write({-0.05, 0.135, 0.025, 0});
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(value(status, "axis_x position margin [%]"), "25");
-  EXPECT_NEAR(std::stod(value(status, "axis_y position margin [%]")), 100 * 0.015 / 0.085, 1e-4);
-  EXPECT_EQ(value(status, "axis_z position margin [%]"), "100");
-  EXPECT_EQ(status.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(status.message, "axis_y position at 82.3529 % of its limit");
+  const auto status = expect(kLimits, kWarn, "axis_y position at 82.3529 % of its limit",
+                             {{"axis_x position margin [%]", "25"}, {"axis_z position margin [%]", "100"}});
+  EXPECT_NEAR(number(status, "axis_y position margin [%]"), 100 * 0.015 / 0.085, 1e-4);
 }
 
 TEST_F(DiagnosticsTest, MarginOfMotionIsThatOfThePositionsWritten) {
   // At 1 kHz: 0.15 of 0.2 m/s, and half of A's 12.566 rad/s; at 2 ms: 0.2 m/s^2 of 0.5, over it 5 m/s^3 of 10.
-  write({0.1, 0.065, 0.025, 0});
-  for (int i = 1; i <= 40; ++i) write({0.1 + 0.00015 * i, 0.065, 0.025, 0.006283 * i});
-  ask(&Diagnostics::reportLimits);
-  for (int i = 41; i <= 60; ++i) write({0.1 + 0.00015 * i, 0.065, 0.025, 0.006283 * i});
-  const auto even = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(even.level, DiagnosticStatus::OK);
+  const auto writeEven = [&](int from, int to) {
+    for (int i = from; i <= to; ++i) write({0.1 + 0.00015 * i, 0.065, 0.025, 0.006283 * i});
+  };
+  writeEven(0, 40);
+  ask(kLimits);
+  writeEven(41, 60);
+  const auto even = ask(kLimits);
+  EXPECT_EQ(even.level, kOk);
   EXPECT_EQ(value(even, "Setpoints"), "20");
-  EXPECT_NEAR(std::stod(value(even, "axis_x velocity margin [%]")), 25, 1e-3);
-  EXPECT_NEAR(std::stod(value(even, "axis_a velocity margin [%]")), 50, 1e-3);
-  EXPECT_NEAR(std::stod(value(even, "axis_x acceleration margin [%]")), 100, 1e-3);
-  EXPECT_NEAR(std::stod(value(even, "axis_y velocity margin [%]")), 100, 1e-9);
+  EXPECT_NEAR(number(even, "axis_x velocity margin [%]"), 25, 1e-3);
+  EXPECT_NEAR(number(even, "axis_a velocity margin [%]"), 50, 1e-3);
+  EXPECT_NEAR(number(even, "axis_x acceleration margin [%]"), 100, 1e-3);
+  EXPECT_NEAR(number(even, "axis_y velocity margin [%]"), 100, 1e-9);
 
   // Half a cycle pair's worth of 0.2 m/s^2 more.
   const double x = 0.1 + 0.00015 * 60;
   write({x + 0.00015 + 0.0000004, 0.065, 0.025, 0.006283 * 61});
   write({x + 0.0003 + 0.0000008, 0.065, 0.025, 0.006283 * 62});
-  const auto bent = ask(&Diagnostics::reportLimits);
-  EXPECT_NEAR(std::stod(value(bent, "axis_x acceleration margin [%]")), 100 - 100 * 0.2 / 0.5, 1e-2);
+  const auto bent = ask(kLimits);
+  EXPECT_NEAR(number(bent, "axis_x acceleration margin [%]"), 100 - 100 * 0.2 / 0.5, 1e-2);
   // From none to 0.2 m/s^2 in 2 ms are 100 m/s^3.
-  EXPECT_NEAR(std::stod(value(bent, "axis_x jerk margin [%]")), 100 - 100 * 100 / 10, 1);
-  EXPECT_EQ(bent.level, DiagnosticStatus::ERROR);
+  EXPECT_NEAR(number(bent, "axis_x jerk margin [%]"), 100 - 100 * 100 / 10, 1);
+  EXPECT_EQ(bent.level, kError);
   EXPECT_CONTAINS(bent.message, "axis_x jerk at 1000 % of its limit");
 }
 
 TEST_F(DiagnosticsTest, UseOfALimitIsAWarning) {
   write({0.1, 0.065, 0.025, 0});
   write({0.1, 0.065 + 0.00009, 0.025, 0});
-  expect(&Diagnostics::reportLimits, DiagnosticStatus::WARN, "axis_y velocity at 90 % of its limit");
+  expect(kLimits, kWarn, "axis_y velocity at 90 % of its limit");
 }
 
-TEST_F(DiagnosticsTest, SetpointsAfterAGapAreNotComparedWithThoseBefore) {
+TEST_F(DiagnosticsTest, SetpointsAfterAGapOrOfTheNextJobAreNotComparedWithThoseBefore) {
   write({0.1, 0.065, 0.025, 0});
-  ask(&Diagnostics::reportLimits);
+  ask(kLimits);
   next_cycle_ = 1001;
   for (int i = 0; i < 30; ++i) write({0.2 + 0.00015 * i, 0.065, 0.025, 0});
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
-  EXPECT_NEAR(std::stod(value(status, "axis_x velocity margin [%]")), 25, 1e-3);
-  EXPECT_NEAR(std::stod(value(status, "axis_x jerk margin [%]")), 100, 1e-3);
-}
-
-TEST_F(DiagnosticsTest, NextJobBeginsAfresh) {
-  write({0.1, 0.065, 0.025, 0});
+  const auto status = ask(kLimits);
+  EXPECT_EQ(status.level, kOk) << status.message;
+  EXPECT_NEAR(number(status, "axis_x velocity margin [%]"), 25, 1e-3);
+  EXPECT_NEAR(number(status, "axis_x jerk margin [%]"), 100, 1e-3);
   next_cycle_ = 0;
-  write({0.2, 0.065, 0.025, 0});
-  const auto status = ask(&Diagnostics::reportLimits);
-  EXPECT_EQ(status.level, DiagnosticStatus::OK) << status.message;
-  EXPECT_EQ(value(status, "axis_x velocity margin [%]"), "100");
+  write({0.1, 0.065, 0.025, 0});
+  const auto next = ask(kLimits);
+  EXPECT_EQ(next.level, kOk) << next.message;
+  EXPECT_EQ(value(next, "axis_x velocity margin [%]"), "100");
 }
 
 TEST_F(DiagnosticsTest, SetpointsThatWereRefusedAreErrorsOnce) {
@@ -355,105 +352,89 @@ TEST_F(DiagnosticsTest, SetpointsThatWereRefusedAreErrorsOnce) {
     sample_.fault.kind = FaultKind::kLimit;
     sample_.fault.violation = {row.axis, row.quantity, row.value, row.limit, 8, 0, MoveKind::kStroke};
     watch();
-    EXPECT_EQ(value(expect(&Diagnostics::reportLimits, DiagnosticStatus::ERROR, row.message), row.name), row.margin);
+    expect(kLimits, kError, row.message, {{row.name, row.margin}});
     watch();
-    expect(&Diagnostics::reportLimits, DiagnosticStatus::OK, "no setpoints");
+    expect(kLimits, kOk, "no setpoints");
   }
 }
 
 TEST_F(DiagnosticsTest, BufferThatEmptiesIsAWarningAndThenAnError) {
-  const auto min = [&](std::uint32_t commands) {
-    sample_.drive.commands_waiting = 50;
-    watch(3);
-    sample_.drive.commands_waiting = commands;
-    watch();
-    sample_.drive.commands_waiting = 49;
-    watch(3);
-    return ask(&Diagnostics::reportBuffer);
-  };
-  const auto good = min(25);
-  EXPECT_EQ(good.level, DiagnosticStatus::OK);
-  EXPECT_EQ(good.message, "filled");
-  EXPECT_EQ(value(good, "Minimum fill [%]"), "50");
-  EXPECT_EQ(value(good, "Commands waiting"), "49");
-  const auto warning = min(24);
-  EXPECT_EQ(warning.level, DiagnosticStatus::WARN);
-  EXPECT_EQ(warning.message, "down to 24 of 50 commands");
-  EXPECT_EQ(min(10).level, DiagnosticStatus::WARN);
-  EXPECT_EQ(min(9).level, DiagnosticStatus::ERROR);
-  EXPECT_EQ(min(49).level, DiagnosticStatus::OK);
+  const struct {
+    std::uint32_t least;
+    int level;
+    const char *message, *fill;
+  } rows[]{{25, kOk, "filled", "50"},
+           {24, kWarn, "down to 24 of 50 commands", "48"},
+           {10, kWarn, "down to 10 of 50 commands", "20"},
+           {9, kError, "down to 9 of 50 commands", "18"},
+           {49, kOk, "filled", "98"}};
+  for (const auto& row : rows) {
+    for (const std::uint32_t waiting : {50U, row.least, 49U}) {
+      sample_.drive.commands_waiting = waiting;
+      watch(2);
+    }
+    expect(kBuffer, row.level, row.message, {{"Minimum fill [%]", row.fill}, {"Commands waiting", "49"}});
+  }
 }
 
 TEST_F(DiagnosticsTest, BufferIsReportedOfADriveThatHasOneAndUnderPower) {
   watch();
-  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "the drive does not buffer");
+  expect(kBuffer, kOk, "the drive does not buffer");
   sample_.drive.commands_waiting = 50;
   watch();
-  ask(&Diagnostics::reportBuffer);
+  ask(kBuffer);
   sample_.state = MachineState::kDisabled;
   watch();
   sample_.drive.commands_waiting = 0;
-  ask(&Diagnostics::reportBuffer);
+  ask(kBuffer);
   watch();
-  expect(&Diagnostics::reportBuffer, DiagnosticStatus::OK, "no power");
+  expect(kBuffer, kOk, "no power");
   // How full it was before does not count.
   sample_.state = MachineState::kReady;
   sample_.drive.commands_waiting = 20;
   watch();
-  EXPECT_EQ(value(ask(&Diagnostics::reportBuffer), "Minimum fill [%]"), "100");
-}
-
-TEST_F(DiagnosticsTest, UnderrunIsAnErrorOnce) {
-  sample_.drive.commands_waiting = 50;
-  sample_.drive.underruns = 3;
-  watch();
-  expect(&Diagnostics::reportBuffer, DiagnosticStatus::ERROR, "3 underruns");
-  watch();
-  const auto next = ask(&Diagnostics::reportBuffer);
-  EXPECT_EQ(next.level, DiagnosticStatus::OK);
-  EXPECT_EQ(value(next, "Underruns"), "3");
+  EXPECT_EQ(value(ask(kBuffer), "Minimum fill [%]"), "100");
 }
 
 TEST_F(DiagnosticsTest, WhatIsAmissWithJournalOrHistoryIsReported) {
   diagnostics_.setHistoryError("history /x: No space left on device");
-  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
-  expect(&Diagnostics::reportHistory, DiagnosticStatus::WARN, "history /x: No space left on device");
+  EXPECT_EQ(levelOf(kJournal), kOk);
+  expect(kHistory, kWarn, "history /x: No space left on device");
   diagnostics_.setHistoryError("");
   diagnostics_.setJournalError("journal /x: No space left on device");
-  EXPECT_EQ(ask(&Diagnostics::reportHistory).level, DiagnosticStatus::OK);
-  expect(&Diagnostics::reportJournal, DiagnosticStatus::ERROR, "journal /x: No space left on device");
+  EXPECT_EQ(levelOf(kHistory), kOk);
+  expect(kJournal, kError, "journal /x: No space left on device");
   diagnostics_.setJournalError("");
-  EXPECT_EQ(ask(&Diagnostics::reportJournal).level, DiagnosticStatus::OK);
+  EXPECT_EQ(levelOf(kJournal), kOk);
 }
 
 TEST(RecorderWatch, ReportsARecorderThatHasBeenGoneForSeconds) {
   RecorderWatch watch("/a_bag");
-  const ros::SteadyTime start(100);
-  const auto level = [&](double time) {
-    watch.look(start + ros::WallDuration(time));
+  const auto expectLevel = [&](double time, int level) {
+    watch.look(ros::SteadyTime(100) + ros::WallDuration(time));
     diagnostic_updater::DiagnosticStatusWrapper status;
     watch.report(status);
-    return static_cast<int>(status.level);
+    EXPECT_EQ(static_cast<int>(status.level), level) << time;
   };
-  EXPECT_EQ(level(0), DiagnosticStatus::OK);
+  expectLevel(0, kOk);
   watch.connect("/b_bag");
-  EXPECT_EQ(level(4.9), DiagnosticStatus::OK);
-  EXPECT_EQ(level(5.1), DiagnosticStatus::ERROR);
+  expectLevel(4.9, kOk);
+  expectLevel(5.1, kError);
   watch.connect("/a_bag");
-  EXPECT_EQ(level(6), DiagnosticStatus::OK);
+  expectLevel(6, kOk);
   watch.disconnect("/b_bag");
-  EXPECT_EQ(level(60), DiagnosticStatus::OK);
+  expectLevel(60, kOk);
   // One that is back at once, in either order.
   watch.connect("/a_bag");
   watch.disconnect("/a_bag");
-  EXPECT_EQ(level(70), DiagnosticStatus::OK);
+  expectLevel(70, kOk);
   watch.disconnect("/a_bag");
-  EXPECT_EQ(level(71), DiagnosticStatus::OK);
+  expectLevel(71, kOk);
   watch.connect("/a_bag");
-  EXPECT_EQ(level(77), DiagnosticStatus::OK);
+  expectLevel(77, kOk);
   watch.disconnect("/a_bag");
-  EXPECT_EQ(level(78), DiagnosticStatus::OK);
-  EXPECT_EQ(level(84), DiagnosticStatus::ERROR);
+  expectLevel(78, kOk);
+  expectLevel(84, kError);
 }
 
 }  // namespace test_diagnostics

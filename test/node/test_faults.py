@@ -11,7 +11,7 @@ import path_checks as checks
 from grinder_client import DEG, MM, MM_MIN, STROKE, X, Y, grinder
 
 # Steep enough for every axis to move by more than its following error may be.
-STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, feed=120 * MM_MIN)
+STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, feed=400 * MM_MIN)
 
 # fault, axis: code and text of the result
 FAULTS = {
@@ -25,17 +25,17 @@ WHERE = r'\(stroke, tooth 1, pass 1, X = [12]?\d(\.\d+)? mm\)'
 
 
 class TestFaultInTheStroke(unittest.TestCase):
-    def fault_in_stroke(self, fault, axis=X):
-        """The run that the fault has ended, and the state."""
+    def run_with(self, fault, axis=X):
+        """A run in whose stroke there is a fault, and the state."""
         g = grinder()
         g.make_ready(0.1)
         run = g.send(STEEP).wait_in_stroke(0)
         reply = g.inject(fault, axis)
         self.assertTrue(reply.success, reply.message)
-        run.wait_complete()
         return run, g.wait_state(GrinderState.FAULT)
 
     def check_end(self, run, state, code, text):
+        run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', code))
         self.assertRegex(run.text, text)
         self.assertRegex(run.text, WHERE)
@@ -48,27 +48,22 @@ class TestFaultInTheStroke(unittest.TestCase):
     def test_code_and_text_of_every_fault(self):
         for (fault, axis), (code, text) in FAULTS.items():
             with self.subTest(fault=fault, axis=axis):
-                self.check_end(*self.fault_in_stroke(fault, axis), code, text)
+                self.check_end(*self.run_with(fault, axis), code, text)
 
     def test_drive_that_hangs(self):
         """Nothing can be asked of the loop; its watchdog switches the power off, and the drive's return ends the job."""
-        g = grinder()
-        g.make_ready(0.1)
-        run = g.send(STEEP).wait_in_stroke(0)
-        self.assertTrue(g.inject('hang').success)
-        state = g.wait_state(GrinderState.FAULT)
+        run, state = self.run_with('hang')
         self.assertRegex(state.fault, r'the drive reports a fault: it does not return to the control loop; its power is switched off')
         self.assertFalse(state.enabled)
-        g.inject('none')
+        grinder().inject('none')
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
         self.assertRegex(run.text, 'it has returned to the control loop too late')
-        gc.poll(lambda: g.fresh_state().fault == run.text.split(' (')[0], 'the fault of the state')
+        gc.poll(lambda: grinder().fresh_state().fault == run.text.split(' (')[0], 'the fault of the state')
 
     def test_way_back_from_an_emergency_stop(self):
         g = grinder()
-        run, state = self.fault_in_stroke('emergency_stop')
-        self.check_end(run, state, GrindResult.EMERGENCY_STOP, r'^emergency stop')
+        self.check_end(*self.run_with('emergency_stop'), GrindResult.EMERGENCY_STOP, r'^emergency stop')
         state = g.fresh_state()
         self.assertEqual((state.enabled, state.emergency_stop), (False, True))
         refused = g.send(gc.SHORT).wait()

@@ -89,13 +89,14 @@ class Story:
             g.wait_for(lambda: self.run.batches[-1] is not batch, 'the next setpoints')
         self.run.wait_complete()
         subscriber.unregister()
+        self.known = {t.header.stamp for message in self.of_axes for t in message.transforms if t.child_frame_id == 'table'}
+        self.axes = {joint.header.stamp: numpy.array(gc.axes_of(joint)) for joint in grinder().joints}
         self.late = Frames()
 
     def interpolated(self, stamp):
         """How far the axes were at a time from where tf has them, which interpolates between the stamps it knows."""
-        known = sorted({t.header.stamp for message in self.of_axes for t in message.transforms if t.child_frame_id == 'table'})
-        before, after = max(s for s in known if s <= stamp), min(s for s in known if s >= stamp)
-        axes = {joint.header.stamp: numpy.array(gc.axes_of(joint)) for joint in grinder().joints}
+        before, after = max(s for s in self.known if s <= stamp), min(s for s in self.known if s >= stamp)
+        axes = self.axes
         share = 0 if before == after else (stamp - before) / (after - before)
         return abs(axes[stamp] - (1 - share) * axes[before] - share * axes[after])
 
@@ -115,78 +116,54 @@ def story():
     return Story()
 
 
-def tearDownModule():
-    """Other tests may follow with the same grinder."""
-    for axis in range(4):
-        assert grinder().set_offset(axis, 0).success
-
-
 class TestStroke(unittest.TestCase):
     def check(self, found, expected, delta):
         self.assertLess(abs(found - numpy.array(expected)).max(), delta)
 
-    def strokes(self):
-        """What was seen in the stroke, each with the tolerance for lengths and that for directions."""
+    def test_wheel_contact_and_cutter_are_where_the_axes_and_the_setpoint_are(self):
+        self.assertEqual(story().run.status, 'SUCCEEDED', story().run.text)
         strokes = [seen for seen in story().seen if Story.in_stroke(seen['setpoint'])]
         self.assertGreater(len(strokes), 20)
-        self.assertEqual(story().run.status, 'SUCCEEDED', story().run.text)
+        ends = [seen['setpoint'].position[X] for seen in (strokes[0], strokes[-1])]
+        self.assertGreater(abs(ends[1] - ends[0]), 1 * MM, 'it moves along the cutter')
+        self.assertLessEqual({seen['stamp'] for seen in strokes}, {joint.header.stamp for joint in grinder().joints})
+        tolerance = [rospy.get_param('/grinder/constraints/%s/trajectory' % joint) for joint in gc.JOINTS]
+        touching = 0
         for seen in strokes:
             off = story().interpolated(seen['stamp'])
-            seen['turn'] = off[A] + EXACT
-            seen['delta'] = sum(off[:3]) + REACH * seen['turn']
-        return strokes
-
-    def test_frames_have_the_joint_states_times(self):
-        stamps = {joint.header.stamp for joint in grinder().joints}
-        self.assertLessEqual({seen['stamp'] for seen in self.strokes()}, stamps)
-
-    def test_wheel_moves_along_the_cutter(self):
-        strokes = self.strokes()
-        ends = [seen['setpoint'].position[X] for seen in (strokes[0], strokes[-1])]
-        self.assertGreater(abs(ends[1] - ends[0]), 1 * MM)
-
-    def test_wheel_is_where_the_axes_are_in_work_coordinates(self):
-        for seen in self.strokes():
-            centre, axis = wheel_in_work(seen['setpoint'].actual)
+            # The tolerance for directions and that for lengths.
+            turn = off[A] + EXACT
+            delta = sum(off[:3]) + REACH * turn
+            actual, setpoint = seen['setpoint'].actual, seen['setpoint'].position
+            centre, axis = wheel_in_work(actual)
             at, turned = seen['wheel', 'work']
-            self.check(at, centre, seen['delta'])
-            self.check(turned[:, 2], axis, seen['turn'])
+            self.check(at, centre, delta)
+            self.check(turned[:, 2], axis, turn)
 
-    def test_wheel_in_the_cutter_has_the_pose_of_the_setpoint(self):
-        tolerance = [rospy.get_param('/grinder/constraints/%s/trajectory' % joint) for joint in gc.JOINTS]
-        for seen in self.strokes():
             at, turned = seen['wheel', 'cutter']
-            actual = seen['setpoint'].actual
             # A point of the cutter at the angle phi is in the machine at phi - A.
             to_cutter = about_x(actual[A])
-            centre, axis = wheel_in_work(actual)
-            self.check(at, to_cutter @ centre, seen['delta'])
-            self.check(turned[:, 2], to_cutter @ axis, seen['turn'])
-            self.check(turned[:, 1], to_cutter @ [0, 1, 0], seen['turn'])
+            self.check(at, to_cutter @ centre, delta)
+            self.check(turned[:, 2], to_cutter @ axis, turn)
+            self.check(turned[:, 1], to_cutter @ [0, 1, 0], turn)
             # The axes follow the setpoint as closely as the machine asks.
-            setpoint = seen['setpoint'].position
-            centre, axis = wheel_in_work(setpoint)
-            self.check(at, about_x(setpoint[A]) @ centre, sum(tolerance[:3]) + tolerance[A] * numpy.linalg.norm(centre))
-            self.check(turned[:, 2], about_x(setpoint[A]) @ axis, tolerance[A])
+            asked, asked_axis = wheel_in_work(setpoint)
+            self.check(at, about_x(setpoint[A]) @ asked, sum(tolerance[:3]) + tolerance[A] * numpy.linalg.norm(asked))
+            self.check(turned[:, 2], about_x(setpoint[A]) @ asked_axis, tolerance[A])
 
-    def test_contact_is_where_the_wheel_touches_the_cutters_surface(self):
-        touching = 0
-        for seen in self.strokes():
+            # The wheel touches the cutter's surface there.
             at, turned = seen['contact', 'work']
-            radius = HELIX.radius(at[0])
-            self.assertAlmostEqual(math.hypot(at[1], at[2]), radius, delta=seen['delta'])
-            centre, axis = wheel_in_work(seen['setpoint'].actual)
+            self.assertAlmostEqual(math.hypot(at[1], at[2]), HELIX.radius(at[0]), delta=delta)
             beside = abs((at - centre) @ axis) - JOB['process.wheel_width'] / 2
             beyond = numpy.linalg.norm(numpy.cross(at - centre, axis)) - JOB['process.wheel_diameter'] / 2
             # Beyond the ends of the cutter the wheel touches no edge.
             if 1 * UM < at[0] < JOB['cutter.flute_length'] - 1 * UM:
-                self.assertAlmostEqual(max(beside, beyond), 0, delta=5 * UM + seen['delta'])
+                self.assertAlmostEqual(max(beside, beyond), 0, delta=5 * UM + delta)
                 touching += 1
-            turn = about_x(math.atan2(at[2], at[1]))
-            along = turn @ [1, HELIX.tan_cone, HELIX.tan_spiral]
-            self.check(turned[:, 0], along / numpy.linalg.norm(along), seen['turn'] + 1e-9)
-            outward = turn @ [-HELIX.tan_cone, 1, 0]
-            self.check(turned[:, 1], outward / numpy.linalg.norm(outward), seen['turn'] + 1e-9)
+            around = about_x(math.atan2(at[2], at[1]))
+            for column, direction in ((0, [1, HELIX.tan_cone, HELIX.tan_spiral]), (1, [-HELIX.tan_cone, 1, 0])):
+                direction = around @ direction
+                self.check(turned[:, column], direction / numpy.linalg.norm(direction), turn + 1e-9)
         self.assertGreater(touching, 10)
 
 
@@ -196,14 +173,15 @@ class TestSetUp(unittest.TestCase):
         self.assertLess(abs(found[0] - numpy.array(at)).max(), EXACT, frame)
         self.assertLess(abs(found[1] - turned).max(), EXACT, frame)
 
-    def test_ahead_of_a_job_they_are_those_of_a_plain_one(self):
+    def test_ahead_of_a_job_and_for_a_late_listener_and_after_a_change(self):
+        self.addCleanup(lambda: [grinder().set_offset(axis, 0) for axis in range(4)])  # other tests may follow
+        # Ahead of a job they are those of a plain one.
         at = story().position_before
         centre, turned = story().before['wheel']
         self.assertLess(abs(centre - about_x(at[A]) @ [at[X], 0.055 + at[Y], at[Z]]).max(), EXACT)
         self.assertLess(abs(turned - about_x(at[A])).max(), EXACT)
         self.assertFalse(story().contact_before)
 
-    def test_late_listener_gets_what_is_latched(self):
         swivel = numpy.array([[math.cos(SWIVEL), 0, -math.sin(SWIVEL)], [0, 1, 0], [math.sin(SWIVEL), 0, math.cos(SWIVEL)]])
         unturned = numpy.identity(3)
         late = story().late
@@ -213,15 +191,9 @@ class TestSetUp(unittest.TestCase):
         self.check_frame(late, 'z_datum', 'column', [0, 0, HEIGHT - OFFSETS[Z]], unturned)
         self.check_frame(late, 'wheel', 'wheel_head', [0, 0, 0], swivel)
 
-    def move_work(self, x):
-        self.assertTrue(grinder().set_offset(X, x).success)
+        self.assertTrue(grinder().set_offset(X, -0.03).success)
         for frame, within in (('work', 'table'), ('cutter', 'chuck')):
-            gc.poll(lambda: abs(story().late.find(frame, within)[0][0] - x) < EXACT, 'the new place of ' + frame)
-
-    def test_change_of_a_work_offset_is_reported(self):
-        story()
-        self.addCleanup(self.move_work, OFFSETS[X])
-        self.move_work(-0.03)
+            gc.poll(lambda: abs(late.find(frame, within)[0][0] + 0.03) < EXACT, 'the new place of ' + frame)
 
     def test_joint_states_are_those_of_the_axes_alone(self):
         story()

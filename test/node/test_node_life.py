@@ -27,44 +27,31 @@ from grinder_client import DEG, MM, Y
 class TestLoopback(unittest.TestCase):
     """Launched with the defaults; test/loopback.sh does it from a shell that says nothing of addresses."""
 
-    @classmethod
-    def setUpClass(cls):
-        folder = gc.temp_folder(cls.addClassCleanup)
+    def test_api_topics_and_services_listen_on_loopback_alone_with_the_parameters_of_the_launch(self):
+        with socket.socket() as elsewhere:
+            elsewhere.bind(('127.0.0.2', 0))
+            elsewhere.listen()
+            self.assertIn('%s:%d' % elsewhere.getsockname(), gc.listening(os.getpid()), 'other addresses would be seen')
+        folder = gc.temp_folder(self.addCleanup)
         rospy.set_param('/listener/of_before', True)
         launch = subprocess.Popen(['roslaunch', '--wait', 'flute_grinder', 'grinder.launch', 'name:=listener',
                                    'journal:=' + os.path.join(folder, 'journal')],
                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        try:
-            node = gc.Grinder('listener')
-            uri = rosgraph.Master('/test_node_life').lookupNode('/listener')
-            cls.api = urllib.parse.urlparse(uri)
-            pid = xmlrpc.client.ServerProxy(uri).getPid('/test_node_life')[2]
-            cls.program = os.path.basename(os.readlink('/proc/%d/exe' % pid))
-            cls.listening = gc.listening(pid)
-            cls.parameters = rospy.get_param('/listener')
-            node.close()
-        finally:
-            launch.send_signal(signal.SIGINT)
-            launch.wait(timeout=gc.PATIENCE)
-
-    def test_parameters_are_those_of_the_launch_alone(self):
-        self.assertNotIn('of_before', self.parameters)
-        self.assertTrue({'control_rate', 'hardware', 'journal'} <= set(self.parameters))
-
-    def test_probe_reports_other_addresses(self):
-        with socket.socket() as elsewhere:
-            elsewhere.bind(('127.0.0.2', 0))
-            elsewhere.listen()
-            self.assertIn('%s:%d' % elsewhere.getsockname(), gc.listening(os.getpid()))
-
-    def test_node_goes_by_a_loopback_name(self):
-        self.assertEqual(socket.gethostbyname(self.api.hostname), '127.0.0.1')
-
-    def test_api_topics_and_services_listen_on_loopback_alone(self):
-        self.assertEqual(self.program, 'grinder')
-        self.assertIn('127.0.0.1:%d' % self.api.port, self.listening)
-        self.assertGreater(len(self.listening), 1)
-        self.assertEqual({address.rpartition(':')[0] for address in self.listening}, {'127.0.0.1'})
+        self.addCleanup(launch.wait, gc.PATIENCE)
+        self.addCleanup(launch.send_signal, signal.SIGINT)
+        gc.Grinder('listener').close()
+        uri = rosgraph.Master('/test_node_life').lookupNode('/listener')
+        api = urllib.parse.urlparse(uri)
+        pid = xmlrpc.client.ServerProxy(uri).getPid('/test_node_life')[2]
+        self.assertEqual(os.path.basename(os.readlink('/proc/%d/exe' % pid)), 'grinder')
+        self.assertEqual(socket.gethostbyname(api.hostname), '127.0.0.1')
+        listening = gc.listening(pid)
+        self.assertIn('127.0.0.1:%d' % api.port, listening)
+        self.assertGreater(len(listening), 1)
+        self.assertEqual({address.rpartition(':')[0] for address in listening}, {'127.0.0.1'})
+        parameters = rospy.get_param('/listener')
+        self.assertNotIn('of_before', parameters)
+        self.assertTrue({'control_rate', 'hardware', 'journal'} <= set(parameters))
 
 
 # Parameter and its value (None: taken away), what the message must say beside the parameter's full name. One for each that reads
@@ -82,23 +69,12 @@ BAD_PARAMETERS = [
      'the drive flute_grinder/SimulatedDrive: parameter /doubtful/hardware/axis_x/time_constant is missing; allowed: a number'),
 ]
 
-# Text of the robot description and its replacement, what the message must say. The others are those of the tests of MachineModel.
-BAD_DESCRIPTIONS = [
-    ('radius="0.022"', 'radius="0,022"', 'link wheel, <visual> flange, <geometry>, <cylinder> radius = "0,022"; allowed: a number'),
-]
-
 
 class TestStartFailsClosed(unittest.TestCase):
-    def check(self, parameters, *expected, description=None):
-        name = 'doubtful'
-        arguments = []
-        if description is not None:
-            rospy.set_param('/doubtful_description', description)
-            arguments = ['robot_description:=/doubtful_description']
-        node = gc.NodeProcess(name, parameters, arguments)
+    def check(self, *expected, parameters=None, arguments=(), **options):
+        node = gc.NodeProcess('doubtful', parameters or gc.machine(), arguments, **options)
         self.addCleanup(node.close)
-        status = node.end()
-        self.assertEqual(status, 1, node.output)
+        self.assertEqual(node.end(), 1, node.output)
         for text in expected:
             self.assertIn(text, node.output)
 
@@ -110,14 +86,15 @@ class TestStartFailsClosed(unittest.TestCase):
                 group = functools.reduce(dict.get, groups, parameters)
                 group.pop(name, None)
                 group.update({} if value is None else {name: value})
-                self.check(parameters, text, 'parameter /doubtful/' + path)
+                self.check(text, 'parameter /doubtful/' + path, parameters=parameters)
 
-    def test_bad_descriptions(self):
-        urdf = pathlib.Path(gc.package_file('urdf/grinder.urdf')).read_text()
-        for old, new, text in BAD_DESCRIPTIONS:
-            with self.subTest(new):
-                self.assertIn(old, urdf)
-                self.check(gc.machine(), text, description=urdf.replace(old, new))
+    def test_bad_description(self):
+        """The others are those of the tests of MachineModel."""
+        urdf, good = pathlib.Path(gc.package_file('urdf/grinder.urdf')).read_text(), 'radius="0.022"'
+        self.assertIn(good, urdf)
+        rospy.set_param('/doubtful_description', urdf.replace(good, 'radius="0,022"'))
+        self.check('link wheel, <visual> flange, <geometry>, <cylinder> radius = "0,022"; allowed: a number',
+                   arguments=['robot_description:=/doubtful_description'])
 
     def test_rosrun_finds_the_program(self):
         done = subprocess.run(['rosrun', 'flute_grinder', 'grinder', '__name:=doubtful', 'robot_description:=/nothing_here'],
@@ -130,24 +107,14 @@ class TestStartFailsClosed(unittest.TestCase):
         parameters = gc.machine()
         parameters['hardware']['type'] = 'flute_grinder/HalHardware'
         # Where the node finds no library of a drive, as none is built where LinuxCNC is not installed.
-        node = gc.NodeProcess('doubtful', parameters, environment={'CMAKE_PREFIX_PATH': '/usr'})
-        self.addCleanup(node.close)
-        self.assertEqual(node.end(), 1, node.output)
-        self.assertIn('parameter /doubtful/hardware/type = flute_grinder/HalHardware cannot be loaded: ', node.output)
-        self.assertIn('Built where linuxcnc-uspace-dev is installed.', node.output)
+        self.check('parameter /doubtful/hardware/type = flute_grinder/HalHardware cannot be loaded: ',
+                   'Built where linuxcnc-uspace-dev is installed.', parameters=parameters, environment={'CMAKE_PREFIX_PATH': '/usr'})
 
 
 class TestMarkersDoNotOutliveTheNode(gc.OwnNode):
     """What was published of a job is taken back: at the node's end, or else when it is started again."""
 
     TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
-
-    def setUp(self):
-        self.start(gc.machine())
-        self.shown = {topic: gc.received(self.addCleanup, '/%s/%s' % (self.node.name, topic), MarkerArray) for topic in self.TOPICS}
-        self.client.make_ready(0.1)
-        self.client.send(gc.PAPER).wait_in_stroke(0)
-        gc.poll(lambda: all(self.markers(topic) for topic in self.TOPICS), 'the job in rviz')
 
     def markers(self, topic):
         """Those that the last message leaves; every message is complete."""
@@ -157,38 +124,37 @@ class TestMarkersDoNotOutliveTheNode(gc.OwnNode):
         self.assertEqual(messages[-1].markers[0].action, Marker.DELETEALL)
         return messages[-1].markers[1:]
 
+    def show_job(self, client):
+        client.make_ready(0.1)
+        client.send(gc.paper(depth=0.5 * MM)).wait_in_stroke(0)
+        gc.poll(lambda: all(self.markers(topic) for topic in self.TOPICS), 'the job in rviz')
+
     def check_taken_back(self, *scene):
         """Nothing is left but these in the scene."""
         gc.poll(lambda: {m.ns for m in self.markers('scene')} == set(scene), 'the scene without a job')
         gc.poll(lambda: not any(self.markers(topic) for topic in self.TOPICS[1:]), 'nothing else in rviz')
 
-    def test_orderly_end(self):
-        self.assertEqual(self.node.end(signal.SIGTERM), 0, self.node.output)
-        self.check_taken_back()
-
-    def test_restart_after_a_kill(self):
+    def test_restart_after_a_kill_and_an_orderly_end(self):
+        self.start(gc.machine(pace=2))
+        self.shown = {topic: gc.received(self.addCleanup, '/%s/%s' % (self.node.name, topic), MarkerArray) for topic in self.TOPICS}
+        self.show_job(self.client)
         self.node.end(signal.SIGKILL)
         self.client.close()
         self.node.close()
         self.assertTrue(all(self.markers(topic) for topic in self.TOPICS))
-        again = gc.NodeProcess(self.node.name, gc.machine())
+        again = gc.NodeProcess(self.node.name, gc.machine(pace=2))
         self.addCleanup(again.close)
         self.check_taken_back('wheel', 'blank')  # the first view's
+        client = again.client()
+        self.addCleanup(client.close)
+        self.show_job(client)
+        self.assertEqual(again.end(signal.SIGTERM), 0, again.output)
+        self.check_taken_back()
 
 
-class TestDriveHangs(gc.OwnNode):
-    def test_the_process_ends_without_it(self):
-        g = self.start(gc.machine())
-        g.make_ready()
-        g.inject('hang')
-        g.wait_state(GrinderState.FAULT)
-        self.assertEqual(self.node.end(signal.SIGTERM), 1)
-        self.assertIn("the process ends without the return of the drive's read(), write() or wait()", self.node.output)
-
-
-class TestFaultIsLogged(gc.OwnNode):
-    def test_with_its_job_or_without_one(self):
-        g = self.start(gc.machine())
+class TestFaults(gc.OwnNode):
+    def test_are_logged_with_their_job_or_without_one_and_a_drive_that_hangs_does_not_keep_the_process(self):
+        g = self.start(gc.machine(pace=5))
         g.make_ready()
         g.inject('emergency_stop')
         g.wait_state(GrinderState.FAULT)
@@ -200,6 +166,11 @@ class TestFaultIsLogged(gc.OwnNode):
         run.wait_complete()
         gc.poll(lambda: of_job in self.node.output, 'the end of the job in the log')
         self.assertEqual([self.node.output.count(text) for text in (alone, of_job)], [1, 1])
+        g.make_ready()
+        g.inject('hang')
+        g.wait_state(GrinderState.FAULT)
+        self.assertEqual(self.node.end(signal.SIGTERM), 1)
+        self.assertIn("the process ends without the return of the drive's read(), write() or wait()", self.node.output)
 
 
 class TestMemory(gc.OwnNode):
@@ -208,11 +179,6 @@ class TestMemory(gc.OwnNode):
     # 10 teeth in 20 passes, and one with which a test is over soon.
     TOOL = gc.paper(tooth_angles=[i * 36 * DEG for i in range(10)], infeed=0.025 * MM)
     SHORT_TOOL = gc.paper(tooth_angles=[0.0, 170 * DEG], flute_length=5 * MM, feed=1000 * gc.MM_MIN, clearance=1 * MM)
-
-    def setUp(self):
-        self.start(gc.machine())
-        if not self.memory('VmLck'):
-            self.skipTest('the system does not grant locked memory')
 
     def memory(self, kind):
         """In bytes."""
@@ -228,12 +194,20 @@ class TestMemory(gc.OwnNode):
                 return [int(fields.split()[i]) for i in (7, 9)]
         raise AssertionError('no thread control_loop')
 
-    def test_loop_meets_no_page_fault(self):
-        g = self.client
+    def test_loop_meets_no_page_fault_and_little_is_resident(self):
+        g = self.start(gc.machine(pace=2))
+        if not self.memory('VmLck'):
+            self.skipTest('the system does not grant locked memory')
         before = self.page_faults()
-        g.make_ready()
+        g.make_ready(0.2)
+        run = g.send(self.TOOL).wait_in_stroke(1 * MM)
+        self.assertLess(self.memory('VmHWM'), 100e6)
+        run.cancel()
+        run.wait_complete()
+        g.wait_state(GrinderState.READY)
+        self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01).success)
+        g.make_ready(0.1)
         self.assertEqual(g.send(self.TOOL, dry_run=True).wait().status, 'SUCCEEDED')
-        g.make_ready(0.05)
         run = g.send(self.SHORT_TOOL).wait_in_stroke(0)
         self.assertTrue(g.hold().success)
         g.wait_state(GrinderState.HELD)
@@ -243,18 +217,6 @@ class TestMemory(gc.OwnNode):
         self.assertTrue(g.resume().success)
         run.wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        g.make_ready(0.1)
-        run = g.send(self.TOOL).wait_in_stroke(0)
-        run.cancel()
-        run.wait_complete()
-        g.wait_state(GrinderState.READY)
-        self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01).success)
-        g.wait_rest()
         g.inject('emergency_stop')
         g.wait_state(GrinderState.FAULT)
         self.assertEqual(self.page_faults(), before)
-
-    def test_resident_memory(self):
-        self.client.make_ready()
-        self.client.send(self.TOOL).wait_in_stroke(1 * MM)
-        self.assertLess(self.memory('VmHWM'), 100e6)

@@ -55,9 +55,7 @@ TEST_F(OffsetStoreTest, WithoutAFileTheyWereNeverSet) {
   const OffsetStore store(path_, "/grinder");
   EXPECT_EQ(store.unknown(), "");
   for (const WorkOffset& offset : store.offsets().axes) {
-    EXPECT_EQ(offset.value, 0);
-    EXPECT_EQ(offset.set_by, "");
-    EXPECT_EQ(offset.set_at, 0);
+    EXPECT_TRUE(std::tie(offset.value, offset.set_by, offset.set_at) == std::make_tuple(0, "", 0));
   }
   EXPECT_FALSE(std::filesystem::exists(path_));
 }

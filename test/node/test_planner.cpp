@@ -1,9 +1,8 @@
-#include "flute_grinder/job/job_file.h"
 #include "node/planner.h"
 
 #include "check/machine.h"
 #include "control/fixtures.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
 #include "soon.h"
 
 #include <gtest/gtest.h>
@@ -29,12 +28,12 @@ const MachineShapes kShapes = shippedShapes();
 GrindJob paper() { return readJobFile("test/jobs/paper.yaml"); }
 
 /// Takes hours to plan: with a depth that changes along the flute, no pass is like another.
-GrindJob endless() {
+ValidJob endless() {
   GrindJob job = paper();
   job.process().depth_end = 0.99 * job.process().depth;
   job.process().feed = kMinFeed;
   job.process().infeed = job.process().depth / 200;
-  return job;
+  return ValidJob(job);
 }
 
 ValidJob changed(const std::function<void(GrindProcess&)>& change) {
@@ -45,7 +44,7 @@ ValidJob changed(const std::function<void(GrindProcess&)>& change) {
 
 /// A request with its outcome.
 struct Asked {
-  explicit Asked(const GrindJob& job) : request{ValidJob(job)} {
+  explicit Asked(const ValidJob& job) : request{job} {
     request.run.at = machine().park;
     request.control = std::make_shared<PlanControl>();
     request.done = [this](std::shared_ptr<const PlannedJob> plan) { promise.set_value(std::move(plan)); };
@@ -54,10 +53,6 @@ struct Asked {
     if (answer.wait_for(kPatience) != std::future_status::ready) throw std::runtime_error("no plan");
     return answer.get();
   }
-  /// Waits until it is being planned.
-  void waitForProgress() const {
-    EXPECT_TRUE(test_support::soon([&] { return request.control->done > 0; }));
-  }
   bool isDone() const { return answer.wait_for(std::chrono::seconds(0)) == std::future_status::ready; }
 
   Planner::Request request;
@@ -65,86 +60,72 @@ struct Asked {
   std::future<std::shared_ptr<const PlannedJob>> answer = promise.get_future();
 };
 
-TEST(Planner, PlansWhatPlanJobPlans) {
-  Planner planner(machine(), kShapes);
-  Asked asked(paper());
-  ASSERT_TRUE(planner.submit(asked.request));
-  const auto plan = asked.wait();
-  ASSERT_TRUE(plan->good());
-  const JobPlan expected = planJob(ValidJob(paper()), machine(), machine().park);
-  EXPECT_EQ(plan->statistics.setpoints, expected.statistics.setpoints);
-  EXPECT_EQ(plan->move_ends, expected.move_ends);
-}
+class PlannerTest : public testing::Test {
+ protected:
+  std::shared_ptr<const PlannedJob> plan(const ValidJob& job,
+                                         const std::function<void(Planner::Request&)>& change = {}) {
+    Asked asked(job);
+    if (change) change(asked.request);
+    EXPECT_TRUE(planner_.submit(asked.request));
+    return asked.wait();
+  }
 
-TEST(Planner, KeepsAPlanForTheSameJobFromTheSamePlace) {
-  Planner planner(machine(), kShapes);
-  const auto programOf = [&](const std::function<void(Planner::Request&)>& change) {
-    Asked asked(paper());
-    change(asked.request);
-    EXPECT_TRUE(planner.submit(asked.request));
-    const auto plan = asked.wait();
-    EXPECT_TRUE(plan->good());
-    return plan->program;
+  const ValidJob paper_{paper()};
+  Planner planner_{machine(), kShapes};
+};
+
+TEST_F(PlannerTest, KeepsThePlanOfPlanJobForTheSameJobFromTheSamePlace) {
+  const auto kept = plan(paper_);
+  ASSERT_TRUE(kept->good());
+  const JobPlan expected = planJob(paper_, machine(), machine().park);
+  EXPECT_EQ(kept->statistics.setpoints, expected.statistics.setpoints);
+  EXPECT_EQ(kept->move_ends, expected.move_ends);
+  const auto programOf = [&](const ValidJob& job, const std::function<void(Planner::Request&)>& change = {}) {
+    const auto planned = plan(job, change);
+    EXPECT_TRUE(planned->good());
+    return planned->program;
   };
-  const auto unchanged = [](Planner::Request&) {};
-  const auto program = programOf(unchanged);
-  EXPECT_EQ(programOf(unchanged), program);
-  const std::vector<std::function<void(Planner::Request&)>> changes{
-      [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.feed *= 0.9; }); },
-      [](Planner::Request& r) { r.job = changed([](GrindProcess& p) { p.spark_out = 1; }); },
+  EXPECT_EQ(programOf(paper_), kept->program);
+  const ValidJob slower = changed([](GrindProcess&p) { p.feed *= 0.9; }),
+                 two_passes = changed([](GrindProcess&p) { p.spark_out = 1; });
+  for (const ValidJob& other : {slower, two_passes}) EXPECT_NE(programOf(other), programOf(paper_));
+  const std::function<void(Planner::Request&)> changes[]{
       [](Planner::Request& r) { r.run.at[kX] += 1e-9; },
       [](Planner::Request& r) { r.run.offset[kA] += 1e-9; },
+      [](Planner::Request& r) {
+        r.run.first = {0, 1};
+      },
   };
-  for (const auto& change : changes) EXPECT_NE(programOf(change), programOf(unchanged));
-  const ValidJob two_passes = changed([](GrindProcess& p) { p.spark_out = 1; });
-  const auto withFirstPass = [&](int pass) {
-    return programOf([&](Planner::Request& r) {
-      r.job = two_passes;
-      r.run.first = {0, pass};
-    });
-  };
-  EXPECT_NE(withFirstPass(1), withFirstPass(0));
+  for (const auto& change : changes) EXPECT_NE(programOf(two_passes, change), programOf(two_passes));
 }
 
 // The last relief must leave no heel, which is why the reamer has a secondary one.
-TEST(Planner, KeepsNoPlanOfAReliefThatIsNowTheLast) {
-  Planner planner(machine(), kShapes);
-  const auto planOf = [&](const GrindJob& job) {
-    Asked asked(job);
-    EXPECT_TRUE(planner.submit(asked.request));
-    return asked.wait();
-  };
+TEST_F(PlannerTest, KeepsNoPlanOfAReliefThatIsNowTheLast) {
   GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "primary");
-  const auto plan = planOf(job);
-  ASSERT_TRUE(plan->good()) << text(plan->reasons);
+  const auto planned = plan(ValidJob(job));
+  ASSERT_TRUE(planned->good()) << text(planned->reasons);
   job.operations[2].feed *= 0.9;
-  EXPECT_EQ(planOf(job), plan);
+  EXPECT_EQ(plan(ValidJob(job)), planned);
   job.operations.pop_back();
-  EXPECT_EQ(planOf(job)->fault, PlanFault::kTool);
+  EXPECT_EQ(plan(ValidJob(job))->fault, PlanFault::kTool);
 }
 
-TEST(Planner, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUp) {
-  Planner planner(machine(), kShapes);
-  Asked first(endless()), second(paper()), third(paper());
-  ASSERT_TRUE(planner.submit(first.request));
-  first.waitForProgress();
-  EXPECT_FALSE(planner.submit(second.request));
+TEST_F(PlannerTest, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUpAsItIsAtTheEnd) {
+  Asked first(endless()), second(paper_), third(paper_), last(endless());
+  ASSERT_TRUE(planner_.submit(first.request));
+  EXPECT_TRUE(test_support::soon([&] { return first.request.control->done > 0; }));
+  EXPECT_FALSE(planner_.submit(second.request));
   EXPECT_FALSE(first.isDone());
   first.request.control->give_up = true;
   EXPECT_EQ(first.wait()->fault, PlanFault::kGivenUp);
-  ASSERT_TRUE(planner.submit(third.request)) << "who has the answer may ask for the next";
+  ASSERT_TRUE(planner_.submit(third.request)) << "who has the answer may ask for the next";
   EXPECT_TRUE(third.wait()->good());
+  ASSERT_TRUE(planner_.submit(last.request));
+  planner_.end();
+  ASSERT_TRUE(last.isDone());
+  EXPECT_FALSE(last.wait()->good());
+  EXPECT_FALSE(planner_.submit(second.request));
   EXPECT_FALSE(second.isDone());
-}
-
-TEST(Planner, ItsEndGivesUpAndAnswers) {
-  Planner planner(machine(), kShapes);
-  Asked plan(endless()), late(paper());
-  ASSERT_TRUE(planner.submit(plan.request));
-  planner.end();
-  ASSERT_TRUE(plan.isDone());
-  EXPECT_FALSE(plan.wait()->good());
-  EXPECT_FALSE(planner.submit(late.request));
 }
 
 }  // namespace test_planner

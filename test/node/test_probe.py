@@ -74,7 +74,9 @@ def number(text):
 class TestCycles(ProbeTest):
     def test_the_end_face_gives_the_stick_out_and_the_offset(self):
         self.start()
+        self.check_goals()
         self.bring_ball(12 * MM, 0)
+        self.check_touches()
         said = self.cycle('end-face', '--job', JOB)
         for figure in ('end face', 'stick-out'):
             self.assertRegex(said[figure], r'^\d+\.\d{4} mm(, spread 0\.\d{4} mm)?$')
@@ -85,10 +87,40 @@ class TestCycles(ProbeTest):
         self.assertIn('@', self.offset(X)['set_by'])
         # Off the surface again.
         self.assertAlmostEqual(self.client.wait_rest()[X] + BALL_X + BALL / 2, (17 - 0.5) * MM, delta=5e-6)
+        # A flange mistyped.
+        before = self.offset(X)['offset_mm']
+        self.assertRegex(self.grind(1, 'probe', 'end-face', '--job', JOB, '--flange', '50').stderr,
+                         'work offset of axis X would change by .* allowed without an answer: 5 mm')
+        self.assertEqual(self.offset(X)['offset_mm'], before)
+        self.grind(0, 'probe', 'end-face', '--job', JOB, '--flange', '50', '--answer', 'set-offset')
+        self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
 
-    def test_zeros_become_the_offsets_by_the_grinders_own_geometry(self):
+    def check_goals(self):
+        self.assertEqual(self.client.probe(math.nan).message, 'probing refused: within = nan; allowed: finite, and above 0')
+        self.assertIn('; allowed: up to 300 mm', self.client.probe(1.0).message)
+        self.client.disable()
+        self.assertIn('state disabled; allowed: ready', self.client.probe(1 * MM).message)
+        self.client.make_ready()
+
+    def check_touches(self):
+        """They agree and are published; without a job no offset is set."""
+        with self.client.probing(8 * MM) as cycle:
+            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
+            result = cycle.get_result()
+            self.assertEqual((cycle.get_state(), result.message), (GoalStatus.SUCCEEDED, ''))
+            self.client.wait_for(lambda: len(cycle.touches) == 4, 'the last feedback')
+            self.assertEqual(cycle.touches, [(0, 0), (0, 1), (0, 2), (0, 3)])
+        self.assertEqual([figure.name for figure in result.figures], ['end face', 'stick-out'])
+        self.assertFalse(result.offset_set)
+        self.assertEqual(self.offset(X)['set_by'], None)
+
+    def test_a_machine_without_a_probe_and_zeros_by_the_grinders_own_geometry(self):
         geometry = gc.machine()['geometry']
-        self.start(geometry=dict(geometry, collet_face={'x': geometry['collet_face']['x'] + 1 * MM}))
+        geometry['collet_face']['x'] += 1 * MM
+        del geometry['probe']
+        self.start(None, geometry=geometry)
+        self.assertEqual(self.grind(1, 'probe', 'diameter').stderr,
+                         'probing refused: the machine has no parameter geometry/probe\n')
         reported = self.json('zeros', JOB, '--stickout', '45')
         self.said('zeros', JOB, '--stickout', '45', '--set')
         for axis, value in ((X, reported['x_mm'] + 1), (Y, reported['y_mm']), (Z, reported['z_mm'])):
@@ -96,17 +128,14 @@ class TestCycles(ProbeTest):
         self.assertIsNone(self.offset(A)['set_by'])
         self.assertIn('--stickout = 20 mm; allowed: ', self.grind(1, 'zeros', JOB, '--stickout', '20', '--set').stderr)
 
-    def test_a_flange_mistyped_changes_x_only_if_confirmed(self):
-        self.start()
-        self.bring_ball(12 * MM, 0)
-        end_face = 'probe', 'end-face', '--job', JOB, '--flange'
-        self.grind(0, *end_face, '2')
-        before = self.offset(X)['offset_mm']
-        self.assertRegex(self.grind(1, *end_face, '50').stderr,
-                         'work offset of axis X would change by .* allowed without an answer: 5 mm')
-        self.assertEqual(self.offset(X)['offset_mm'], before)
-        self.grind(0, *end_face, '50', '--answer', 'set-offset')
-        self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
+    def test_a_blank_clamped_too_short_gives_its_figures_and_no_offset(self):
+        self.start(dict(BLANK, end_face=42 * MM))
+        self.bring_ball(37 * MM, 0)
+        done = self.grind(1, 'probe', 'end-face', '--job', JOB)
+        found = re.match(r"probing ended: stick-out = (\S+) mm; allowed: the flutes' length or more, ", done.stderr).group(1)
+        self.assertIn('stick-out       %s mm\n' % found, done.stdout)
+        self.assertAlmostEqual(float(found), 20, delta=TOUCH / MM)
+        self.assertEqual(self.offset(X)['set_by'], None)
 
     def test_the_first_tooth_gives_the_offset_of_a(self):
         """A straight flute: its rake face is a plane, at the height of the wheel's upper face."""
@@ -152,44 +181,6 @@ class TestCycles(ProbeTest):
         self.assertTrue(self.client.set_offset(X, x).success)
 
 
-class TestTouches(ProbeTest):
-    def test_they_agree_and_are_published(self):
-        self.start()
-        self.bring_ball(12 * MM, 0)
-        with self.client.probing(8 * MM) as cycle:
-            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
-            result = cycle.get_result()
-            self.assertEqual((cycle.get_state(), result.message), (GoalStatus.SUCCEEDED, ''))
-            self.client.wait_for(lambda: len(cycle.touches) == 4, 'the last feedback')
-            self.assertEqual(cycle.touches, [(0, 0), (0, 1), (0, 2), (0, 3)])
-        self.assertEqual([figure.name for figure in result.figures], ['end face', 'stick-out'])
-        self.assertFalse(result.offset_set)
-        self.assertEqual(self.offset(X)['set_by'], None)
-
-    def test_a_blank_clamped_too_short_gives_its_figures_and_no_offset(self):
-        self.start(dict(BLANK, end_face=42 * MM))
-        self.bring_ball(37 * MM, 0)
-        done = self.grind(1, 'probe', 'end-face', '--job', JOB)
-        found = re.match(r"probing ended: stick-out = (\S+) mm; allowed: the flutes' length or more, ", done.stderr).group(1)
-        self.assertIn('stick-out       %s mm\n' % found, done.stdout)
-        self.assertAlmostEqual(float(found), 20, delta=TOUCH / MM)
-        self.assertEqual(self.offset(X)['set_by'], None)
-
-    def test_goals_are_checked(self):
-        self.start()
-        self.assertEqual(self.client.probe(math.nan).message, 'probing refused: within = nan; allowed: finite, and above 0')
-        self.assertIn('; allowed: up to 300 mm', self.client.probe(1.0).message)
-        self.client.disable()
-        self.assertIn('state disabled; allowed: ready', self.client.probe(1 * MM).message)
-
-    def test_a_machine_without_a_probe(self):
-        geometry = gc.machine()['geometry']
-        del geometry['probe']
-        self.start(None, geometry=geometry)
-        self.assertEqual(self.grind(1, 'probe', 'diameter').stderr,
-                         'probing refused: the machine has no parameter geometry/probe\n')
-
-
 class TestStop(ProbeTest):
     @contextlib.contextmanager
     def begun(self):
@@ -204,9 +195,22 @@ class TestStop(ProbeTest):
         self.assertEqual((cycle.get_state(), cycle.get_result().message), (state, 'probing ended: stopped'))
         self.assertLess(self.client.wait_rest()[X], 0)
 
-    def test_cancel_hold_and_disable_end_it(self):
+    def command(self, *arguments):
+        process = subprocess.Popen([gc.program('grind'), '--node', self.client.name, 'probe', *arguments],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
+
+    def test_stops_and_the_end_of_its_client_and_of_the_node(self):
         self.start()
         with self.begun() as cycle:
+            self.assertIn('probing refused: another probing cycle is in progress; ', self.client.probe(1 * MM).message)
+            run = self.client.send(gc.SHORT).wait()
+            # Between two touches the machine is ready, and the goal refused all the same.
+            self.assertEqual(run.status, 'REJECTED')
+            self.assertIn(run.code, (GrindResult.NOT_READY, GrindResult.BUSY))
             cycle.cancel_goal()
             self.assert_stopped(cycle, GoalStatus.PREEMPTED)
         for stop, state in ((self.client.hold, GrinderState.READY), (self.client.disable, GrinderState.DISABLED)):
@@ -215,30 +219,16 @@ class TestStop(ProbeTest):
                 self.assertTrue(stop().success)
                 self.assert_stopped(cycle, GoalStatus.ABORTED)
             self.assertEqual(self.client.fresh_state().state, state)
+        self.client.make_ready()
+        self.check_killed_client()
+        with self.begun():
+            self.node.process.terminate()
+            self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)
 
-    def test_ctrl_c_ends_a_cycle_between_its_touches_too(self):
-        self.start()
-        self.bring_ball(30 * MM, 7 * MM)
-        before = self.client.wait_rest()[A]
-        cycle = subprocess.Popen([gc.program('grind'), '--node', self.client.name, 'probe', 'diameter'],
-                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
-        self.addCleanup(cycle.wait)
-        self.addCleanup(cycle.stderr.close)
-        self.client.wait_for(lambda: abs(self.client.joints[-1].position[A] - before) > 0.1, 'the turn')
-        cycle.send_signal(signal.SIGINT)
-        self.assertEqual((cycle.wait(gc.PATIENCE), cycle.stderr.read()), (1, 'probing ended: stopped\n'))
-        at = self.client.wait_rest()
-        self.assertLess(at[A], before + math.pi - 0.1)
-        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
-
-    def test_its_end_ends_it_however_it_comes(self):
-        self.start()
+    def check_killed_client(self):
         self.bring_ball(-35 * MM, 0)
         before = self.client.wait_rest()[X]
-        command = [gc.program('grind'), '--node', self.client.name, 'probe', 'end-face', '--job', JOB, '--within', '45']
-        client = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(client.wait)
-        self.addCleanup(client.kill)
+        client = self.command('end-face', '--job', JOB, '--within', '45')
         # For longer than a client that is gone may move the axis.
         self.client.wait_for(lambda: self.client.joints[-1].position[X] > before + 3 * MM, 'the search')
         client.send_signal(signal.SIGKILL)
@@ -249,19 +239,14 @@ class TestStop(ProbeTest):
         self.assertLess(self.client.wait_rest()[X], at + 20 * MM)
         self.assertIn('probing ended: its client was silent for 1 s; ~probe_alive is to be repeated', self.node.output)
 
-    def test_other_goals_meanwhile_are_refused(self):
+    def test_ctrl_c_ends_a_cycle_between_its_touches_too(self):
         self.start()
-        with self.begun() as cycle:
-            self.assertIn('probing refused: another probing cycle is in progress; ', self.client.probe(1 * MM).message)
-            run = self.client.send(gc.SHORT).wait()
-            # Between two touches the machine is ready, and the goal refused all the same.
-            self.assertEqual(run.status, 'REJECTED')
-            self.assertIn(run.code, (GrindResult.NOT_READY, GrindResult.BUSY))
-            self.client.hold()
-            self.assert_stopped(cycle, GoalStatus.ABORTED)
-
-    def test_the_end_of_the_node_does_not_wait_for_it(self):
-        self.start()
-        with self.begun():
-            self.node.process.terminate()
-            self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)
+        self.bring_ball(30 * MM, 7 * MM)
+        before = self.client.wait_rest()[A]
+        cycle = self.command('diameter')
+        self.client.wait_for(lambda: abs(self.client.joints[-1].position[A] - before) > 0.1, 'the turn')
+        cycle.send_signal(signal.SIGINT)
+        self.assertEqual((cycle.wait(gc.PATIENCE), cycle.stderr.read()), (1, 'probing ended: stopped\n'))
+        at = self.client.wait_rest()
+        self.assertLess(at[A], before + math.pi - 0.1)
+        self.assertEqual(self.client.fresh_state().state, GrinderState.READY)

@@ -1,7 +1,6 @@
 #include "node/probing_cycles.h"
 
 #include "control/fixtures.h"
-#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "refusal.h"
@@ -52,6 +51,7 @@ class ProbingCycles : public ::testing::Test {
 
   /// Powers the machine. @param touches whether the probe touches, by the axes' positions.
   void start(const LoopConfig& config, std::function<bool(const FakeDrive&)> touches) {
+    loop_.reset();
     test_support::setUp(drive_, config);
     drive_.on_read = [touches = std::move(touches)](FakeDrive& drive) { drive.status.probe_contact = touches(drive); };
     loop_ = std::make_unique<ControlLoop>(drive_, config);
@@ -138,39 +138,35 @@ TEST_F(ProbingCycles, ADiameterFarFromTheKnownOneSetsNothing) {
   EXPECT_NEAR(run(probe), fits + (0.012 - 0.0111) / 2, kTouch);
 }
 
-TEST_F(ProbingCycles, NothingThereGoesBack) {
-  start(config(), [](const FakeDrive&) { return false; });
-  const double before = loop_->status().command[kX];
-  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "nothing was touched over 5 mm");
-  EXPECT_EQ(loop_->status().command[kX], before);
-  EXPECT_TRUE(result_.figures.empty());
-}
-
-TEST_F(ProbingCycles, TouchesThatDoNotAgreeAreRefused) {
-  start(config(), [face = 0.013, touched = false](const FakeDrive& drive) mutable {
-    const bool touches = beyond(drive, face);
-    // The face yields a little at each touch.
-    if (touched && !touches) face += 3e-6;
-    touched = touches;
-    return touches;
-  });
-  EXPECT_CONTAINS(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "the touches spread over 0.00");
-  EXPECT_TRUE(result_.figures.empty());
-}
-
-TEST_F(ProbingCycles, AContactThatIsLostAgainIsNoTouch) {
-  start(config(), [touched = false](const FakeDrive& drive) mutable {
-    const bool begins = beyond(drive, 0.013) && !touched;
-    touched = begins || touched;
-    return begins;
-  });
-  EXPECT_EQ(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)),
-            "the contact was lost again before the axis came to rest");
-}
-
-TEST_F(ProbingCycles, AProbeThatTouchesAlreadyIsRefused) {
-  start(config(), [](const FakeDrive&) { return true; });
-  EXPECT_CONTAINS(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), "jog refused: the probe touches already");
+TEST_F(ProbingCycles, WhatIsNoGoodTouchIsRefused) {
+  const struct {
+    const char* why;
+    std::function<bool(const FakeDrive&)> touches;
+  } rows[]{{"nothing was touched over 5 mm", [](const FakeDrive&) { return false; }},
+           {"the touches spread over 0.00",
+            [face = 0.013, touched = false](const FakeDrive& drive) mutable {
+              const bool touches = beyond(drive, face);
+              // The face yields a little at each touch.
+              if (touched && !touches) face += 3e-6;
+              touched = touches;
+              return touches;
+            }},
+           {"the contact was lost again before the axis came to rest",
+            [touched = false](const FakeDrive& drive) mutable {
+              const bool begins = beyond(drive, 0.013) && !touched;
+              touched = begins || touched;
+              return begins;
+            }},
+           {"jog refused: the probe touches already", [](const FakeDrive&) { return true; }}};
+  for (const auto& row : rows) {
+    start(config(), row.touches);
+    const double before = loop_->status().command[kX];
+    EXPECT_CONTAINS(refusal(goal(flute_grinder::ProbeGoal::END_FACE, 0.005)), row.why);
+    EXPECT_TRUE(result_.figures.empty());
+    if (&row == rows) {
+      EXPECT_EQ(loop_->status().command[kX], before) << "it goes back";
+    }
+  }
 }
 
 TEST_F(ProbingCycles, AStopBeforeATouchRefusesIt) {
@@ -204,24 +200,27 @@ TEST_F(ProbingCycles, ToothNeedsTheOffsetOfX) {
 }
 
 TEST_F(ProbingCycles, GoalsThatAreWrongAreRefused) {
-  flute_grinder::ProbeGoal good = goal(flute_grinder::ProbeGoal::DIAMETER, 0.005);
-  EXPECT_EQ(goalRefusal(good), "");
-  EXPECT_EQ(goalRefusal(goal(3, 0.005)), "cycle = 3; allowed: 0 to 2");
-  for (const double wrong : {0.0, -0.1, std::nan(""), HUGE_VAL}) {
-    EXPECT_CONTAINS(goalRefusal(goal(flute_grinder::ProbeGoal::END_FACE, wrong)), "; allowed: finite, and above 0");
-  }
-  EXPECT_EQ(goalRefusal(goal(flute_grinder::ProbeGoal::TOOTH, 0.1)), "set_offset = false; allowed: true, for TOOTH");
+  using Goal = flute_grinder::ProbeGoal;
+  const Goal free = goal(Goal::DIAMETER, 0.005);
+  Goal good = free;
   good.set_offset = 1;
-  EXPECT_CONTAINS(goalRefusal(good), "diameter = 0");
   good.diameter = 0.01;
-  EXPECT_CONTAINS(goalRefusal(good), "allowed: ");  // without a job
   good.job = goalFromJob(readJobFile("test/jobs/paper.yaml"));
-  EXPECT_EQ(goalRefusal(good), "");
-  good.flange = std::nan("");
-  EXPECT_EQ(goalRefusal(good), "flange = nan; allowed: finite");
-  good.flange = 0;
-  good.set_by = "a\x1b[2J";
-  EXPECT_CONTAINS(goalRefusal(good), "set_by has 5 characters; allowed: ");
+  for (const Goal& right : {free, good}) EXPECT_EQ(goalRefusal(right), "");
+  const auto with = [&](const std::function<void(Goal&)>& change) {
+    Goal goal = good;
+    change(goal);
+    return goalRefusal(goal);
+  };
+  EXPECT_EQ(with([](Goal& g) { g.cycle = 3; }), "cycle = 3; allowed: 0 to 2");
+  for (const double wrong : {0.0, -0.1, std::nan(""), HUGE_VAL}) {
+    EXPECT_CONTAINS(with([&](Goal& g) { g.within = wrong; }), "; allowed: finite, and above 0");
+  }
+  EXPECT_EQ(goalRefusal(goal(Goal::TOOTH, 0.1)), "set_offset = false; allowed: true, for TOOTH");
+  EXPECT_CONTAINS(with([](Goal& g) { g.diameter = 0; }), "diameter = 0");
+  EXPECT_CONTAINS(with([](Goal& g) { g.job = {}; }), "allowed: ");
+  EXPECT_EQ(with([](Goal& g) { g.flange = std::nan(""); }), "flange = nan; allowed: finite");
+  EXPECT_CONTAINS(with([](Goal& g) { g.set_by = "a\x1b[2J"; }), "set_by has 5 characters; allowed: ");
 }
 
 }  // namespace test_probing_cycles

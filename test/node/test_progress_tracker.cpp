@@ -1,8 +1,7 @@
-#include "flute_grinder/job/job_file.h"
 #include "node/progress_tracker.h"
 
 #include "control/fixtures.h"
-#include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/job_file.h"
 #include "soon.h"
 #include "temp_folder.h"
 
@@ -67,8 +66,8 @@ class ProgressTrackerTest : public ::testing::Test {
     EXPECT_EQ(need->answers, std::vector{NeedAnswer::kDiscard});
     return need->text;
   }
-  std::string refusal(const std::string& digest, const ToothPass& first, bool discard = false) const {
-    return refusal(tracker_, digest, first, discard);
+  std::string refusal(const std::string& digest, const ToothPass& first) const {
+    return refusal(tracker_, digest, first);
   }
   std::string offsetRefusal(const std::string& digest, const Axes& offset) {
     WorkOffsets offsets = now_;
@@ -96,32 +95,26 @@ class ProgressTrackerTest : public ::testing::Test {
   WorkOffsets now_;  ///< with wheel and tool
 };
 
-TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEnded) {
+TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEndedHowTheJobDidAndItsFeedOverride) {
+  status_.feed_override = 0.36;
+  tracker_.update(status_);
   begin(two_, "job");
   EXPECT_EQ(onDisk().next.pass, 0);
+  EXPECT_EQ(onDisk().feed_override, 0.36) << "before its first stroke";
   EXPECT_TRUE(onDisk().wheel.in_work) << "until its end";
+  status_.feed_override = 0.8;
   endStroke(two_, 0);
   EXPECT_EQ(onDisk().next.pass, 1);
+  EXPECT_EQ(onDisk().feed_override, 0.8);
   EXPECT_FALSE(onDisk().finished);
   endStroke(two_, 1);
   EXPECT_TRUE(onDisk().finished);
+  EXPECT_EQ(onDisk().end, "") << "as long as it runs";
   EXPECT_EQ(onDisk().tool_digest, "tool of job");
   EXPECT_EQ(onDisk().tool_operation, 1);
   EXPECT_DOUBLE_EQ(onDisk().x, two_.strokeTo());
   tracker_.end(status_, "canceled");
   EXPECT_FALSE(onDisk().wheel.in_work);
-}
-
-TEST_F(ProgressTrackerTest, EntersHowAJobEndedAndItsFeedOverride) {
-  status_.feed_override = 0.36;
-  tracker_.update(status_);
-  begin(two_, "job");
-  EXPECT_EQ(onDisk().feed_override, 0.36) << "before its first stroke";
-  EXPECT_EQ(onDisk().end, "") << "as long as it runs";
-  status_.feed_override = 0.8;
-  endStroke(two_, 0);
-  EXPECT_EQ(onDisk().feed_override, 0.8);
-  tracker_.end(status_, "canceled");
   EXPECT_EQ(onDisk().end, "canceled");
   begin(two_, "next");
   EXPECT_EQ(onDisk().end, "");
@@ -168,8 +161,8 @@ TEST_F(ProgressTrackerTest, AnUnfinishedJobIsInTheWayOfEveryOtherAndAFinishedOne
 TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) {
   const GrindProgram three = program(3);
   const auto isRefused = [&](const std::string& digest, const ToothPass& first) {
-    const std::string refused = refusal(digest, first), discarding = refusal(digest, first, true);
-    EXPECT_EQ(refused, discarding) << "what is discarded is not ground";
+    const std::string refused = refusal(digest, first);
+    EXPECT_EQ(refused, refusal(tracker_, digest, first, true)) << "what is discarded is not ground";
     return refused.find("allowed: tooth 1, pass 1, or where the journal has left the job") != std::string::npos;
   };
   EXPECT_TRUE(isRefused("job", {0, 1})) << "nothing is ground";
@@ -178,7 +171,7 @@ TEST_F(ProgressTrackerTest, AJobBeginsAtItsFirstPassOrWhereTheJournalHasLeftIt) 
   EXPECT_TRUE(isRefused("job", {0, 2}));
   EXPECT_TRUE(isRefused("job", {1, 0}));
   EXPECT_TRUE(isRefused("other", {0, 1}));
-  EXPECT_EQ(refusal("job", kFirst, true), "");
+  EXPECT_EQ(refusal(tracker_, "job", kFirst, true), "");
   grind(three, "job", 3);
   EXPECT_TRUE(isRefused("job", {0, 2})) << "it is finished";
 }
@@ -215,28 +208,30 @@ TEST_F(ProgressTrackerTest, AJournalThatCannotBeReadIsInTheWayEvenIfDiscardedUnt
   }));
 }
 
-TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsOnly) {
+TEST_F(ProgressTrackerTest, AJobIsContinuedWithItsWorkOffsetsWheelAndToolOnly) {
   const Axes offset(0.1, 0.03, 0, 0.5);
   const GrindProgram shifted = program(2, offset);
   grind(shifted, "job", 1);
   EXPECT_TRUE((onDisk().offset == offset).all());
-  EXPECT_EQ(offsetRefusal("job", offset), "");
   EXPECT_EQ(offsetRefusal("other", Axes::Zero()), "") << "other jobs are refused for another reason";
+  const std::string unfinished = "the job is not finished, and ";
   EXPECT_EQ(offsetRefusal("job", {0.1, 0.03125, 0, 0}),
-            "the job is not finished, and it began with other work offsets; that of axis Y was 30 mm and is 31.25 mm; "
-            "that of axis A was 28.6478898 deg and is 0 deg; set them as they were, or discard the job");
-  EXPECT_EQ(offsetRefusal("job", {0.1 + 0.9e-7, 0.03 - 0.9e-7, 0, 0.5 + 0.9e-6}), "");
+            unfinished +
+                "it began with other work offsets; that of axis Y was 30 mm and is 31.25 mm; "
+                "that of axis A was 28.6478898 deg and is 0 deg; set them as they were, or discard the job");
+  for (const Axes& same : {offset, Axes(0.1 + 0.9e-7, 0.03 - 0.9e-7, 0, 0.5 + 0.9e-6)}) {
+    EXPECT_EQ(offsetRefusal("job", same), "") << same.transpose();
+  }
   for (const Axes& other : {Axes(0.1 + 1.1e-7, 0.03, 0, 0.5), Axes(0.1, 0.03, -1.1e-7, 0.5),
                             Axes(0.1, 0.03, 0, 0.5 - 1.1e-6), Axes(std::nan(""), 0.03, 0, 0.5)}) {
     EXPECT_NE(offsetRefusal("job", other), "") << other.transpose();
   }
   ++now_.wheel.mounting;
   EXPECT_EQ(offsetRefusal("job", offset),
-            "the job is not finished, and another wheel has been mounted since it began; discard the job");
+            unfinished + "another wheel has been mounted since it began; discard the job");
   --now_.wheel.mounting;
   ++now_.tool.clamping;
-  EXPECT_EQ(offsetRefusal("job", offset),
-            "the job is not finished, and a tool was clamped since it began; discard the job");
+  EXPECT_EQ(offsetRefusal("job", offset), unfinished + "a tool was clamped since it began; discard the job");
   grind(shifted, "job", 2);
   EXPECT_EQ(offsetRefusal("job", Axes::Zero()), "") << "it is finished";
   EXPECT_TRUE(onDisk().finished);

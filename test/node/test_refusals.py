@@ -8,7 +8,8 @@ from flute_grinder.msg import GrinderState, GrindResult
 import grinder_client as gc
 from grinder_client import DEG, MM, X, grinder
 
-# Of what only a message can ask for, and of each kind of refusal one: name, changed fields, goal's own fields, code, patterns that the text must match.
+# Of what only a message can ask for, and of each kind of refusal one: name, changed fields, goal's own fields, code, patterns that
+# the text must match.
 CASES = [
     ('cut', {'cutter.cut': 2}, {}, 'INVALID_GOAL', [r'cutter\.cut = 2; allowed: 0 to 1']),
     ('wheel_point_without_a_radius',
@@ -27,13 +28,10 @@ CASES = [
 ]
 
 
-class TestBadGoals(unittest.TestCase):
-    def setUp(self):
-        grinder().make_ready()
-
+class TestRefusals(unittest.TestCase):
     def test_each_is_refused_nothing_moves_and_the_next_good_goal_runs(self):
         g = grinder()
-        rest = g.wait_rest()
+        rest = g.make_ready()
         batches, joints = len(g.batches), len(g.joints)
         for name, changes, fields, code, patterns in CASES:
             with self.subTest(name):
@@ -46,27 +44,20 @@ class TestBadGoals(unittest.TestCase):
                 self.assertEqual('; '.join(reason.text for reason in plan.reasons), run.text)
                 for pattern in patterns:
                     self.assertRegex(run.text, pattern)
+        # Every number is refused by the name of its field.
+        for field, value in gc.PAPER.items():
+            wrong = {float: 1e6, int: 200}.get(type(value))
+            if wrong is not None:
+                plan = g.plan(gc.goal_of(dict(gc.MOTION, **{field: wrong})))
+                self.assertIn((field, wrong), [(reason.field, reason.value) for reason in plan.reasons])
+        # Faults that there are not cannot be injected.
+        for fault, axis, named in (('earthquake', X, 'fault = earthquake; allowed: none, emergency_stop'),
+                                   ('stuck_axis', 4, 'axis = 4; allowed: 0 to 3 for X, Y, Z, A')):
+            reply = g.inject(fault, axis)
+            self.assertFalse(reply.success)
+            self.assertIn(named, reply.message)
         self.assertEqual(g.fresh_state().state, GrinderState.READY)
         self.assertEqual(len(g.batches), batches)
         self.assertEqual({gc.axes_of(joint) for joint in g.joints[joints:]}, {tuple(rest)})
         run = g.run(gc.SHORT)
         self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
-
-    def test_every_number_is_refused_by_the_name_of_its_field(self):
-        for field, value in gc.PAPER.items():
-            wrong = {float: 1e6, int: 200}.get(type(value))
-            if wrong is not None:
-                plan = grinder().plan(gc.goal_of(dict(gc.MOTION, **{field: wrong})))
-                self.assertIn((field, wrong), [(reason.field, reason.value) for reason in plan.reasons])
-
-
-class TestInjection(unittest.TestCase):
-    def test_unknown_fault_cannot_be_injected(self):
-        grinder().make_ready()
-        for fault, axis, named in (('earthquake', X, 'fault = earthquake; allowed: none, emergency_stop'),
-                                   ('stuck_axis', 4, 'axis = 4; allowed: 0 to 3 for X, Y, Z, A')):
-            reply = grinder().inject(fault, axis)
-            self.assertFalse(reply.success)
-            self.assertIn(named, reply.message)
-        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-

@@ -38,31 +38,28 @@ def change_emergency_stop(pressed):
 
 
 class TestRest(unittest.TestCase):
-    def tearDown(self):
-        grinder().take_faults_back()
+    def setUp(self):
+        self.addCleanup(grinder().take_faults_back)
+        self.at = grinder().make_ready()
 
     def test_nothing_changes(self):
         g = grinder()
-        at = g.make_ready()
         for messages in (g.joints, g.states):
             wait_for_fewer(messages)
             seen = len(messages)
             g.wait_for(lambda: len(messages) >= seen + 10, 'what is reported at rest')
             # A message may come late, and the next one in time.
             self.assertGreater(statistics.mean(intervals(messages[seen:])), REST - TICK / 2)
-        self.assertEqual(g.positions(), at)
+        self.assertEqual(g.positions(), self.at)
 
     def test_a_change_is_reported_at_once(self):
-        g = grinder()
-        g.make_ready()
-        self.assertTrue(g.disable().success)
+        self.assertTrue(grinder().disable().success)
         # By the next looks, and not with the next message that is due, which a host that stalls may hide for a while.
         pressed = itertools.cycle((True, False))
         gc.poll(lambda: change_emergency_stop(next(pressed)) < REST / 2, 'a change that is reported at once')
 
-    def test_axis_moves(self):
+    def test_axis_moves_and_a_goal_is_worked_on(self):
         g = grinder()
-        g.make_ready()
         wait_for_fewer(g.joints)
         seen = len(g.joints)
         step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN)
@@ -72,11 +69,7 @@ class TestRest(unittest.TestCase):
         self.assertLess(statistics.median(intervals(moving)), REST / 4)
         states = [s for s in g.states if s.state == GrinderState.JOGGING]
         self.assertLess(statistics.median(intervals(states)), 3 * REST / 4)
-
-    def test_goal_is_worked_on(self):
-        """Though the axes do not move yet, as while the spindle runs up."""
-        g = grinder()
-        g.make_ready()
+        # Though the axes do not move yet, as while the spindle runs up.
         wait_for_fewer(g.joints)
         seen = len(g.joints)
         run = g.send(gc.SHORT).wait_complete()

@@ -22,17 +22,45 @@ CLEAR_LINE = '\r\x1b[K'
 LINE = re.compile(r'\[(#*\.*)\]   {,2}(\d+) %  (\w+)  tooth (\d+)/(\d+)  pass (\d+)/(\d+)  X +-?\d+\.\d{3} mm  \d+ mm/min  '
                   r'\d+:\d\d left')
 
-
-# The override at which a stroke of the paper's job takes 20 s, at pace 5.
-SLOW = 0.03
-SLOW_AT_PACE_1 = 5 * SLOW
+# The overrides of what is ahead of a stroke, and in it, at which the paper's takes 20 s at pace 5.
+AHEAD, SLOW = 0.1, 0.03
 
 
-class TestBar(RunTest):
-    def setUp(self):
-        super().setUp()
-        grinder().make_ready()
+class SlowRun(RunTest):
+    """With a job in its stroke, in which there is time to interfere."""
 
+    def into_stroke(self, *arguments, client=None, **options):
+        """The paper's job, whatever the journal keeps; with how many batches there were ahead of it."""
+        client = client or grinder()
+        client.make_ready(AHEAD)
+        seen = len(client.batches)
+        command = self.grind('--node', client.name, *RUN, PAPER_JOB, *arguments, **options)
+        self.slow_down(client, seen)
+        return command, seen
+
+    def slow_down(self, client, seen):
+        self.wait_in_stroke(client, seen)
+        self.assertTrue(client.set_feed_override(SLOW).success)
+
+    def check_stopped(self, seen):
+        """Whatever has ended it, the machine comes to rest."""
+        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
+        setpoints = [s for batch in grinder().batches_of_goal(seen) for s in batch.setpoints]
+        stopped = [s for s in setpoints if s.move != LIFT][-1]
+        self.assertEqual(stopped.move, STROKE)
+        self.assertLess(stopped.position[X], 30 * MM)
+        self.assertEqual(setpoints[-1].move, LIFT)
+        self.assertFalse(grinder().fresh_state().wheel_in_work)
+        self.assertEqual(len(set(grinder().positions_over(0.1))), 1)
+
+    def check_file(self, lines, command):
+        """That it has every setpoint."""
+        cycles = [line.split(',')[0] for line in lines]
+        self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
+        self.assertRegex(command.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
+
+
+class TestBar(SlowRun):
     def check_lines(self, text, terminal, teeth, passes):
         """A line for each tenth and each state."""
         lines = [line for line in text.split(terminal) if 'tooth' in line]
@@ -51,20 +79,17 @@ class TestBar(RunTest):
             self.assertEqual(len(m.group(1)), 30)
             self.assertAlmostEqual(len(m.group(1).rstrip('.')) / 30, int(m.group(2)) / 100, delta=1 / 30 + 0.01)
 
-    def test_file_gets_lines_without_control_characters(self):
-        command = self.grind(*RUN, self.short_job(teeth=2, depth_mm=0.4, infeed_mm=0.2))
-        self.assertEqual(command.end(), 0, command.text)
-        self.assertNotRegex(command.text, '[^\n -~]')
-        self.assertTrue(command.text.endswith('\n'))
-        self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
-        self.check_lines(command.text, '\n', 2, 2)
-
-    def test_dumb_terminal_counts_as_a_file(self):
-        command = self.grind(*RUN, self.short_job(), columns=80, term='dumb')
-        self.assertEqual(command.end(), 0, command.text)
+    def test_file_and_dumb_terminal_get_lines_without_control_characters(self):
+        grinder().make_ready(SLOW)
         # The newlines are the terminal's.
-        self.assertNotRegex(command.text.replace('\r\n', '\n'), '[^\n -~]')
-        self.check_lines(command.text, '\r\n', 1, 1)
+        for newline, of_two, options in (('\n', dict(teeth=2, depth_mm=0.4, infeed_mm=0.2), {}),
+                                         ('\r\n', {}, dict(columns=80, term='dumb'))):
+            command = self.grind(*RUN, self.short_job(**of_two), **options)
+            self.assertEqual(command.end(), 0, command.text)
+            self.assertNotRegex(command.text.replace(newline, '\n'), '[^\n -~]')
+            self.assertTrue(command.text.endswith(newline))
+            self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
+            self.check_lines(command.text, newline, *((2, 2) if of_two else (1, 1)))
 
     def drawn(self, command):
         """The lines as they stood on the terminal one after the other, torn nowhere."""
@@ -102,40 +127,28 @@ class TestBar(RunTest):
             self.assertRegex(line, r'^[ \d]{2}\d %  \w+')
         self.assertRegex(lines[-1], r'^100 %')
 
-    def test_messages_do_not_tear_the_line(self):
-        grinder().make_ready(SLOW)
-        command, _ = self.grind_into_stroke(columns=200)
+    def test_ctrl_z_holds_on_the_path_and_messages_do_not_tear_the_line(self):
+        command, _ = self.into_stroke(columns=200)
+        command.send(signal.SIGTSTP)
+        grinder().wait_state(GrinderState.HELD)
+        command.wait_text('  held  ')
+        self.assertLess(grinder().wait_rest()[X], 30 * MM)
+        self.assertEqual(gc.grind('resume').returncode, 0)
+        grinder().wait_state(GrinderState.RUNNING)
         grinder().inject('coolant_lost')
         command.wait_text('  retracted  ')
         command.send(signal.SIGINT)
         self.assertEqual(command.end(), 1)
         lines = self.drawn(command)
         others = [line for line in lines if not LINE.fullmatch(line) and not re.search('  planning \\d+ %$', line)]
-        self.assertEqual(others[:3], ['the feed override is 3 %', "held: no coolant flows; once cleared, 'grind resume' continues",
-                                      'canceling: waiting for the stop'])
-        self.assertRegex(others[3], r'^canceled; stopped on the path')
-        self.assertEqual(len(others), 4)
+        self.assertEqual(others[:-1], ['the feed override is 10 %', "holding: 'grind resume' goes on, Ctrl-C cancels",
+                                       "held: no coolant flows; once cleared, 'grind resume' continues", 'canceling: waiting for the stop'])
+        self.assertRegex(others[-1], r'^canceled; stopped on the path')
 
 
-class TestEnd(RunTest):
-    """Whatever ends it, the machine comes to rest."""
-
-    def setUp(self):
-        super().setUp()
-        grinder().make_ready(SLOW)
-
-    def check_stopped(self, seen):
-        self.assertEqual(grinder().fresh_state().state, GrinderState.READY)
-        setpoints = [s for batch in grinder().batches_of_goal(seen) for s in batch.setpoints]
-        stopped = [s for s in setpoints if s.move != LIFT][-1]
-        self.assertEqual(stopped.move, STROKE)
-        self.assertLess(stopped.position[X], 30 * MM)
-        self.assertEqual(setpoints[-1].move, LIFT)
-        self.assertFalse(grinder().fresh_state().wheel_in_work)
-        self.assertEqual(len(set(grinder().positions_over(0.1))), 1)
-
+class TestEnd(SlowRun):
     def test_terminal_that_goes_away(self):
-        command, seen = self.grind_into_stroke(columns=80)
+        command, seen = self.into_stroke(columns=80)
         command.send(signal.SIGHUP)
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'canceled; stopped on the path \(stroke, .* mm\) \(code -11\)')
@@ -146,26 +159,49 @@ class TestEnd(RunTest):
             default_signals()
             signal.signal(signal.SIGHUP, signal.SIG_IGN)
 
-        command, seen = self.grind_into_stroke(before=nohup)
+        command, seen = self.into_stroke(before=nohup)
         command.send(signal.SIGHUP)
         self.assertEqual(grinder().fresh_state().state, GrinderState.RUNNING)
         command.send(signal.SIGTERM)
         self.assertEqual(command.end(), 1)
         self.check_stopped(seen)
 
+    def start_with(self, stdout, stderr):
+        grinder().make_ready(AHEAD)
+        seen = len(grinder().batches)
+        process = subprocess.Popen([gc.program('grind'), *RUN, PAPER_JOB], stdout=stdout, stderr=stderr, preexec_fn=default_signals)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        self.slow_down(grinder(), seen)
+        return process, seen
+
     def test_reader_of_its_words_that_has_ended(self):
         """As `grind run JOB 2>&1 | tee log`, where Ctrl-C ends tee too."""
-        seen = len(grinder().batches)
-        process = subprocess.Popen([gc.program('grind'), *RUN, PAPER_JOB], stdout=subprocess.PIPE,
-                                   stderr=subprocess.STDOUT, preexec_fn=default_signals)
-        self.wait_in_stroke(grinder(), seen)
+        process, seen = self.start_with(subprocess.PIPE, subprocess.STDOUT)
         process.stdout.close()
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=gc.PATIENCE), 1)
         self.check_stopped(seen)
 
+    def test_terminal_that_stands_still_holds_up_no_stop(self):
+        reader, writer = os.pipe()
+        os.set_blocking(writer, False)
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                os.write(writer, b'.')
+        os.set_blocking(writer, True)
+        process, seen = self.start_with(subprocess.DEVNULL, writer)
+        os.close(writer)
+        process.send_signal(signal.SIGINT)
+        grinder().wait_state(GrinderState.READY)
+        with open(reader, 'rb') as pipe:
+            text = pipe.read().decode().lstrip('.')
+        self.assertEqual(process.wait(gc.PATIENCE), 1)
+        self.assertRegex(text, r'\ncanceling: waiting for the stop\n(.*\n)*canceled; stopped on the path ')
+        self.check_stopped(seen)
+
     def test_killed_it_leaves_the_job_to_others(self):
-        command, seen = self.grind_into_stroke()
+        command, seen = self.into_stroke()
         command.send(signal.SIGKILL)
         command.end()
         self.assertEqual(grinder().fresh_state().state, GrinderState.RUNNING)
@@ -173,14 +209,12 @@ class TestEnd(RunTest):
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.check_stopped(seen)
         done = gc.grind('cancel')
-        self.assertEqual(done.returncode, 1)
-        self.assertEqual(done.stderr,
-                         'cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog; '
-                         'a job that was being planned is canceled\n')
-
+        self.assertEqual((done.returncode, done.stderr), (
+            1, 'cancel refused: the machine is in state ready; allowed: enable, disable, home, start (grind run), lift, jog; '
+            'a job that was being planned is canceled\n'))
 
     def test_grinder_that_no_longer_knows_the_job(self):
-        command, seen = self.grind_into_stroke()
+        command, seen = self.into_stroke()
         statuses = gc.publisher(self.addCleanup, '/grinder/grind/status', GoalStatusArray)
         # As of a new process.
         gc.poll(lambda: statuses.publish(GoalStatusArray()) or command.process.poll() is not None, 'its end')
@@ -190,32 +224,8 @@ class TestEnd(RunTest):
         self.check_stopped(seen)
 
 
-class TestStuck(RunTest):
-    """Whoever takes what it says or writes takes no more for a while."""
-
-    def test_terminal_that_stands_still_holds_up_no_stop(self):
-        grinder().make_ready(SLOW)
-        seen = len(grinder().batches)
-        reader, writer = os.pipe()
-        os.set_blocking(writer, False)
-        with contextlib.suppress(BlockingIOError):
-            while True:
-                os.write(writer, b'.')
-        os.set_blocking(writer, True)
-        process = subprocess.Popen([gc.program('grind'), *RUN, PAPER_JOB], stdout=subprocess.PIPE, stderr=writer,
-                                   preexec_fn=default_signals)
-        os.close(writer)
-        self.addCleanup(process.stdout.close)
-        self.addCleanup(process.kill)
-        self.wait_in_stroke(grinder(), seen)
-        process.send_signal(signal.SIGINT)
-        grinder().wait_state(GrinderState.READY)
-        with open(reader, 'rb') as pipe:
-            text = pipe.read().decode().lstrip('.')
-        self.assertEqual(process.wait(gc.PATIENCE), 1)
-        self.assertRegex(text, r'\ncanceling: waiting for the stop\n(.*\n)*canceled; stopped on the path ')
-        last = grinder().batches[-1].setpoints[-1]
-        self.assertLess(last.position[X], 30 * MM)
+class TestRecord(SlowRun):
+    """The file of `--csv`, and the figures that stand for it."""
 
     def test_disk_that_stands_still_loses_no_setpoint(self):
         grinder().make_ready()
@@ -228,68 +238,39 @@ class TestStuck(RunTest):
         command.wait_text('100 %')
         grinder().wait_state(GrinderState.READY)
         os.set_blocking(reader, True)
-        with open(reader) as lines:
-            cycles = [line.split(',')[0] for line in lines]
+        with open(reader) as file:
+            lines = list(file)
         self.assertEqual(command.end(), 0, command.text)
-        self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
-        self.assertRegex(command.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
-
-
-class TestHold(RunTest):
-    def test_ctrl_z_holds_on_the_path_and_does_not_suspend(self):
-        grinder().make_ready(SLOW)
-        command, _ = self.grind_into_stroke()
-        command.send(signal.SIGTSTP)
-        command.wait_text("holding: 'grind resume' goes on, Ctrl-C cancels\n")
-        grinder().wait_state(GrinderState.HELD)
-        command.wait_text('  held  ')
-        held = grinder().wait_rest()
-        self.assertLess(held[X], 30 * MM)
-        self.assertTrue(grinder().set_feed_override(1).success)
-        self.assertEqual(gc.grind('resume').returncode, 0)
-        self.assertEqual(command.end(), 0, command.text)
-
-
-class TestRecord(RunTest):
-    """The file of `--csv`, and the figures that stand for it."""
-
-    def setUp(self):
-        super().setUp()
-        grinder().make_ready()
-        self.csv = os.path.join(self.folder, 'streamed.csv')
+        self.check_file(lines, command)
 
     def test_second_run_leaves_the_first_and_its_file_alone(self):
-        grinder().make_ready(SLOW)
-        first, _ = self.grind_into_stroke('--csv', self.csv)
-        for csv in (self.csv, os.path.join(self.folder, 'second.csv')):
-            second = self.grind(*RUN, PAPER_JOB, '--csv', csv)
-            self.assertEqual(second.end(), 1)
-            self.assertRegex(second.text, r'\(code -12\)\n$')
-            self.assertEqual(second.stdout, '')
+        csv = os.path.join(self.folder, 'streamed.csv')
+        first, _ = self.into_stroke('--csv', csv)
+        second = self.grind(*RUN, PAPER_JOB, '--csv', csv)
+        self.assertEqual(second.end(), 1)
+        self.assertRegex(second.text, r'\(code -12\)\n$')
+        self.assertEqual(second.stdout, '')
         self.assertTrue(grinder().set_feed_override(1).success)
         self.assertEqual(os.listdir(self.folder), [])
         self.assertEqual(first.end(), 0, first.text)
-        with open(self.csv) as lines:
-            cycles = [line.split(',')[0] for line in lines]
-        self.assertEqual(cycles, ['cycle'] + [str(i) for i in range(len(cycles) - 1)])
-        self.assertRegex(first.stdout, r'(?m)^streamed +%d setpoints in \S+ s, 0 missed$' % (len(cycles) - 1))
+        with open(csv) as lines:
+            self.check_file(lines, first)
 
-    def test_full_disk_hides_no_emergency_stop(self):
-        grinder().make_ready(SLOW)
-        command, _ = self.grind_into_stroke('--csv', '/dev/full')
+    def test_full_disk_is_no_success_and_hides_no_emergency_stop(self):
+        grinder().make_ready()
+        full = '/dev/full: write failed: No space left on device\n'
+        command = self.grind(*RUN, self.short_job(), '--csv', '/dev/full')
+        self.assertEqual(command.end(), 1)
+        self.assertTrue(command.text.endswith('\n' + full), command.text)
+        command, _ = self.into_stroke('--csv', '/dev/full')
         grinder().inject('emergency_stop')
         self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'emergency stop \(stroke, .* mm\) \(code -9\)\n'
-                                       r'/dev/full: write failed: No space left on device\n$')
+        self.assertRegex(command.text, r'emergency stop \(stroke, .* mm\) \(code -9\)\n' + full + '$')
         self.assertRegex(command.stdout, r'(?m)^streamed +\d+ setpoints in \S+ s, 0 missed$')
         self.assertNotIn('setpoints written to', command.stdout)
 
-    def test_full_disk_is_no_success(self):
-        command = self.grind(*RUN, self.short_job(), '--csv', '/dev/full')
-        self.assertEqual(command.end(), 1)
-        self.assertRegex(command.text, r'\n/dev/full: write failed: No space left on device\n$')
-
     def test_file_that_cannot_be_made_is_refused_before_anything_moves(self):
+        grinder().make_ready()
         seen = len(grinder().batches)
         for path in (os.path.join(self.folder, 'no/such/folder.csv'), self.folder):
             command = self.grind(*RUN, PAPER_JOB, '--csv', path)
@@ -302,42 +283,34 @@ class TestRecord(RunTest):
         self.assertEqual(len(grinder().batches), seen)
 
 
-class TestOwnNode(RunTest, gc.OwnNode):
+class TestOwnNode(SlowRun, gc.OwnNode):
     """With a grinder of its own, which is ill-treated."""
-
-    def start_node(self, **hardware):
-        parameters = gc.machine()
-        parameters['hardware'].update(hardware)
-        self.start(parameters)
-        self.addCleanup(self.node.process.send_signal, signal.SIGCONT)
-
-    def start_run(self):
-        self.client.make_ready(SLOW_AT_PACE_1)
-        return self.grind_into_stroke(client=self.client)[0]
 
     def check_lost(self, command):
         self.assertEqual(command.end(), 1)
         self.assertRegex(command.text, r'(?m)^the connection to the grinder is lost: ')
 
-    def test_grinder_that_hangs_while_it_is_to_stop(self):
-        self.start_node()
-        command = self.start_run()
+    def test_grinder_that_hangs_while_it_is_to_stop_and_one_that_was_killed(self):
+        self.start(gc.machine(pace=5))
+        command, _ = self.into_stroke(client=self.client)
         self.node.process.send_signal(signal.SIGSTOP)
-        command.send(signal.SIGINT)
-        command.wait_text('\ncanceling: waiting for the stop\n')
-        command.send(signal.SIGINT)
-        command.wait_text('\ncanceling: still waiting for the stop; the machine is running\n')
-        self.check_lost(command)
-
-    def test_grinder_that_was_killed(self):
-        self.start_node()
-        command = self.start_run()
+        try:
+            command.send(signal.SIGINT)
+            command.wait_text('\ncanceling: waiting for the stop\n')
+            command.send(signal.SIGINT)
+            command.wait_text('\ncanceling: still waiting for the stop; the machine is running\n')
+            self.check_lost(command)
+        finally:
+            self.node.process.send_signal(signal.SIGCONT)
+        command, _ = self.into_stroke(client=self.client)
         self.node.process.kill()
         self.check_lost(command)
 
     def test_interrupt_breaks_homing_off(self):
-        slow = dict(gc.machine()['hardware']['axis_x'], homing_velocity=1e-3, home_position=0.02)
-        self.start_node(absolute_encoders=False, axis_x=slow)
+        parameters = gc.machine()
+        parameters['hardware']['absolute_encoders'] = False
+        parameters['hardware']['axis_x'].update(homing_velocity=1e-3, home_position=0.02)
+        self.start(parameters)
         self.assertTrue(self.client.enable().success)
         command = self.grind('--node', self.node.name, 'home')
         self.client.wait_state(GrinderState.HOMING)

@@ -54,8 +54,8 @@ class TestSwivel(gc.OwnNode):
         g.wait_state(GrinderState.READY)
         return g
 
-    def send(self, job=gc.SHORT, **fields):
-        return self.client.send(job, confirm=False, **fields)
+    def send(self, **fields):
+        return self.client.send(gc.SHORT, confirm=False, **fields)
 
     def check_refused(self, text):
         """The goal and the command line's job are refused at once, and nothing moves."""
@@ -69,10 +69,6 @@ class TestSwivel(gc.OwnNode):
         self.assertEqual(self.client.fresh_state().state, GrinderState.READY)
         self.assertEqual(self.client.wait_rest(), rest)
 
-    def check_runs(self, job=gc.SHORT, **fields):
-        run = self.send(job, **fields).wait_complete()
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', GrindResult.SUCCESSFUL), run.text)
-
     def test_confirmed_by_an_operator(self):
         g = self.start_ready()
         self.check_refused('the swivel is not confirmed; ' + TO_SET)
@@ -82,14 +78,29 @@ class TestSwivel(gc.OwnNode):
         self.assertRegex(self.said('status'), r'(?m)^swivel +not confirmed$')
         status = self.json('status')
         self.assertEqual((status['swivel_deg'], status['swivel_measured']), (None, False))
-        self.check_runs(dry_run=True)
-        for angle in ('-31.769', '31.769'):
+        self.assertEqual(self.send(dry_run=True).wait().status, 'SUCCEEDED')
+        for angle in ('31.769', '-31.769'):
             self.grind(0, 'confirm-swivel', angle)
             self.assertAlmostEqual(g.fresh_state().swivel, float(angle) * DEG, delta=1e-15)
-        self.assertRegex(self.said('status'), r'(?m)^swivel +31\.769 deg, confirmed$')
-        status = self.json('status')
-        self.assertAlmostEqual(status['swivel_deg'], 31.769, delta=1e-12)
-        self.check_runs()
+        self.assertRegex(self.said('status'), r'(?m)^swivel +-31\.769 deg, confirmed$')
+        self.assertAlmostEqual(self.json('status')['swivel_deg'], -31.769, delta=1e-12)
+        self.check_answers_to_what_was_shown()
+
+    def check_answers_to_what_was_shown(self):
+        """A goal is sent again with them."""
+        rejected = self.send(answers=['discard']).wait()
+        needs = rejected.result.plan.needs
+        self.assertEqual([need.name for need in needs], ['wheel', 'offsets', 'swivel'])
+        answers = ['discard'] + [need.answers[-1].id for need in needs]
+        # Somebody else sets a zero point before it is answered: what was shown is no longer so.
+        self.assertTrue(self.client.set_offset(gc.X, 0.001).success)
+        again = self.send(answers=answers).wait()
+        self.assertEqual([need.name for need in again.result.plan.needs], ['offsets'])
+        offsets = rospy.wait_for_message('/%s/offsets' % self.node.name, WorkOffsets, gc.PATIENCE)
+        self.assertEqual(offsets.wheel.diameter, 100 * gc.MM, 'that was answered')
+        run = self.send(answers=answers + [again.result.plan.needs[0].answers[-1].id]).wait()
+        self.assertEqual(run.status, 'SUCCEEDED', run.text)
+        self.assertAlmostEqual(self.client.fresh_state().swivel, gc.part_of(gc.goal_of(gc.SHORT), 'process').setup_swivel, delta=1e-12)
 
     def test_measured_by_the_drive(self):
         g = self.start_ready(31.8)
@@ -100,19 +111,3 @@ class TestSwivel(gc.OwnNode):
         done = self.grind(1, 'confirm-swivel', '31.769')
         self.assertEqual(done.stderr, 'confirm-swivel refused: the drive measures the swivel, which is at 31.8 deg; '
                                       'nothing is to be confirmed\n')
-
-    def test_a_goal_is_sent_again_with_the_answers_to_what_was_shown(self):
-        self.start_ready()
-        rejected = self.send(answers=['discard']).wait()
-        wheel, zeros, swivel = rejected.result.plan.needs
-        self.assertEqual([need.name for need in (wheel, zeros, swivel)], ['wheel', 'offsets', 'swivel'])
-        answers = [need.answers[-1].id for need in (wheel, zeros, swivel)]
-        # Somebody else sets a zero point before it is answered: what was shown is no longer so.
-        self.assertTrue(self.client.set_offset(gc.X, 0.001).success)
-        again = self.send(answers=['discard'] + answers).wait()
-        self.assertEqual([need.name for need in again.result.plan.needs], ['offsets'])
-        self.assertEqual(rospy.wait_for_message('/%s/offsets' % self.node.name, WorkOffsets, gc.PATIENCE).wheel.diameter, 100 * gc.MM, 'that was answered')
-        answers.append(again.result.plan.needs[0].answers[-1].id)
-        run = self.send(answers=['discard'] + answers).wait()
-        self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.assertAlmostEqual(self.client.fresh_state().swivel, gc.part_of(gc.goal_of(gc.SHORT), 'process').setup_swivel, delta=1e-12)

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import threading
 import time
-import unittest
 
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
@@ -21,10 +20,10 @@ from grinder_client import A, LIFT, MM, MM_MIN, STROKE, X, Y, Z
 
 SEED = 20
 
-# Takes longer to plan than any test waits: with a depth that changes along the flute, no pass is like another.
+# With a depth that changes along the flute, no pass is like another: one that takes longer to plan than any test waits, and one
+# that takes a second or more.
 ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
-# Takes some seconds.
-LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.05 * MM, depth_end=1.59 * MM)
+LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM)
 # Time enough to do something in a stroke.
 SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.
@@ -34,25 +33,20 @@ F_SETPIPE_SZ = 1031  # Python's fcntl has it from 3.10 on
 ENDED_BY_CANCEL = ('PREEMPTED', 'RECALLED')
 
 
-def machine():
-    """One that loses no time with its spindle, and plans whatever it is asked to."""
-    parameters = gc.machine(pace=5)
-    parameters['hardware']['spindle_run_up_time'] = 0.0
-    parameters['max_job_duration'] = 1e9
-    return parameters
-
-
 class NodeTest(gc.OwnNode):
-    """With a ready node: one for all tests, but where a test starts one of its own, to end it or with other parameters."""
+    """With nodes that lose no time with their spindle, and plan whatever they are asked to."""
 
-    shared = None
+    def start(self, clean_up=None, **arguments):
+        parameters = gc.machine(pace=5)
+        parameters['hardware']['spindle_run_up_time'] = 0.0
+        parameters['max_job_duration'] = 1e9
+        return super().start(parameters, clean_up, **arguments)
 
-    def setUp(self):
-        if not NodeTest.shared:
-            self.start(machine(), unittest.addModuleCleanup)
-            NodeTest.shared = self.node, self.client
-        self.node, self.client = NodeTest.shared
-        self.client.make_ready()
+    def send_planning(self, job=ENDLESS):
+        run = self.client.send(job)
+        self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
+        self.assertEqual(run.feedback[0].state, 'planning')
+        return run
 
     def send_into_stroke(self):
         return self.client.send(SLOW).wait_in_stroke(1 * MM)
@@ -69,52 +63,36 @@ class NodeTest(gc.OwnNode):
         self.assertEqual(heights, sorted(heights))
         self.assertAlmostEqual(heights[-1], CLEAR_HEIGHT, delta=1e-12)
 
+
+class TestStops(NodeTest):
+    """One node for all tests."""
+
+    @classmethod
+    def setUpClass(cls):
+        test = cls()
+        test.start(cls.addClassCleanup)
+        cls.node, cls.client = test.node, test.client
+
+    def setUp(self):
+        self.client.make_ready()
+
     def assert_rests(self):
         rest = self.client.wait_rest()
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
 
-    @contextlib.contextmanager
-    def in_background(self, what):
-        """Does something over and over beside the test, until that is through."""
-        ended = threading.Event()
-
-        def run():
-            while not ended.is_set():
-                what()
-
-        thread = threading.Thread(target=run)
-        thread.start()
-        try:
-            yield
-        finally:
-            ended.set()
-            thread.join()
-
-
-class TestPlanning(NodeTest):
-    """A job that takes for ever to be planned holds up nobody."""
-
-    def send_planning(self, job=ENDLESS):
-        run = self.client.send(job)
-        self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
-        self.assertEqual(run.feedback[0].state, 'planning')
-        return run
-
-    def test_goal_and_dry_run_beside_it_are_busy(self):
+    def test_a_job_that_takes_for_ever_to_be_planned_holds_up_nobody(self):
         batches = len(self.client.batches)
         first = self.send_planning()
-        second = self.client.send(gc.SHORT).wait()
-        self.assertEqual((second.status, second.code), ('REJECTED', GrindResult.BUSY))
-        dry = self.client.send(gc.SHORT, dry_run=True).wait()
-        self.assertEqual((dry.status, dry.code), ('REJECTED', GrindResult.BUSY))
-        self.assertIn("'grind plan' plans without the grinder", dry.text)
+        for fields in ({}, {'dry_run': True}):
+            other = self.client.send(gc.SHORT, **fields).wait()
+            self.assertEqual((other.status, other.code), ('REJECTED', GrindResult.BUSY))
+        self.assertIn("'grind plan' plans without the grinder", other.text)
         self.assertFalse(first.done)
         self.client.wait_for(lambda: any(0 < f.planned < 1 for f in first.feedback), 'how far it is')
         first.cancel()
         self.assertIn(first.wait().status, ENDED_BY_CANCEL)
         self.assert_rests()
         self.assertEqual(len(self.client.batches), batches)
-        self.assertTrue(self.client.plan(gc.goal_of(gc.SHORT)).plan.valid)
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
 
     def test_hold_of_a_job_that_is_planned_latches(self):
@@ -126,20 +104,17 @@ class TestPlanning(NodeTest):
         self.assertEqual(run.wait().status, 'PREEMPTED')
         self.assertEqual(len({tuple(s.position) for s in run.setpoints}), 1)
 
-    def test_signal_ends_the_node(self):
-        self.start(machine()).make_ready()
-        run = self.send_planning()
-        self.assertEqual(self.node.end(signal.SIGINT), 0)
-        self.client.wait_for(lambda: run.done, 'the end of the goal')
-        self.assertIn(run.status, ENDED_BY_CANCEL)
-
-    def test_no_cancel_is_lost(self):
-        """Goals that are canceled at any moment."""
+    def test_no_cancel_is_lost_and_none_of_an_unknown_goal_stays(self):
+        """Goals that are canceled at any moment, beside one that there is not; actionlib's clients send that without a stamp."""
         chance = random.Random(SEED)
         print('cancels with seed %d' % SEED)
+        statuses = gc.received(self.addCleanup, self.node.name + '/grind/status', GoalStatusArray)
+        gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID).publish(GoalID(id='gone'))
+        has_unknown = lambda: 'gone' in {status.goal_id.id for status in statuses[-1].status_list}
+        gc.poll(lambda: statuses and has_unknown(), 'its status')
         # By the topic: actionlib's client waits for ever for the result of a goal that ended as it was canceled.
         results = gc.received(self.addCleanup, '/%s/grind/result' % self.node.name, GrindActionResult)
-        for _ in range(80):
+        for _ in range(25):
             run = self.client.send(SLOW)
             # No wait for anything: it is canceled at a moment that nothing decides.
             time.sleep(chance.uniform(0, 0.01))
@@ -147,52 +122,8 @@ class TestPlanning(NodeTest):
             end, = gc.poll(lambda: [r for r in results if r.status.goal_id.id == run.id], 'the end of the goal')
             self.assertIn(end.status.status, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
             gc.poll(lambda: self.client.fresh_state().state == GrinderState.READY, 'the stop')
+        gc.poll(lambda: not has_unknown(), 'the end of its status')
 
-
-class TestTheWayDown(NodeTest):
-    """What a stop might wait for does not answer."""
-
-    def setUp(self):
-        """Every test starts its node."""
-
-    def test_full_pipe(self):
-        read, write = os.pipe()
-        self.addCleanup(os.close, read)
-        fcntl.fcntl(write, F_SETPIPE_SZ, 4096)
-        self.start(machine(), output=write).make_ready()
-        os.close(write)
-        # Each refusal is a line of the log of more than 100 bytes: more than the pipe holds.
-        for _ in range(60):
-            self.assertEqual(self.client.send(gc.paper(feed=-1, depth=-1, infeed=-1)).wait().status, 'REJECTED')
-        run = self.send_into_stroke()
-        self.client.fresh_state()
-        self.assertTrue(self.client.hold().success)
-        self.client.wait_state(GrinderState.HELD)
-        self.assertFalse(self.client.home().success)
-        run.cancel()
-        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
-        self.check_stopped_and_lifted(run)
-
-    def test_client_that_hangs(self):
-        """Its job goes on, and others see it."""
-        self.start(machine()).make_ready()
-        path = os.path.join(self.node.folder, 'job.yaml')
-        gc.job_file(path, flute_length_mm=10)
-        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--answer', 'discard',
-                                   '--answer', 'ignore-offsets'],
-                                  stdout=subprocess.DEVNULL)
-        try:
-            self.client.wait_for(lambda: self.client.batches, 'the first setpoints')
-            client.send_signal(signal.SIGSTOP)
-            gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end of the job')
-            self.client.wait_state(GrinderState.READY)
-        finally:
-            client.send_signal(signal.SIGCONT)
-            # Done, or the link was lost: it depends on what it reads first.
-            self.assertIn(client.wait(gc.PATIENCE), (0, 1))
-
-
-class TestStates(NodeTest):
     def publish_stop(self, request):
         gc.publisher(self.addCleanup, '/%s/stop' % self.node.name, Stop).publish(Stop(request=request))
 
@@ -209,58 +140,80 @@ class TestStates(NodeTest):
         self.publish_stop(Stop.DISABLE)
         self.client.wait_state(GrinderState.DISABLED)
 
+    def test_client_that_hangs(self):
+        """Its job goes on, and others see it."""
+        path = gc.job_file(os.path.join(self.node.folder, 'job.yaml'), flute_length_mm=10)
+        seen = len(self.client.batches)
+        client = subprocess.Popen([gc.program('grind'), '--node', self.node.name, 'run', path, '--answer', 'discard',
+                                   '--answer', 'ignore-offsets'], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            self.client.wait_for(lambda: len(self.client.batches) > seen, 'the first setpoints')
+            client.send_signal(signal.SIGSTOP)
+            gc.poll(lambda: self.client.fresh_state().progress.finished, 'the end of the job')
+            self.client.wait_state(GrinderState.READY)
+        finally:
+            client.send_signal(signal.SIGCONT)
+            # Done, or the link was lost: it depends on what it reads first.
+            self.assertIn(client.wait(gc.PATIENCE), (0, 1))
 
-class TestTheEnd(NodeTest):
-    """However the process ends, the axes stop on the path, where the loop lives."""
 
-    def setUp(self):
-        """Every test starts its nodes."""
+class TestOwnNodes(NodeTest):
+    """Whatever does not answer, and however the process ends, the axes stop on the path, where the loop lives."""
 
-    def check_end(self, with_signal, status):
-        self.start(machine()).make_ready()
+    def test_full_pipe(self):
+        read, write = os.pipe()
+        self.addCleanup(os.close, read)
+        fcntl.fcntl(write, F_SETPIPE_SZ, 4096)
+        self.start(output=write).make_ready()
+        os.close(write)
+        # Each refusal is a line of the log of more than 100 bytes: more than the pipe holds.
+        for _ in range(60):
+            self.assertEqual(self.client.send(gc.paper(feed=-1, depth=-1, infeed=-1)).wait().status, 'REJECTED')
         run = self.send_into_stroke()
-        self.assertEqual(self.node.end(with_signal), status)
-        self.client.wait_end_of_connections()
+        self.client.fresh_state()
+        self.assertTrue(self.client.hold().success)
+        self.client.wait_state(GrinderState.HELD)
+        self.assertFalse(self.client.home().success)
+        run.cancel()
+        self.assertEqual(run.wait_complete().status, 'PREEMPTED')
         self.check_stopped_and_lifted(run)
-        return run
 
-    def test_signals_cancel_the_job(self):
-        for number in (signal.SIGHUP, signal.SIGINT, signal.SIGTERM):
-            with self.subTest(number):
-                run = self.check_end(number, 0)
-                self.assertEqual((run.status, run.code), ('PREEMPTED', GrindResult.CANCELED))
-                x = [s.position[X] for s in run.setpoints if s.move == STROKE][-1]
-                self.assertEqual(run.text, 'canceled; stopped on the path (stroke, tooth 1, pass 1, X = %g mm)' % (x / MM))
+    @contextlib.contextmanager
+    def goals_meanwhile(self):
+        """Sends goals over and over beside the test."""
+        ended, others = threading.Event(), []
 
-    def test_crashes(self):
-        for number in (signal.SIGSEGV, signal.SIGABRT):
-            with self.subTest(number):
-                self.check_end(number, -number)
+        def run():
+            while not ended.wait(0.001):
+                others.append(self.client.send(gc.SHORT))
 
-    def test_goals_that_come_meanwhile_do_not_start(self):
-        self.start(machine()).make_ready(0.2)
-        run = self.send_into_stroke()
-        others = []
-        with self.in_background(lambda: (others.append(self.client.send(gc.SHORT)), time.sleep(0.001))):
+        thread = threading.Thread(target=run)
+        thread.start()
+        try:
             self.client.wait_for(lambda: len(others) > 10, 'some goals')
-            self.assertEqual(self.node.end(signal.SIGTERM), 0)
-        self.client.wait_end_of_connections()
-        self.check_stopped_and_lifted(run)
-        reported = {batch.goal_id for batch in self.client.batches}
-        self.assertEqual(reported, {run.id})
+            yield
+        finally:
+            ended.set()
+            thread.join()
 
+    def test_signals_and_crashes(self):
+        for number in (signal.SIGHUP, signal.SIGTERM, signal.SIGSEGV, signal.SIGABRT):
+            is_crash = number in (signal.SIGSEGV, signal.SIGABRT)
+            with self.subTest(number):
+                self.start().make_ready()
+                run = self.send_into_stroke()
+                with self.goals_meanwhile() if number == signal.SIGTERM else contextlib.nullcontext():
+                    self.assertEqual(self.node.end(number), -number if is_crash else 0)
+                self.client.wait_end_of_connections()
+                self.check_stopped_and_lifted(run)
+                self.assertEqual({batch.goal_id for batch in self.client.batches}, {run.id}, 'goals that came meanwhile did not start')
+                if not is_crash:
+                    x = [s.position[X] for s in run.setpoints if s.move == STROKE][-1]
+                    self.assertEqual((run.status, run.code, run.text), (
+                        'PREEMPTED', GrindResult.CANCELED, 'canceled; stopped on the path (stroke, tooth 1, pass 1, X = %g mm)' % (x / MM)))
 
-class TestOddCancels(NodeTest):
-    def test_cancel_of_an_unknown_goal_does_not_stay_for_ever(self):
-        """actionlib's clients send it without a stamp."""
-        statuses = gc.received(self.addCleanup, self.node.name + '/grind/status', GoalStatusArray)
-        gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID).publish(GoalID(id='gone'))
-        has = lambda: 'gone' in {status.goal_id.id for status in statuses[-1].status_list}
-        gc.poll(lambda: statuses and has(), 'its status')
-        gc.poll(lambda: not has(), 'the end of its status')
-
-    def test_goals_that_it_cancels_are_told_so(self):
-        self.start(machine())
+    def test_signal_while_a_job_is_planned_and_a_cancel_that_cancels_goals_to_come(self):
+        self.start()
         cancels = gc.publisher(self.addCleanup, self.node.name + '/grind/cancel', GoalID)
         # By more, the stamp is that of its receipt.
         cancels.publish(GoalID(stamp=rospy.Time.from_sec(time.time() + 55)))
@@ -270,3 +223,8 @@ class TestOddCancels(NodeTest):
         self.assertEqual(runs[-1].code, GrindResult.CANCELED)
         self.assertRegex(runs[-1].text, r'^a cancel was stamped [1-5]\d?(\.\d+)? s in the future, and cancels every goal until then; '
                          'allowed: clients whose clocks agree$')
+        self.start().make_ready()
+        run = self.send_planning()
+        self.assertEqual(self.node.end(signal.SIGINT), 0)
+        self.client.wait_for(lambda: run.done, 'the end of the goal')
+        self.assertIn(run.status, ENDED_BY_CANCEL)

@@ -38,11 +38,6 @@ def clients():
     return [CLIENTS[name] for name in NAMES]
 
 
-def read(path):
-    with open(path, 'rb') as file:
-        return file.read()
-
-
 def setpoints(path):
     """The columns that the files of a plan and of a run have in common."""
     with open(path) as file:
@@ -55,46 +50,38 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         cls.folder = gc.temp_folder(cls.addClassCleanup)
         cls.jobs = {name: gc.job_file(os.path.join(cls.folder, name.replace('/', '_') + '.yaml'), **changes)
                     for name, changes in CHANGES.items()}
-        cls.left, cls.right = clients()
+        cls.clients = clients()
         runs = [subprocess.Popen([gc.program('grind'), '--node', name, 'run', cls.jobs[name], '--answer', 'discard',
-                                  '--answer', 'ignore-offsets', '--csv',
-                                  cls.csv(name)],
+                                  '--answer', 'ignore-offsets', '--csv', cls.csv(name)],
                                  stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
                 for name in NAMES]
-        cls.outputs = [run.communicate(timeout=2 * gc.PATIENCE) for run in runs]
-        cls.statuses = [run.returncode for run in runs]
-        for client in (cls.left, cls.right):
+        outputs = [run.communicate(timeout=2 * gc.PATIENCE) for run in runs]
+        assert [run.returncode for run in runs] == [0, 0], outputs
+        for client in cls.clients:
             client.wait_rest()
 
     @classmethod
     def csv(cls, name, kind='streamed'):
         return os.path.join(cls.folder, '%s_%s.csv' % (kind, name.replace('/', '_')))
 
-    def batches(self, client):
-        """Of the job run last."""
-        return [batch for batch in client.batches if batch.goal_id == client.batches[-1].goal_id]
-
-    def test_both_are_done(self):
-        self.assertEqual(self.statuses, [0, 0], self.outputs)
-
-    def test_they_ran_at_the_same_time(self):
-        spans = [(batches[0].header.stamp.to_sec(), batches[-1].end_stamp.to_sec())
-                 for batches in (self.batches(self.left), self.batches(self.right))]
+    def test_each_got_the_setpoints_of_its_own_plan_to_the_last_bit_at_the_same_time(self):
+        spans = []
+        for client in self.clients:
+            batches = [batch for batch in client.batches if batch.goal_id == client.batches[-1].goal_id]
+            spans.append((batches[0].header.stamp.to_sec(), batches[-1].end_stamp.to_sec()))
         together = min(end for _, end in spans) - max(begin for begin, _ in spans)
         self.assertGreater(together, 0.5 * min(end - begin for begin, end in spans))
-
-    def test_each_got_the_setpoints_of_its_own_plan_to_the_last_bit(self):
         for name in NAMES:
             plan = gc.grind('plan', self.jobs[name], '--csv', self.csv(name, 'planned'))
             self.assertEqual(plan.returncode, 0, plan.stderr)
             self.assertTrue(setpoints(self.csv(name)) == setpoints(self.csv(name, 'planned')), name)
-        self.assertNotEqual(setpoints(self.csv('left/grinder')), setpoints(self.csv('right/grinder')))
+        self.assertNotEqual(*(setpoints(self.csv(name)) for name in NAMES))
 
     def test_journals_are_apart(self):
         folder = rospy.get_param('/left/grinder/journal')
         self.assertEqual(rospy.get_param('/right/grinder/journal'), folder)
         digests = []
-        for client in (self.left, self.right):
+        for client in self.clients:
             with open(folder + client.name + '.journal') as text:
                 journal = yaml.safe_load(text)
             self.assertTrue(journal['finished'])
@@ -103,20 +90,17 @@ class TestTwoJobsAtOnce(unittest.TestCase):
             digests.append(journal['job_digest'])
         self.assertNotEqual(*digests)
 
-    def test_nobody_publishes_transforms_or_joint_states_for_all(self):
+    def test_topics_and_diagnostics_are_apart(self):
         published, _, _ = rosgraph.Master(rospy.get_name()).getSystemState()
         topics = {topic for topic, nodes in published}
         own = {'tf', 'tf_static', 'joint_states'}
         self.assertEqual(topics & {'/' + topic for topic in own}, set())
         self.assertLessEqual({'/%s/%s' % (side, topic) for side in ('left', 'right')
                               for topic in own | {'grinder/tool_path'}}, topics)
-
-    def test_rviz_shows_topics_of_its_own_namespace(self):
-        topics = re.findall(r'(?m)^ *(?:\w+ )?Topic: *(.*)$', read(gc.package_file('rviz/grinder.rviz')).decode())
-        self.assertTrue(topics)
-        self.assertEqual([topic for topic in topics if topic.startswith('/')], [])
-
-    def test_diagnostics_tell_them_apart(self):
+        with open(gc.package_file('rviz/grinder.rviz')) as file:
+            shown = re.findall(r'(?m)^ *(?:\w+ )?Topic: *(.*)$', file.read())
+        self.assertTrue(shown)
+        self.assertEqual([topic for topic in shown if topic.startswith('/')], [])
         names = set()
         # One connection to each: a new one for every message may be reported by the same grinder each time.
         subscriber = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda m: names.update(s.name for s in m.status))
@@ -125,14 +109,11 @@ class TestTwoJobsAtOnce(unittest.TestCase):
         gc.poll(lambda: both <= names, 'diagnostics of both')
 
 
-# Its stroke takes 20 s, time to interfere in it even on a host that stalls.
-LONG = gc.paper(feed=100 * gc.MM_MIN)
-
-
-class TestFaultOfOne(unittest.TestCase):
-    def test_override_hold_and_emergency_stop_of_one_do_not_touch_the_other(self):
+class TestTroubleOfOne(unittest.TestCase):
+    def test_override_hold_emergency_stop_and_death_of_one_do_not_touch_the_other(self):
         left, right = clients()
-        runs = [client.send(LONG) for client in (left, right)]
+        # Its stroke takes seven seconds, time to interfere in it even on a host that stalls.
+        runs = [client.send(gc.paper(flute_length=10 * gc.MM, feed=100 * gc.MM_MIN)) for client in (left, right)]
         for run in runs:
             run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
         self.assertTrue(left.set_feed_override(0.5).success)
@@ -141,36 +122,14 @@ class TestFaultOfOne(unittest.TestCase):
         left.inject('emergency_stop')
         runs[0].wait()
         self.assertEqual((runs[0].status, runs[0].code), ('ABORTED', GrindResult.EMERGENCY_STOP))
+        self.assertEqual(left.fresh_state().state, GrinderState.FAULT)
         self.assertFalse(runs[1].done)
         self.assertEqual(right.fresh_state().state, GrinderState.RUNNING)
+        uri = rosgraph.Master(rospy.get_name()).lookupNode('/' + left.name)
+        os.kill(xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2], signal.SIGKILL)
+        left.wait_end_of_connections()
         runs[1].wait_complete()
         self.assertEqual((runs[1].status, runs[1].code), ('SUCCEEDED', 0), runs[1].text)
         self.assertTrue(checks.is_gapless(runs[1].setpoints))
         self.assertEqual(runs[1].result.setpoints_written, runs[1].result.plan.statistics.setpoints)
-        self.assertEqual(right.fresh_state().state, GrinderState.READY)
-        self.assertEqual(left.fresh_state().state, GrinderState.FAULT)
-
-
-class TestEndOfOne(unittest.TestCase):
-    """With the same launch once more, in a namespace above."""
-
-    def setUp(self):
-        folder = gc.temp_folder(self.addCleanup)
-        launch = subprocess.Popen(['roslaunch', '--wait', gc.package_file('test/node/two_grinders.test'), '__ns:=shop'],
-                                  env=dict(os.environ, TMPDIR=folder), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(launch.wait, gc.PATIENCE)
-        self.addCleanup(launch.send_signal, signal.SIGINT)
-
-    def test_one_that_dies_does_not_end_the_other(self):
-        left, right = (gc.Grinder('shop/' + name) for name in NAMES)
-        for client in (left, right):
-            self.addCleanup(client.close)
-            client.make_ready()
-        run = right.send(LONG)
-        run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
-        uri = rosgraph.Master(rospy.get_name()).lookupNode('/' + left.name)
-        os.kill(xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2], signal.SIGKILL)
-        left.wait_end_of_connections()
-        run.wait_complete()
-        self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
         self.assertEqual(right.fresh_state().state, GrinderState.READY)

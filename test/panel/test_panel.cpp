@@ -39,13 +39,19 @@ const std::vector<Row> kStates{
     {"jogging_retracted", {"disable", "hold", "cancel"}, "the job waits"},
 };
 
-TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
+TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllowsAndCancelStandsApart) {
   WAIT_FOR(panel.state() == "Ready" && panel.enabled("plan"));
+  const auto place = [&](const std::string& name) { return panel.the<QPushButton>(name.c_str()).geometry(); };
+  for (const std::string& name : kRequests) {
+    const int apart = name == "resume" || name == "retract" ? 40 : 12;
+    EXPECT_EQ(place("cancel").adjusted(-apart, 0, apart, 0).intersects(place(name)), name == "cancel") << name;
+  }
   EXPECT_FALSE(panel.enabled("start")) << "nothing is planned";
   panel.plan();
-  stage.change([&] { stage.progress.stroke_fraction = 0.43, stage.progress.job_fraction = 0.12; });
-  stage.change([&] { stage.progress.remaining_time = 3723, stage.progress.tooth = 3, stage.progress.pass = 19; });
-  stage.change([&] { stage.progress.feed = 0.6 / 60; });
+  stage.change([&] {
+    stage.progress.stroke_fraction = 0.43, stage.progress.job_fraction = 0.12, stage.progress.feed = 0.6 / 60;
+    stage.progress.remaining_time = 3723, stage.progress.tooth = 3, stage.progress.pass = 19;
+  });
   std::optional<QPoint> place_of_hold;
   for (const Row& row : kStates) {
     SCOPED_TRACE(row.name);
@@ -56,8 +62,7 @@ TEST_F(OnStage, ButtonsAreEnabledWhereTheStateAllows) {
     EXPECT_EQ(panel.enabledRequests(), row.allowed);
     EXPECT_EQ(panel.label("grinder"), "/cell/stage");
     EXPECT_TRUE(panel.shows("meaning", row.meaning));
-    const std::set<std::string> without_a_job{"disabled", "ready", "homing", "fault", "lifting", "jogging"};
-    const bool in_job = without_a_job.count(row.name) == 0;
+    const bool in_job = Names{"disabled", "ready", "homing", "fault", "lifting", "jogging"}.count(row.name) == 0;
     for (const char* of_a_new_job : {"choose", "plan"}) EXPECT_NE(panel.enabled(of_a_new_job), in_job);
     EXPECT_EQ(panel.enabled("stroke"), in_job);
     EXPECT_EQ(panel.label("place"), in_job ? "Tooth 4, pass 20" : "No job runs");
@@ -108,16 +113,6 @@ TEST_F(OnStage, AGrinderAnswersOnceAResultWouldBeHeard) {
   WAIT_FOR(panel.state() == "Ready");
 }
 
-TEST_F(OnStage, CancelStandsApart) {
-  const auto place = [&](const char* name) { return panel.the<QPushButton>(name).geometry(); };
-  const QRect cancel = place("cancel").adjusted(-12, 0, 12, 0);
-  const QRect beside = place("cancel").adjusted(-40, 0, 40, 0);
-  for (const std::string& name : kRequests) {
-    EXPECT_EQ(cancel.intersects(place(name.c_str())), name == "cancel") << name;
-  }
-  for (const char* name : {"resume", "retract"}) EXPECT_FALSE(beside.intersects(place(name))) << name;
-}
-
 TEST_F(OnStage, TheWindowIsNamedAfterTheGrinder) {
   const auto title = [&] { return panel.widget().windowTitle().toStdString(); };
   WAIT_FOR(title() == "/cell/stage");
@@ -141,42 +136,42 @@ flute_grinder::Legend legendOf(const QString& job) {
 TEST_F(OnStage, WhatTheColoursMeanIsReported) {
   panel.openTab("View");
   stage.be("ready", panel);
-  EXPECT_EQ(panel.label("shown_cutter"), "No job is shown.");
+  const auto shown = [&] { return panel.label("shown_cutter"); };
+  const auto meaning = [&](const std::string& of) {
+    return panel.label(of.c_str()) + ", " + panel.label((of + "_end").c_str());
+  };
+  EXPECT_EQ(shown(), "No job is shown.");
   EXPECT_EQ(panel.label("max_error"), "");
-  stage.publishLegend(legendOf(kPaper));
-  WAIT_FOR(panel.label("shown_cutter") == legendOf(kPaper).shown);
-  EXPECT_EQ(panel.label("flutes") + ", " + panel.label("flutes_end"), "Measured error, 0.5 um");
-  EXPECT_EQ(panel.label("rake_faces") + ", " + panel.label("rake_faces_end"), "Rake error, off 8 deg, 0.5 deg");
-  EXPECT_EQ(panel.label("reliefs") + ", " + panel.label("reliefs_end"), "Clearance error, -");
-  EXPECT_EQ(panel.label("arrows") + ", " + panel.label("arrows_end"), "Path error x 2e5, 0.5 um");
+  flute_grinder::Legend legend = legendOf(kPaper);
+  stage.publishLegend(legend);
+  WAIT_FOR(shown() == legend.shown);
+  EXPECT_EQ(meaning("flutes"), "Measured error, 0.5 um");
+  EXPECT_EQ(meaning("rake_faces"), "Rake error, off 8 deg, 0.5 deg");
+  EXPECT_EQ(meaning("reliefs"), "Clearance error, -");
+  EXPECT_EQ(meaning("arrows"), "Path error x 2e5, 0.5 um");
   EXPECT_EQ(panel.label("max_error"), "Maximum error measured: 0.0698 um");
   panel.picture("view");
-  flute_grinder::Legend other = legendOf(kPaper);
-  other.arrow_scale = 0;
-  stage.publishLegend(other);
-  WAIT_FOR(panel.label("arrows") == "Path error");
-  other.cutter.clearance = 10 * M_PI / 180, other.cutter.clearance_tolerance = 0.25 * M_PI / 180;
-  stage.publishLegend(other);
-  WAIT_FOR(panel.label("reliefs") + ", " + panel.label("reliefs_end") == "Clearance error, off 10 deg, 0.25 deg");
+  legend.arrow_scale = 0;
+  legend.cutter.clearance = 10 * M_PI / 180, legend.cutter.clearance_tolerance = 0.25 * M_PI / 180;
+  stage.publishLegend(legend);
+  WAIT_FOR(meaning("reliefs") == "Clearance error, off 10 deg, 0.25 deg");
+  EXPECT_EQ(panel.label("arrows"), "Path error");
   panel.picture("view_of_a_relief");
   // A process that has just begun shows nothing.
   stage.publishLegend(flute_grinder::Legend());
-  WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
-  stage.publishLegend(legendOf(kPaper));
-  WAIT_FOR(panel.label("shown_cutter") != "No job is shown.");
+  WAIT_FOR(shown() == "No job is shown.");
+  stage.publishLegend(legend);
+  WAIT_FOR(shown() == legend.shown);
   stage.change([&] { stage.silent = true; });
-  WAIT_FOR(panel.label("shown_cutter") == "No job is shown.");
+  WAIT_FOR(shown() == "No job is shown.");
 }
 
 TEST_F(OnStage, TheReadoutIsAsFineAsTheJob) {
   stage.standAt({-0.1000004, 0.0123456, 0, -21 * M_PI});
   WAIT_FOR(panel.label("position_x") == "X  -100.000 mm");
   flute_grinder::Legend legend = legendOf(kPaper);
-  for (const auto& [tolerance, x] : {std::pair{0.1e-6, "X  -100.0004 mm"},
-                                     {1e-6, "X  -100.000 mm"},
-                                     {0.5e-6, "X  -100.0004 mm"},
-                                     {10e-6, "X  -100.000 mm"},
-                                     {1e-9, "X  -100.0004 mm"}}) {
+  for (const auto& [tolerance, x] :
+       {std::pair{0.5e-6, "X  -100.0004 mm"}, {1e-6, "X  -100.000 mm"}, {1e-9, "X  -100.0004 mm"}}) {
     legend.tolerance = tolerance;
     stage.publishLegend(legend);
     WAIT_FOR(panel.label("position_x") == x);
@@ -200,14 +195,14 @@ TEST_F(OnStage, ARequestThatHangsBlocksNothingNorAPanelsEndAndIsReported) {
   panel.click("cancel");
   WAIT_FOR(stops().size() == 2);
   EXPECT_TRUE(panel.says("messages", "Cancel was sent"));
-  WAIT_FOR(panel.says("messages", "Resume: no answer from the grinder /cell/stage"));
   stage.be("held");
   {
     Panel closed("cell/stage");
     closed.press("resume");
     WAIT_FOR(stage.get(&Stage::resumes) == 2);
   }
-  EXPECT_TRUE(stage.get(&Stage::resume_hangs)) << "its end did not wait for the answer";
+  EXPECT_FALSE(panel.says("messages", "Resume")) << "its end did not wait for the answer";
+  WAIT_FOR(panel.says("messages", "Resume: no answer from the grinder /cell/stage"));
 }
 
 /// What a reply says behind its time.
@@ -216,7 +211,7 @@ std::string said(Panel& panel) {
   return text.size() > 9 ? text.substr(9) : "";
 }
 
-TEST_F(OnStage, ARequestThatIsDoneSaysSoInALineInPlaceOfTheReplyBefore) {
+TEST_F(OnStage, ARequestThatIsDoneOrRefusedSaysSoInPlaceOfTheReplyBefore) {
   struct Request {
     const char *state, *button, *done;
   };
@@ -228,6 +223,12 @@ TEST_F(OnStage, ARequestThatIsDoneSaysSoInALineInPlaceOfTheReplyBefore) {
     panel.press(r.button);
     WAIT_FOR(said(panel) == r.done);
   }
+  stage.be("disabled");
+  stage.change([&] { stage.trigger_refusal = "enable refused: one\ntwo\nthree\nfour\nfive\nsix\nseven"; });
+  panel.press("enable");
+  WAIT_FOR(said(panel).find("Enable refused: one\ntwo") == 0);
+  EXPECT_EQ(panel.the<QPlainTextEdit>("messages").verticalScrollBar()->value(), 0) << "the first line is not seen";
+  panel.picture("refused");
 }
 
 TEST_F(OnStage, AReplyGoesWithTheStateThatItIsAbout) {
@@ -248,16 +249,6 @@ TEST_F(OnStage, AReplyGoesWithTheStateThatItIsAbout) {
   WAIT_FOR(said(panel) == "Hold was sent");
   stage.be("ready", panel);
   EXPECT_EQ(said(panel), "Hold was sent");
-}
-
-TEST_F(OnStage, AReplyBeginsWithItsFirstLine) {
-  stage.be("disabled");
-  stage.change([&] { stage.trigger_refusal = "enable refused: one\ntwo\nthree\nfour\nfive\nsix\nseven"; });
-  panel.press("enable");
-  WAIT_FOR(said(panel).find("Enable refused: one\ntwo") == 0);
-  const auto& messages = panel.the<QPlainTextEdit>("messages");
-  EXPECT_EQ(messages.verticalScrollBar()->value(), 0) << "the first line is not seen";
-  panel.picture("refused");
 }
 
 TEST_F(OnStage, TheRunningJobIsNamedWhoeverStartedIt) {
@@ -478,69 +469,36 @@ TEST_F(OnStage, APlanCanBeCanceledUntilItEndsAndSaysWhyItIsRefused) {
   WAIT_FOR(!panel.enabled("cancel"));
 }
 
-/// With a job to be planned, and a swivel that nobody has confirmed.
-class BeforeTheSwivelIsSet : public OnStage {
- protected:
-  void SetUp() override {
-    need({kSwivelToSet});
-    publish([&] { stage.state.swivel = std::numeric_limits<double>::quiet_NaN(); });
-  }
-  void start() { startAndBeAsked("confirm-swivel"); }
-  void setSwivel(double angle, bool measured) {
+TEST_F(OnStage, WhereTheSwivelStandsIsAlwaysSeen) {
+  const auto set = [&](double angle, bool measured) {
     publish([&] { stage.state.swivel = angle, stage.state.swivel_measured = static_cast<std::uint8_t>(measured); });
-  }
-  bool asks() { return panel.isVisible("confirm-swivel"); }
-};
-
-TEST_F(BeforeTheSwivelIsSet, WhereItStandsIsAlwaysSeen) {
-  EXPECT_EQ(panel.label("swivel"), "Swivel not confirmed");
-  setSwivel(43.32 * M_PI / 180, false);
+    return panel.label("swivel");
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), angle = 43.32 * M_PI / 180;
+  EXPECT_EQ(set(nan, false), "Swivel not confirmed");
+  EXPECT_EQ(set(angle, false), "Swivel set to 43.32 deg");
   for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
     panel.openTab(tab);
     EXPECT_TRUE(panel.isVisible("swivel"));
-    EXPECT_EQ(panel.label("swivel"), "Swivel set to 43.32 deg");
   }
-  setSwivel(43.32 * M_PI / 180, true);
-  EXPECT_EQ(panel.label("swivel"), "Swivel at 43.32 deg");
-  setSwivel(std::numeric_limits<double>::quiet_NaN(), true);
-  EXPECT_EQ(panel.label("swivel"), "Swivel not known");
+  EXPECT_EQ(set(angle, true), "Swivel at 43.32 deg");
+  EXPECT_EQ(set(nan, true), "Swivel not known");
   stage.change([&] { stage.silent = true; });
   WAIT_FOR(panel.label("swivel").empty());
-}
-
-TEST_F(BeforeTheSwivelIsSet, AJobIsStartedOnceItIsConfirmedOnly) {
-  start();
-  for (const char* shown : {"Is the swivel set to this angle and clamped?", "31.769 deg", "not known"}) {
-    EXPECT_TRUE(panel.says("job_question", shown)) << shown;
-  }
-  panel.picture("swivel_question");
-  panel.press("decline_job");
-  WAIT_FOR(!asks());
-  EXPECT_TRUE(panel.enabled("start")) << "the plan is still good";
-  EXPECT_EQ(goals().size(), 0U);
-  start();
-  panel.press("confirm-swivel");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_FALSE(asks());
-  EXPECT_EQ(goals().at(0).goal.answers, std::vector{answerId(kSwivelToSet, NeedAnswer::kConfirmSwivel)});
 }
 
 /// With a job of the grinder's journal that is not finished.
 class AfterAJobWasLeft : public OnStage {
  protected:
-  void SetUp() override {
-    leave(changedJob(kPaper, folder.filePath("published.yaml"), {{"spark_out: 0", "spark_out: 1"}}));
-  }
   flute_grinder::GrindGoal goal() { return goals().at(0).goal; }
-  void leave(const QString& job) {
-    stage.leave(job);
-    publish([] {});
-  }
-
-  const QTemporaryDir folder;
 };
 
 TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
+  publish([&] { stage.state.journal_error = "journal /j: its checksum is wrong", stage.state.journal_damaged = 1; });
+  EXPECT_EQ(panel.text("plan_report"), "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
+  const QTemporaryDir folder;
+  stage.leave(changedJob(kPaper, folder.filePath("published.yaml"), {{"spark_out: 0", "spark_out: 1"}}));
+  publish([&] { stage.state.journal_error = "", stage.state.journal_damaged = 0; });
   EXPECT_TRUE(panel.says("plan_report", "It ended: in the middle, with the grinder's program."));
   EXPECT_FALSE(panel.enabled("continue")) << "its file is not known";
   need({kUnfinished});
@@ -557,19 +515,8 @@ TEST_F(AfterAJobWasLeft, AnotherIsStartedOnlyWhereTheOneIsDiscarded) {
   EXPECT_FALSE(panel.isVisible("discard"));
 }
 
-TEST_F(AfterAJobWasLeft, TheSameJobIsContinuedWhereItWasLeft) {
-  leave(kPaper);
-  panel.tick("continue");
-  panel.plan();
-  panel.click("start");
-  WAIT_FOR(goals().size() == 1);
-  EXPECT_TRUE(goal().answers.empty());
-  EXPECT_EQ(goal().first_tooth, 1);
-  EXPECT_EQ(goal().first_pass, 2);
-}
-
-TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
-  leave(kPackage + "/jobs/paper.yaml");  // the panel looks among the jobs of the package
+TEST_F(AfterAJobWasLeft, ItIsNamedItsFileTakenByAClickAndContinuedWhereItWasLeft) {
+  stage.leave(kPackage + "/jobs/paper.yaml");  // the panel looks among the jobs of the package
   stage.change([&] { stage.state.progress.end = "the drive reports a fault"; });
   Panel panel("cell/stage");  // without a job
   auto& go_on = panel.the<QCheckBox>("continue");
@@ -585,15 +532,12 @@ TEST_F(AfterAJobWasLeft, ItIsNamedAndItsFileTakenByAClick) {
   WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
   EXPECT_TRUE(go_on.isChecked());
   EXPECT_EQ(panel.text("plan_report").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
-}
-
-TEST_F(AfterAJobWasLeft, ADamagedJournalIsSaid) {
-  stage.change([&] {
-    stage.state.progress = flute_grinder::JobProgress();
-    stage.state.journal_error = "journal /j: its checksum is wrong";
-    stage.state.journal_damaged = 1;
-  });
-  WAIT_FOR(panel.text("plan_report") == "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
+  panel.plan();
+  panel.click("start");
+  WAIT_FOR(goals().size() == 1);
+  EXPECT_TRUE(goal().answers.empty());
+  EXPECT_EQ(goal().first_tooth, 1);
+  EXPECT_EQ(goal().first_pass, 2);
 }
 
 TEST_F(OnStage, OverrideIsSentWhenTheSliderIsLetGoOf) {
@@ -643,18 +587,9 @@ TEST_F(Staged, AJobFileThatChangedSinceThePlanIsNotStarted) {
   EXPECT_DOUBLE_EQ(processOf(stage.get(&Stage::plans).at(1).goal).depth, 1.5e-3);
 }
 
-TEST_F(OnStage, ConfigurationIsSavedAndLoaded) {
-  rviz::Config config;
-  panel.widget().save(config);
-  QString node, job;
-  EXPECT_TRUE(config.mapGetString("Node", &node) && config.mapGetString("Job", &job));
-  EXPECT_EQ(node, "cell/stage");
-  EXPECT_EQ(job, kPaper);
+TEST_F(Staged, TheNodeCanBeChosenAndIsSaved) {
+  Panel panel("nobody", kPaper);
   EXPECT_EQ(panel.label("job_file"), "paper.yaml");
-}
-
-TEST_F(Staged, TheNodeCanBeChosen) {
-  Panel panel("nobody");
   stage.be("disabled");
   WAIT_FOR(panel.state() == "No answer");
   EXPECT_TRUE(panel.shows("meaning", "/nobody"));
@@ -668,6 +603,12 @@ TEST_F(Staged, TheNodeCanBeChosen) {
   panel.enterNode("cell/stage");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(panel.enabledRequests(), (Names{"enable", "reset"}));
+  rviz::Config config;
+  panel.widget().save(config);
+  QString node, job;
+  EXPECT_TRUE(config.mapGetString("Node", &node) && config.mapGetString("Job", &job));
+  EXPECT_EQ(node, "cell/stage");
+  EXPECT_EQ(job, kPaper);
 }
 
 TEST_F(OnStage, TheNodeCanBeChosenOnlyWhileNothingMoves) {

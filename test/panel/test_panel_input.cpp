@@ -32,6 +32,8 @@ void activate(Panel& panel) {
   ASSERT_TRUE(QTest::qWaitForWindowActive(&panel.widget(), kPatience));
 }
 
+constexpr std::array kTabs{"Job", "Section", "Jog", "Zero", "View"};
+
 /// The keys that press a button, somewhere.
 constexpr std::array kPressing{Qt::Key_Space, Qt::Key_Return, Qt::Key_Enter};
 
@@ -99,22 +101,15 @@ class InALanguage : public Staged, public ::testing::WithParamInterface<QLocale:
 
   std::unique_ptr<Panel> panel;
 };
-INSTANTIATE_TEST_SUITE_P(Of, InALanguage, ::testing::Values(QLocale::C, QLocale::English, QLocale::German));
+// English groups digits by commas, as C does.
+INSTANTIATE_TEST_SUITE_P(Of, InALanguage, ::testing::Values(QLocale::English, QLocale::German));
 
-TEST_P(InALanguage, CommaAndPointAreTheDecimalSignInEveryBox) {
+TEST_P(InALanguage, CommaAndPointAreTheDecimalSignInEveryBoxAndWhatIsNoNumberInRangeStaysAsItWasTyped) {
   forEachBox(*panel, [](QAbstractSpinBox& box) {
-    EXPECT_DOUBLE_EQ(typed(box, "6,25"), 6.25);
-    EXPECT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
-    EXPECT_DOUBLE_EQ(typed(box, "12,5"), 12.5);
+    for (const auto& [text, number] : {std::pair("6,25", 6.25), {"7.25", 7.25}, {"12,5", 12.5}}) {
+      EXPECT_DOUBLE_EQ(typed(box, text), number);
+    }
     EXPECT_EQ(box.text().count(','), 0) << box.text().toStdString();
-  });
-  panel->the<QComboBox>("touch_axis").setCurrentText("X");
-  EXPECT_DOUBLE_EQ(typed(panel->the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
-}
-
-TEST_P(InALanguage, WhatIsNoNumberInRangeStaysAsItWasTyped) {
-  forEachBox(*panel, [](QAbstractSpinBox& box) {
-    ASSERT_DOUBLE_EQ(typed(box, "7.25"), 7.25);
     for (const char* text : {"1.234,5", "1,234.5", "1.2.5", "1 000", "1'000", "1e9", "nan", "inf", "0x10", "abc", "-",
                              "500000", "-20000", "1.23456"}) {
       SCOPED_TRACE(text);
@@ -131,22 +126,20 @@ TEST_P(InALanguage, WhatIsNoNumberInRangeStaysAsItWasTyped) {
     EXPECT_DOUBLE_EQ(pasted(box, "8,25"), 8.25);
     EXPECT_TRUE(box.hasAcceptableInput());
   });
-}
-
-TEST_F(OnStage, AUnitThatIsDeletedInPartComesBack) {
-  panel.openTab("Zero");
-  auto& box = panel.the<QAbstractSpinBox>("touch_at");
-  typed(box, "5");
-  const QString whole = box.text();
-  for (const Qt::Key key : {Qt::Key_Backspace, Qt::Key_Backspace}) {
-    box.findChild<QLineEdit*>()->end(false);
-    QTest::keyClick(&box, key);
-  }
-  EXPECT_EQ(box.text(), whole);
+  panel->the<QComboBox>("touch_axis").setCurrentText("X");
+  EXPECT_DOUBLE_EQ(typed(panel->the<QAbstractSpinBox>("touch_at"), "-0,5"), -0.5);
 }
 
 TEST_F(OnStage, WhatIsNoNumberInRangeIsRedAndSwitchesItsButtonsOff) {
   panel.openTab("Zero");
+  auto& at = panel.the<QAbstractSpinBox>("touch_at");
+  typed(at, "5");
+  const QString whole = at.text();
+  for (int i = 0; i < 2; ++i) {
+    at.findChild<QLineEdit*>()->end(false);
+    QTest::keyClick(&at, Qt::Key_Backspace);
+  }
+  EXPECT_EQ(at.text(), whole) << "a unit that is deleted in part comes back";
   WAIT_FOR(panel.enabled("touch_off") && panel.enabled("jog_x_plus"));
   const auto enter = [&](const char* box, const char* text) { typed(panel.the<QAbstractSpinBox>(box), text); };
   const auto red = [&](const char* box) {
@@ -198,21 +191,18 @@ class BesideADialog : public OnStage {
   }
 };
 
-TEST_F(BesideADialog, HoldWorksWhileAJobFileIsChosenInTheOneDialog) {
-  ASSERT_TRUE(panel.fileDialog());
-  panel.click("choose");
-  EXPECT_EQ(panel.widget().findChildren<QFileDialog*>().size(), 1);
-  expectHoldWorks();
-}
-
-TEST_F(BesideADialog, AFileThatIsNotThereNeedsNoWindowOfItsOwn) {
+TEST_F(BesideADialog, HoldWorksWhileAJobFileIsChosenInTheOneDialogWhichNeedsNoOtherForAFileThatIsNotThere) {
   QFileDialog* dialog = panel.fileDialog();
   ASSERT_TRUE(dialog);
+  panel.click("choose");
+  EXPECT_EQ(panel.widget().findChildren<QFileDialog*>().size(), 1);
+  ASSERT_NO_FATAL_FAILURE(expectHoldWorks());
+  stage.be("ready", panel);
   Panel::enter(*dialog, "/nowhere/job.yaml");
   WAIT_FOR(panel.says("plan_report", "job.yaml"));
   EXPECT_FALSE(panel.says("plan_report", "/nowhere"));
+  EXPECT_EQ(QGuiApplication::modalWindow(), nullptr);
   panel.picture("wrong_job_file");
-  expectHoldWorks();
 }
 
 TEST_F(BesideADialog, HoldWorksBesideTheSetUpOnTheLeft) {
@@ -247,32 +237,31 @@ class Asked : public OnStage {
   }
 };
 
-TEST_F(Asked, AQuestionTakesNoClickAtFirst) {
-  // Far from the button that asks, long after it in the events' time, but not in the operator's.
-  panel.press("discard");
-  for (const char* answer : {"ignore-offsets", "decline_job"}) panel.click(answer);
-  EXPECT_TRUE(panel.isVisible("ignore-offsets"));
-  WAIT_FOR(panel.enabled("decline_job"));
-  panel.openTab("Section");
-  panel.openTab("Job");
-  EXPECT_FALSE(panel.enabled("ignore-offsets")) << "it appears again";
-}
-
-TEST_F(Asked, NoAnswerLiesWhereTheOneBeforeWas) {
+TEST_F(Asked, AQuestionTakesNoClickAtFirstAndNoKeyAndItsAnswerLiesApartFromTheOneBefore) {
   const auto place = [&](const char* name) {
     auto& button = panel.the<QPushButton>(name);
     return QRect(button.mapTo(&panel.widget(), QPoint()), button.size());
   };
-  const QRect discard = place("discard"), not_yet = place("decline_job");
-  panel.press("discard");
-  WAIT_FOR(panel.enabled("ignore-offsets"));
-  const QRect right = place("ignore-offsets");
-  EXPECT_EQ(place("decline_job"), not_yet);
-  EXPECT_FALSE(right.intersects(discard));
-  panel.press("ignore-offsets");
-  WAIT_FOR(panel.enabled("confirm-swivel"));
-  EXPECT_EQ(place("decline_job"), not_yet);
-  for (const QRect& before : {discard, right}) EXPECT_FALSE(place("confirm-swivel").intersects(before));
+  WAIT_FOR(panel.enabled("decline_job"));
+  panel.openTab("Section");
+  panel.openTab("Job");
+  EXPECT_FALSE(panel.enabled("discard")) << "it appears again";
+  const QRect not_yet = place("decline_job");
+  std::vector<QRect> before;
+  for (const char* answer : {"discard", "ignore-offsets", "confirm-swivel"}) {
+    SCOPED_TRACE(answer);
+    WAIT_FOR(panel.enabled(answer));
+    for (auto* button : panel.widget().findChildren<QAbstractButton*>()) pressKeys(*button);
+    EXPECT_EQ(place("decline_job"), not_yet);
+    for (const QRect& other : before) EXPECT_FALSE(place(answer).intersects(other));
+    before.push_back(place(answer));
+    panel.press(answer);
+    if (before.size() > 1) continue;
+    // Far from the answer before, long after it in the events' time, but not in the operator's.
+    for (const char* early : {"ignore-offsets", "decline_job"}) panel.click(early);
+    EXPECT_TRUE(panel.isVisible("ignore-offsets"));
+  }
+  WAIT_FOR(goals().size() == 1);
 }
 
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
@@ -281,22 +270,12 @@ TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
   EXPECT_EQ(goals().at(0).goal.answers, (std::vector<std::string>{answerId(kUnfinished, NeedAnswer::kDiscard),
                                                                   answerId(kNoZeros, NeedAnswer::kIgnoreOffsets),
                                                                   answerId(kSwivelToSet, NeedAnswer::kConfirmSwivel)}));
+  EXPECT_FALSE(panel.isVisible("confirm-swivel"));
   WAIT_FOR(panel.says("messages", "The job begins at a feed override of 50 %"));
   // From the goal on: a job that is still planned begins held.
   WAIT_FOR(panel.enabled("hold"));
   QTest::keyClick(panel.widget().windowHandle(), Qt::Key_Space);
   WAIT_FOR(stops() == std::vector<int>{flute_grinder::Stop::HOLD});
-}
-
-TEST_F(Asked, NoKeyAnswers) {
-  for (const char* answer : {"discard", "ignore-offsets", "confirm-swivel"}) {
-    SCOPED_TRACE(answer);
-    WAIT_FOR(panel.enabled(answer));
-    for (auto* button : panel.widget().findChildren<QAbstractButton*>()) pressKeys(*button);
-    EXPECT_TRUE(panel.isVisible(answer));
-    panel.press(answer);
-  }
-  WAIT_FOR(goals().size() == 1);
 }
 
 TEST_F(OnStage, ADoubleClickPressesAButtonOnce) {
@@ -310,18 +289,18 @@ TEST_F(OnStage, ADoubleClickPressesAButtonOnce) {
   Names clicked;
   for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
     stage.be(state, panel);
-    for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
+    for (const char* tab : kTabs) {
       panel.openTab(tab);
       for (auto* button : panel.widget().findChildren<QAbstractButton*>()) {
         for (const int pause : {100, 250, 400, 500}) {
-          const QString name = button->objectName();
-          const bool opens_a_dialog = name == "choose" || name == "setup" || name == "choose_node";
+          const std::string name = button->objectName().toStdString();
+          const bool opens_a_dialog = Names{"choose", "setup", "choose_node"}.count(name);
           if (!button->isVisible() || !button->isEnabled() || opens_a_dialog) continue;
-          SCOPED_TRACE(std::to_string(pause) + " ms on " + button->objectName().toStdString());
+          SCOPED_TRACE(std::to_string(pause) + " ms on " + name);
           clicks = 0;
           panel.doubleClick(*button, pause);
           EXPECT_LE(clicks, 1);
-          clicked.insert(button->objectName().toStdString());
+          clicked.insert(name);
         }
       }
     }
@@ -361,7 +340,7 @@ void turnWheel(QWidget& over, int notches) {
   }
 }
 
-TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAlone) {
+TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAloneAndNoKeyTheFeedOverride) {
   stage.be("running");
   WAIT_FOR(panel.label("override_value") == "100 %");
   panel.click("setup");
@@ -384,6 +363,10 @@ TEST_F(OnStage, TheMouseWheelChangesWhatHasTheFocusAlone) {
   auto& slider = panel.the<QAbstractSlider>("override");
   // The dialog may still have the keys, and lose them later.
   WAIT_FOR((panel.widget().activateWindow(), slider.setFocus(), slider.hasFocus()));
+  for (const Qt::Key pressed : {Qt::Key_Left, Qt::Key_Up, Qt::Key_PageUp, Qt::Key_Home, Qt::Key_End}) {
+    QTest::keyClick(&slider, pressed);
+    EXPECT_EQ(slider.value(), 100);
+  }
   turnWheel(slider, -1);
   EXPECT_LT(slider.value(), 100);
 }
@@ -416,21 +399,6 @@ class Keys : public OnStage {
   }
 };
 
-TEST_F(Keys, WhatTabComesToAfterATouchOffThatIsOffIsNotPressed) {
-  panel.openTab("Zero");
-  auto& at = panel.the<QAbstractSpinBox>("touch_at");
-  WAIT_FOR(panel.enabled("spindle_on") && panel.enabled("touch_off"));
-  at.setFocus();
-  at.selectAll();
-  QTest::keyClicks(&at, "99999999");
-  WAIT_FOR(!panel.enabled("touch_off"));
-  key(Qt::Key_Tab);
-  for (const Qt::Key pressed : kPressing) key(pressed);
-  panel.click("coolant_on");
-  WAIT_FOR(stage.get(&Stage::triggers) == Names{"coolant_on"});
-  EXPECT_FALSE(stage.get([&] { return stage.state.spindle_commanded; }));
-}
-
 TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
   panel.plan();
   panel.press("setup");
@@ -439,7 +407,7 @@ TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
   Names pressed;
   for (const char* state : {"disabled", "ready", "held", "retracted", "fault"}) {
     stage.be(state, panel);
-    for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
+    for (const char* tab : kTabs) {
       panel.openTab(tab);
       for (auto* button : panel.widget().findChildren<QPushButton*>()) {
         // Qt's own, which choose a file.
@@ -468,7 +436,7 @@ TEST_F(Keys, PressNoButtonButHoldWhateverHasTheFocus) {
 TEST_F(Keys, SpaceHoldsWhateverHasTheFocus) {
   stage.be("running", panel);
   int widgets = 0;
-  for (const char* tab : {"Job", "Section", "Jog", "Zero", "View"}) {
+  for (const char* tab : kTabs) {
     panel.openTab(tab);
     for (auto* widget : panel.widget().findChildren<QWidget*>()) {
       if (!widget->isVisible() || !widget->isEnabled() || widget->focusPolicy() == Qt::NoFocus) continue;
@@ -503,21 +471,16 @@ TEST_F(Keys, SpaceHoldsInEveryWindowButIsTypedInATextBox) {
   QComboBox choice, topic;
   topic.setEditable(true);
   QPlainTextEdit text;
-  for (QWidget* widget : std::initializer_list<QWidget*>{&reset, &number, &choice, &topic, &text}) {
-    layout.addWidget(widget);
-  }
+  const std::vector<std::pair<QWidget*, bool>> widgets{
+      {&reset, true}, {&number, true}, {&choice, true}, {&topic, false}, {&text, false}};
+  for (const auto& [widget, holds] : widgets) layout.addWidget(widget);
   bool is_reset = false;
   QObject::connect(&reset, &QToolButton::clicked, [&] { is_reset = true; });
   QObject::connect(&of_a_tool, &QShortcut::activated, [&] { is_reset = true; });
   other.show();
   other.activateWindow();
   ASSERT_TRUE(QTest::qWaitForWindowActive(&other, kPatience));
-  for (QWidget* widget : std::initializer_list<QWidget*>{&reset, &number, &choice}) {
-    ASSERT_NO_FATAL_FAILURE(expectHold(*widget, true));
-  }
-  for (QWidget* widget : std::initializer_list<QWidget*>{&topic, &text}) {
-    ASSERT_NO_FATAL_FAILURE(expectHold(*widget, false));
-  }
+  for (const auto& [widget, holds] : widgets) ASSERT_NO_FATAL_FAILURE(expectHold(*widget, holds));
   EXPECT_FALSE(is_reset);
 }
 
@@ -535,18 +498,6 @@ TEST_F(Keys, SpaceHeldDownHoldsOnceInEveryPanel) {
   panel.click("cancel");
   WAIT_FOR(stops().size() == 3);
   EXPECT_EQ(stops().back(), flute_grinder::Stop::CANCEL);
-}
-
-TEST_F(Keys, DoNotChangeTheFeedOverride) {
-  stage.be("running");
-  stage.change([&] { stage.state.override = 0; });
-  WAIT_FOR(panel.label("override_value") == "0 %");
-  auto& slider = panel.the<QAbstractSlider>("override");
-  slider.setFocus();
-  for (const Qt::Key pressed : {Qt::Key_Right, Qt::Key_Up, Qt::Key_PageUp, Qt::Key_End}) {
-    QTest::keyClick(&slider, pressed);
-    EXPECT_EQ(slider.value(), 0);
-  }
 }
 
 }  // namespace grinder::test_panel_input

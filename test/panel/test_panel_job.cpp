@@ -1,7 +1,6 @@
 // The panel against the grinder's node with the simulated drive: a job, and the set-up sheet, which is solved for this
 // machine, and written into the job file.
 
-#include "flute_grinder/base/units.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "german.h"
 #include "panel_fixture.h"
@@ -12,7 +11,6 @@
 namespace grinder::test_panel_job {
 
 TEST(WithGrinder, AWholeJobIsClickedThrough) {
-  const QTemporaryDir folder;
   Panel panel("grinder");
   WAIT_FOR(panel.state() == "Disabled");
   EXPECT_EQ(panel.text("plan_report"), "Open a job file first.");
@@ -21,14 +19,13 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   QFileDialog* dialog = panel.fileDialog();
   ASSERT_TRUE(dialog);
   EXPECT_EQ(dialog->windowTitle(), "Choose a job file for /grinder");
-  // Long enough to press buttons.
-  Panel::enter(*dialog, changedJob(kPaper, folder.filePath("slow.yaml"), {{"feed_mm_min: 600", "feed_mm_min: 300"}}));
+  Panel::enter(*dialog, kPaper);
   WAIT_FOR(!panel.widget().findChild<QFileDialog*>());
-  EXPECT_EQ(panel.label("job_file"), "slow.yaml");
+  EXPECT_EQ(panel.label("job_file"), "paper.yaml");
   EXPECT_FALSE(panel.enabled("start"));
   panel.press("plan");
   WAIT_FOR(panel.text("plan_report").find("Takes ") == 0);
-  EXPECT_TRUE(panel.says("plan_report", "Feed 300.0 mm/min; no axis limits it."));
+  EXPECT_TRUE(panel.says("plan_report", "Feed 600.0 mm/min; no axis limits it."));
   panel.press("enable");
   WAIT_FOR(panel.state() == "Ready");
   panel.picture("planned");
@@ -38,11 +35,9 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
   panel.press("start");
   for (const char* answer : {"ignore-offsets", "confirm-swivel"}) panel.press(answer);
   WAIT_FOR(panel.state() == "Running" && panel.the<QProgressBar>("stroke").value() > 100);
-  EXPECT_EQ(panel.label("place"), "slow.yaml, tooth 1, pass 1");
+  EXPECT_EQ(panel.label("place"), "paper.yaml, tooth 1, pass 1");
   EXPECT_FALSE(panel.isVisible("other_job")) << "it was started here";
-  WAIT_FOR(panel.label("feed") == "300 mm/min");
-  panel.picture("grinding");
-
+  WAIT_FOR(panel.label("feed") == "600 mm/min");
   panel.click("hold");
   WAIT_FOR(panel.state() == "Held");
   panel.picture("held_in_the_stroke");
@@ -63,13 +58,11 @@ TEST(WithGrinder, AWholeJobIsClickedThrough) {
 // ---------------------------------------------------------------------------------------------------------------------
 
 const QString kJob = kPackage + "/jobs/paper.yaml";
-const QByteArray kSetup = "paper.setup.yaml", kNone = "job.setup.yaml";
 
 class SetupSheet : public ::testing::Test {
  protected:
   void open(const std::vector<std::pair<QByteArray, QByteArray>>& changes, const QString& source = kJob) {
-    file = changedJob(source, folder.filePath("job.yaml"), changes);
-    panel = std::make_unique<Panel>("grinder", file);
+    panel = std::make_unique<Panel>("grinder", changedJob(source, folder.filePath("job.yaml"), changes));
     WAIT_FOR(panel->state() != "");
     if (!panel->isVisible("operation")) openSheet();
   }
@@ -99,33 +92,27 @@ class SetupSheet : public ::testing::Test {
   }
 
   const QTemporaryDir folder;
-  QString file;
   std::unique_ptr<Panel> panel;
 };
 
-TEST_F(SetupSheet, IsShownAndWritten) {
+TEST_F(SetupSheet, KeepsTheFigureThatTheJobAsksForAndIsWrittenOnlyIfTheOperatorSaysSoTwice) {
   ASSERT_TRUE(test_support::hasComma()) << "Qt has given this process the desktop's locale, here a German one";
-  open({{kSetup, kNone}});
+  // On a cylinder, of which one figure may stay.
+  open({{"roughing_d10_t4.setup.yaml", "roughing_d10_t4.setup.yaml, swivel_deg: 43.32"}},
+       QString(kJob).replace("paper", "roughing_d10_t4"));
   EXPECT_EQ(dialog()->windowTitle(), "Set-up of job.yaml for /grinder");
-  EXPECT_TRUE(panel->says("plan_report", "'grind setup --write' solves it"));
-  EXPECT_NEAR(figure("swivel"), 32.350, 0.02);
-  ASSERT_NO_FATAL_FAILURE(write("job.setup.yaml"));
-  EXPECT_FALSE(panel->enabled("write_setup"));
-  closeSheet();
-}
-
-TEST_F(SetupSheet, ShowsWhatTheFileHasAndIsWrittenOnlyIfTheOperatorSaysSoTwice) {
-  open({}, QString(kJob).replace("paper", "roughing_d10_t4"));
-  EXPECT_TRUE(panel->says("setup_sheet", "swivel_deg        43.32 before, 42.8"));
+  EXPECT_TRUE(panel->says("setup_sheet", "height_mm         -1.366 before, "));
+  EXPECT_EQ(figure("swivel"), 43.32);
   panel->press("write_setup");
   panel->press("decline_write");
   QTest::keyClick(dialog(), Qt::Key_Return);
   WAIT_FOR(!dialog());
-  const auto swivel = [&] { return processOf(goalFromFile(file.toStdString())).setup_swivel / units::kDegree; };
-  EXPECT_DOUBLE_EQ(swivel(), 43.32) << "Enter closes it";
+  const auto height = [&] { return processOf(goalFromFile(folder.filePath("job.yaml").toStdString())).setup_height; };
+  EXPECT_DOUBLE_EQ(height(), -1.366e-3) << "Enter closes it";
   ASSERT_NO_FATAL_FAILURE(openSheet());
   ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
-  EXPECT_NEAR(swivel(), 42.8, 0.1);
+  EXPECT_FALSE(panel->enabled("write_setup"));
+  EXPECT_NEAR(height(), 0, 1e-6);
   closeSheet();
 }
 
@@ -157,60 +144,37 @@ TEST_F(SetupSheet, IsNotWrittenIntoTheFileOfTheJobThatRuns) {
   WAIT_FOR(panel->state() == "Disabled");
 }
 
-TEST_F(SetupSheet, KeepsTheFigureThatTheJobAsksFor) {
-  // On a cylinder, of which one figure may stay.
-  open({{"roughing_d10_t4.setup.yaml", "roughing_d10_t4.setup.yaml, swivel_deg: 43"}},
-       QString(kJob).replace("paper", "roughing_d10_t4"));
-  EXPECT_EQ(figure("swivel"), 43);
-  ASSERT_NO_FATAL_FAILURE(write("roughing_d10_t4.setup.yaml"));
-  EXPECT_DOUBLE_EQ(processOf(goalFromFile(file.toStdString())).setup_swivel, 43 * units::kDegree);
-  closeSheet();
-}
-
 TEST_F(SetupSheet, IsNotWrittenForAJobWithFigures) {
   open({}, kPaper);
   EXPECT_TRUE(panel->says("setup_sheet", "The figures of the set-up are written by hand in the job file"));
   EXPECT_FALSE(panel->enabled("write_setup"));
 }
 
-TEST_F(SetupSheet, IsNotWrittenWithoutASolutionOrIfAPlanWouldRefuseIt) {
-  open({{"teeth: 1", "teeth: 8"}});
-  EXPECT_TRUE(panel->says("setup_sheet", "a plan would refuse this tool: no land is left"));
-  EXPECT_TRUE(panel->says("setup_sheet", "It would be set up with process.wheel.width_mm = "));
-  EXPECT_FALSE(panel->enabled("write_setup"));
+TEST_F(SetupSheet, IsNotWrittenIfAPlanWouldRefuseItAndCountsTheWheelsPlaceOnTheSpindle) {
+  double flange = 0;
+  ASSERT_TRUE(ros::param::get("/grinder/geometry/flange", flange));
+  ros::param::set("/grinder/geometry/flange", 0);  // as YAML reads it without a decimal point
   // Each tooth has a helix of its own, and the set-up is for the middle.
-  open({{kSetup, kNone}, {"teeth: 1", "teeth: 2"}, {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"}});
+  open({{"paper.setup.yaml", "job.setup.yaml"},
+        {"teeth: 1", "teeth: 2"},
+        {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"},
+        {"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
+         "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
+         "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}});
+  ros::param::set("/grinder/geometry/flange", flange);
+  EXPECT_NE(figure("with the wheel's middle"), 0);
   EXPECT_TRUE(panel->says("setup_sheet", "a plan would refuse this tool: cutter.rake_angle_deg = 8 deg"));
   EXPECT_TRUE(panel->says("setup_sheet", "It is not written."));
   EXPECT_FALSE(panel->enabled("write_setup"));
-}
-
-TEST_F(SetupSheet, CountsTheWheelsPlaceOnTheSpindle) {
-  const std::vector<std::pair<QByteArray, QByteArray>> with_a_file{
-      {"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
-       "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
-       "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}};
-  const auto middle = [&] { return figure("with the wheel's middle"); };
-  open(with_a_file);
-  EXPECT_EQ(middle(), 0);
-  double flange = 0;
-  ASSERT_TRUE(ros::param::get("/grinder/geometry/flange", flange));
-  ros::param::set("/grinder/geometry/flange", 0.0);
-  open(with_a_file);
-  const double at_zero = middle();
-  EXPECT_NE(at_zero, 0);
-  ros::param::set("/grinder/geometry/flange", 0);  // as YAML reads it without a decimal point
-  open(with_a_file);
-  EXPECT_EQ(middle(), at_zero);
-  ros::param::set("/grinder/geometry/flange", flange);
 }
 
 TEST_F(SetupSheet, NeedsTheMachinesSwivel) {
   std::string description;
   ASSERT_TRUE(ros::param::get("/robot_description", description));
   ros::param::del("/robot_description");
-  open({});
+  open({{"paper.setup.yaml", "job.setup.yaml"}});
   ros::param::set("/robot_description", description);
+  EXPECT_TRUE(panel->says("plan_report", "'grind setup --write' solves it"));
   EXPECT_EQ(sheet(), "the machine's swivel is not known: no parameter /robot_description from the ROS master");
   EXPECT_FALSE(panel->enabled("write_setup"));
 }

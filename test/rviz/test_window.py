@@ -44,6 +44,11 @@ class TestWindow(unittest.TestCase):
         self.assertEqual((right, bottom), (1024, 768))
         left, top, width, height = self.rviz.numbers('window')
         self.assertTrue(left >= 0 and top >= 0 and left + width <= right and top + height <= bottom)
+        # With room for the title of a window, and a task bar.
+        _, _, min_width, min_height = self.rviz.numbers('least')
+        self.assertTrue(min_width <= 800 and min_height <= 760)
+        self.assertEqual(self.rviz.report('title'), ['/grinder - grinder.rviz[*] - RViz'])
+        self.assertIn('Grinder /grinder', self.rviz.report('dock'))
         places = []
         for tab in ['Job', 'Section', 'Jog', 'Zero', 'View']:
             self.rviz.operate('tab ' + tab)

@@ -66,14 +66,11 @@ void expectFit(const GrindJob& job) {
   }
 }
 
-TEST(GroundMarkers, OfEveryJobFitAMessage) {
+TEST(GroundMarkers, OfEveryJobOfManyTeethAndOfASteepSpiralFitAMessage) {
   for (const std::string& file : test_support::shippedJobs()) {
     SCOPED_TRACE(file);
     expectFit(readJobFile(file, "flute"));
   }
-}
-
-TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
   GrindJob many = jobOf("finishing_d20_t8");
   many.tooth_angles.clear();
   for (int i = 0; i < kMaxTeeth; ++i) many.tooth_angles.push_back(2 * units::kPi * i / kMaxTeeth);
@@ -286,29 +283,26 @@ TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
 
 TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
   GrindJob job = jobOf("micro_d05_t2");
-  for (const double shank : {3.0, 6.0}) {
-    for (const double neck : {4.0, 13.0}) {
-      SCOPED_TRACE(::testing::Message() << shank << " " << neck);
-      job.cutter.end_diameter = 0.2 * kMillimetre;
-      job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
-      job.process().depth = 0.04 * kMillimetre;
-      job.process().depth_end = job.process().setup_x_shift = 0;
-      job.cutter.shank_diameter = shank * kMillimetre;
-      job.cutter.neck_length = neck * kMillimetre;
-      for (const bool ground : {false, true}) {
-        const Reached reached{{0, 0}, PassPhase::kBefore, 0};
-        const ValidJob valid(job);
-        const std::vector<Marker> solid = solidOf(
-            groundMarkers(ground ? groundCutterOf(valid) : groundSoFar(valid, reached), valid, "ground"), "ground");
-        const double begin = job.cutter.flute_length + job.cutter.neck_length, end = 66 * kMillimetre;
-        EXPECT_NEAR(maxRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
-        EXPECT_NEAR(maxRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
-        EXPECT_EQ(maxRadius(solid, end + 1e-9, 1), 0);
-        // On the cone all the way to the shank, flutes and neck.
-        for (int i = 1; i <= 8; ++i) {
-          const double x = begin * i / 8, cone = 0.1 * kMillimetre + x * std::tan(3 * kDegree);
-          EXPECT_LE(maxRadius(solid, begin * (i - 1) / 8, x - 1e-9), cone);
-        }
+  job.cutter.end_diameter = 0.2 * kMillimetre;
+  job.cutter.core_diameter = job.cutter.core_diameter_end = 0.12 * kMillimetre;
+  job.process().depth = 0.04 * kMillimetre;
+  job.process().depth_end = job.process().setup_x_shift = 0;
+  for (const auto& [shank, neck] : {std::pair(3.0, 4.0), {6.0, 13.0}}) {
+    SCOPED_TRACE(neck);
+    job.cutter.shank_diameter = shank * kMillimetre;
+    job.cutter.neck_length = neck * kMillimetre;
+    const ValidJob valid(job);
+    for (const GroundCutter& cutter :
+         {groundCutterOf(valid), groundSoFar(valid, Reached{{0, 0}, PassPhase::kBefore, 0})}) {
+      const std::vector<Marker> solid = solidOf(groundMarkers(cutter, valid, "ground"), "ground");
+      const double begin = job.cutter.flute_length + job.cutter.neck_length, end = 66 * kMillimetre;
+      EXPECT_NEAR(maxRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
+      EXPECT_NEAR(maxRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
+      EXPECT_EQ(maxRadius(solid, end + 1e-9, 1), 0);
+      // On the cone all the way to the shank, flutes and neck.
+      for (int i = 1; i <= 8; ++i) {
+        const double x = begin * i / 8, cone = 0.1 * kMillimetre + x * std::tan(3 * kDegree);
+        EXPECT_LE(maxRadius(solid, begin * (i - 1) / 8, x - 1e-9), cone);
       }
     }
   }

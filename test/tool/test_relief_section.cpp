@@ -54,7 +54,7 @@ struct Stroke {
 
   /// The radius that is left along a ray.
   double left(double x, double angle) const {
-    constexpr int kPoses = 400;
+    constexpr int kPoses = 150;
     const double low = std::max(from, x - 20e-3), step = (std::min(to, x + 20e-3) - low) / kPoses;
     const auto at = [&](double i) { return ray(x, angle, low + i * step); };
     int best = 0;
@@ -62,7 +62,7 @@ struct Stroke {
       if (at(i) < at(best)) best = i;
     }
     double begin = std::max(best - 1, 0), end = std::min(best + 1, kPoses);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 40; ++i) {
       const double third = (end - begin) / 3;
       at(begin + third) < at(end - third) ? end -= third : begin += third;
     }
@@ -264,7 +264,7 @@ TEST(ReliefSection, TheOutlineAndTheSolidHaveIt) {
     // A quarter of the flute, whose sections are as far apart as in a whole solid.
     const double part = length / 4;
     const SolidExtent extent{0, part, 0, 0};
-    const SolidResolution coarse{8, 16, 90};
+    const SolidResolution coarse{6, 12, 60};
     const double without = cutterSolid(tool.cutter, extent, coarse).volume();
     const double fell = without - cutterSolid(tool.relieved, extent, coarse).volume();
     // Of one tooth, what the relief takes of the blank and the flute behind it does not.

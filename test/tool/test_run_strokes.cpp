@@ -9,7 +9,7 @@
 #include "flute_grinder/tool/run_strokes.h"
 #include "flute_grinder/tool/z_law.h"
 
-#include "motion/generators.h"
+#include "motion/examples.h"
 
 #include <gtest/gtest.h>
 
@@ -161,11 +161,11 @@ TEST(RunStrokes, WhatIsRemovedIsWhatEveryPositionRemovesTogether) {
     });
     const GroundCutter cutter = runOf(ValidJob(job), read).cutter();
     for (int k = 0; k < kPoints; ++k) {
-      const double x = uniform(0, 0.022), edge = cutter.section(x).teeth.front().edge.value();
+      const double x = uniform(0, 0.022);
       const double r = uniform(0.6, 1) * 0.005;
       const auto arc = cutter.arc(cutter.flutes().front(), x, r);
       // About one of the ends.
-      const double end = arc ? (k % 2 == 0 ? arc->low : arc->high) : edge;
+      const double end = !arc ? cutter.section(x).teeth.front().edge.value() : k % 2 == 0 ? arc->low : arc->high;
       const double theta = end + uniform(-1, 1) * (k % 3 == 0 ? 0.5 : 0.005);
       const bool is = removed(cutter, x, r, theta);
       taken += is;
@@ -200,17 +200,42 @@ Gouge onlyGouge(const GrindJob& job, const Error& error) {
   return gouges.empty() ? Gouge{} : gouges.front();
 }
 
-TEST(Gouges, TellTheStrokeAndHowFar) {
+TEST(Gouges, TellTheMoveTheDepthAndThePlace) {
   const GrindJob job = straight();
-  Gouge gouge = onlyGouge(job, errorOf(5, MoveKind::kStroke, along(kY, -1e-4)));
-  EXPECT_EQ(gouge.place, (ToothPass{0, 5}));
-  EXPECT_EQ(gouge.move, MoveKind::kStroke);
-  EXPECT_NEAR(gouge.depth, 1e-4, 1e-7);
-  gouge = onlyGouge(job, errorOf(5, MoveKind::kStroke, along(kZ, 3e-4)));
-  EXPECT_NEAR(gouge.depth, 3e-4, 1e-7);
-  gouge = onlyGouge(job, errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3)));
-  EXPECT_EQ(gouge.place, (ToothPass{0, 0}));
-  EXPECT_NEAR(gouge.depth, passDepths(job.process()).front() + 1.6e-3 - passDepths(job.process()).back(), 1e-7);
+  const std::vector<double> depths = passDepths(job.process());
+  const double deep = depths.front() + 1.6e-3 - depths.back();
+  const Error there = [](const Setpoint& p) {
+    const bool is = p.pass == 3 && p.move == MoveKind::kStroke && std::abs(p.position[kX] - 7.7e-3) < 0.4e-3;
+    return is ? along(kY, -1.6e-3) : Axes(Axes::Zero());
+  };
+  // Y hangs after the third pass; A turns by a quarter meanwhile.
+  const Error hanging = [](const Setpoint& p) {
+    const bool is = p.pass == 2 && p.move == MoveKind::kRetract;
+    return is ? Axes(0, -1.2e-3 - p.position[kY], 0, p.move_fraction * kPi / 2) : Axes(Axes::Zero());
+  };
+  const struct {
+    Error error;
+    int pass;
+    MoveKind move;
+    double least, most;            ///< depth
+    double from = -0.1, to = 0.1;  ///< X
+  } rows[]{{errorOf(5, MoveKind::kStroke, along(kY, -1e-4)), 5, MoveKind::kStroke, 1e-4 - 1e-7, 1e-4 + 1e-7},
+           {errorOf(5, MoveKind::kStroke, along(kZ, 3e-4)), 5, MoveKind::kStroke, 3e-4 - 1e-7, 3e-4 + 1e-7},
+           {errorOf(0, MoveKind::kStroke, along(kY, -1.6e-3)), 0, MoveKind::kStroke, deep - 1e-7, deep + 1e-7},
+           {there, 3, MoveKind::kStroke, 0.9e-3, 1.6e-3, 7.1e-3, 8.3e-3},
+           {errorOf(5, MoveKind::kInfeed, along(kZ, 2e-4)), 5, MoveKind::kInfeed, 2e-4 - 5e-6, 2e-4 + 5e-6, 0, 0},
+           {errorOf(2, MoveKind::kRetract, along(kA, 0.1)), 2, MoveKind::kRetract, 2e-4, 1e-3},
+           {hanging, 2, MoveKind::kRetract, 1e-3, 6e-3}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(&row - rows);
+    const Gouge gouge = onlyGouge(job, row.error);
+    EXPECT_EQ(gouge.place, (ToothPass{0, row.pass}));
+    EXPECT_EQ(gouge.move, row.move);
+    EXPECT_GE(gouge.depth, row.least);
+    EXPECT_LE(gouge.depth, row.most);
+    EXPECT_GE(gouge.x, row.from);
+    EXPECT_LE(gouge.x, row.to);
+  }
 }
 
 // Its walls are so curved that a shallower pass lies far inside of them, but beyond their tangent.
@@ -226,47 +251,6 @@ TEST(Gouges, AShallowerPassIsNone) {
   const GrindJob job = of_one_tooth("jobs/left_hand_d8_t3.yaml");
   EXPECT_TRUE(gougesOf(runOf(job, kExact), 1e-6).empty());
   EXPECT_NEAR(onlyGouge(job, errorOf(4, MoveKind::kStroke, along(kY, -1e-4))).depth, 1e-4, 1e-7);
-}
-
-TEST(Gouges, AreFoundWhereTheyAre) {
-  const GrindJob job = straight();
-  const Gouge gouge = onlyGouge(job, [](const Setpoint& p) {
-    const bool there = p.pass == 3 && p.move == MoveKind::kStroke && std::abs(p.position[kX] - 7.7e-3) < 0.4e-3;
-    return there ? along(kY, -1.6e-3) : Axes(Axes::Zero());
-  });
-  EXPECT_EQ(gouge.place.pass, 3);
-  EXPECT_NEAR(gouge.x, 7.7e-3, 0.6e-3);
-  EXPECT_GT(gouge.depth, 0.9e-3);
-}
-
-TEST(Gouges, OfInfeedAndRetractAreFound) {
-  const GrindJob job = straight();
-  Gouge gouge = onlyGouge(job, errorOf(5, MoveKind::kInfeed, along(kZ, 2e-4)));
-  EXPECT_EQ(gouge.move, MoveKind::kInfeed);
-  EXPECT_NEAR(gouge.depth, 2e-4, 5e-6);
-  EXPECT_EQ(gouge.x, 0);
-  gouge = onlyGouge(job, errorOf(2, MoveKind::kRetract, along(kA, 0.1)));
-  EXPECT_EQ(gouge.move, MoveKind::kRetract);
-  EXPECT_EQ(gouge.place.pass, 2);
-  EXPECT_GT(gouge.depth, 2e-4);
-}
-
-TEST(Gouges, AWheelThatIndexesInTheBlankIsOne) {
-  const GrindJob job = straight();
-  // Y hangs after the third pass; A turns by a quarter meanwhile.
-  const std::vector<Gouge> gouges = gougesOf(runOf(job,
-                                                   [&](const Setpoint& p) {
-                                                     Axes off = Axes::Zero();
-                                                     if (p.pass == 2 && p.move == MoveKind::kRetract) {
-                                                       off[kY] = -1.2e-3 - p.position[kY];
-                                                       off[kA] = p.move_fraction * kPi / 2;
-                                                     }
-                                                     return off;
-                                                   }),
-                                             2e-6);
-  ASSERT_EQ(gouges.size(), 1u);
-  EXPECT_EQ(gouges.front().move, MoveKind::kRetract);
-  EXPECT_GT(gouges.front().depth, 1e-3);
 }
 
 // After a stop in the stroke it goes on a little before; the first part was deeper there.

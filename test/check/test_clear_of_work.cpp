@@ -13,10 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <random>
-#include <utility>
 #include <vector>
 
 // Outside the cut the wheel keeps off the blank and off the shank.

@@ -10,9 +10,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <filesystem>
-
 namespace grinder {
 namespace test_planned_job {
 

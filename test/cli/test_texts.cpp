@@ -11,7 +11,6 @@
 #include <sys/stat.h>
 #include <time.h>
 
-#include <cmath>
 #include <fstream>
 
 // What commands print and write, without a machine.

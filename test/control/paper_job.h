@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 // The paper's job: its dimensions, its planned setpoints, and checks of its end.
@@ -31,34 +30,6 @@ inline const std::vector<Setpoint>& planned() {
 
 constexpr MoveKind kAllMoves[]{MoveKind::kIndex,  MoveKind::kPosition, MoveKind::kApproach, MoveKind::kInfeed,
                                MoveKind::kStroke, MoveKind::kRetract,  MoveKind::kReturn};
-
-/// A moment of the paper's job.
-struct Moment {
-  MoveKind move;
-  int per_mille;  ///< of the move's cycles
-  bool mid_pair;  ///< between the two steps of a pair
-
-  std::uint64_t cycle() const {
-    const auto is_of = [this](const Setpoint& p) { return p.cycle > 0 && p.move == move; };
-    const std::uint64_t first = std::find_if(planned().begin(), planned().end(), is_of)->cycle;
-    const std::uint64_t last = std::find_if(planned().rbegin(), planned().rend(), is_of)->cycle;
-    const std::uint64_t at = first + (last - first) * static_cast<std::uint64_t>(per_mille) / 1000;
-    return (at + 1) / 2 * 2 + (mid_pair ? 1 : 0);
-  }
-};
-inline std::ostream& operator<<(std::ostream& out, const Moment& m) {
-  return out << toString(m.move) << " " << m.per_mille << (m.mid_pair ? " mid-pair" : " at a pair's end");
-}
-
-inline std::vector<Moment> moments(const std::vector<int>& per_mille) {
-  std::vector<Moment> all;
-  for (const MoveKind move : kAllMoves) {
-    for (const int at : per_mille) {
-      for (const bool mid_pair : {false, true}) all.push_back({move, at, mid_pair});
-    }
-  }
-  return all;
-}
 
 /// Expects that a job was completed as if nobody had interfered.
 template <typename Drive>

@@ -30,11 +30,6 @@ class DriveChecksTest : public testing::Test {
   CycleSample sample_;
 };
 
-TEST_F(DriveChecksTest, FindNothingWhereNothingIsWrong) {
-  EXPECT_EQ(found(), FaultKind::kNone);
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kNone);
-}
-
 // Each cause is added to the ones over which it takes precedence.
 TEST_F(DriveChecksTest, FindTheCauseBeforeItsConsequences) {
   sample_.position[kY] += 1;

@@ -110,13 +110,5 @@ TEST_F(Preparation, IsWithdrawnByADisable) {
   EXPECT_EQ(enable(), "accepted");
 }
 
-TEST_F(Preparation, IsNotAskedOfADriveThatNeedsNone) {
-  std::atomic<int> calls{0};
-  make(
-      0.1, [&] { ++calls; }, false);
-  EXPECT_EQ(enable(), "accepted");
-  EXPECT_EQ(calls, 0);
-}
-
 }  // namespace test_drive_preparation
 }  // namespace grinder::test_support

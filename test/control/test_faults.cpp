@@ -225,17 +225,6 @@ TEST(FaultText, CutsOffWhatIsTooLong) {
   EXPECT_EQ(text.text(), std::string(FaultText::kMost - 2, 'x') + "cd");
 }
 
-TEST(ControlLoopFault, InTheCycleOfAStartRefusesIt) {
-  RigIn rig(S::kReady);
-  SetpointStream stream = rig.paperStream();
-  rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = true; };
-  const RequestReply answer = rig.askToStart(stream);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_CONTAINS(answer.text, "state fault");
-  rig.run(10);
-  EXPECT_TRUE(rig.setpoints().empty());
-}
-
 /// With positions that are read in every cycle, or in every other one.
 TEST(Enable, NeverCommandsAWrongReading) {
   LoopConfig config = machineConfig();
@@ -372,17 +361,6 @@ TEST(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAreAndEndsTheJobWithoutPower
     EXPECT_TRUE(sameSetpoints(rig.setpoints(), good));
     EXPECT_TRUE(sameBits(toAxes(rig.drive.written), good.back().position));
   }
-}
-
-TEST(ControlLoopFault, FeedbackThatComesBackInTimeIsNone) {
-  RigIn rig(S::kReady);
-  for (int i = 0; i < 5; ++i) {
-    rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
-    rig.run(2);
-    rig.drive.on_read = nullptr;
-    rig.cycle();
-  }
-  EXPECT_EQ(rig.last().state, S::kReady);
 }
 
 TEST(PowerThatStaysOn, IsReportedAfterTheTimeInWhichItComesOn) {

@@ -58,19 +58,6 @@ TEST(HeapUse, IsSeenHoweverAndWhereverTheHeapIsUsed) {
   }
 }
 
-/// Signal handlers post the stops.
-TEST(HeapUse, IsNoneOfStopsAndFeedOverrides) {
-  FakeDrive drive;
-  setUp(drive, machineConfig());
-  ControlLoop loop(drive, machineConfig());
-  const HeapUse use = heapUse([&] {
-    loop.postStop(E::kHold);
-    loop.postStop(E::kDisable);
-    loop.setFeedOverride(0.5);
-  });
-  EXPECT_FALSE(use.any());
-}
-
 /// The rigs run the published rule, without a correction.
 TEST(StreamAllocatesNothing, WhileItIsHeldRetractedAndResumed) {
   const LoopConfig config = machineConfig();

@@ -133,15 +133,6 @@ TEST_F(HomingFake, ThatEndsWithoutTheReferenceFaultsAtOnce) {
   expectFaultFor("0.008");
 }
 
-TEST_F(HomingFake, TheTimeCountsAnewForEveryRequestAndWhatWasSeenInAnEarlierOneDoesNot) {
-  for (int begins = 1; begins <= 3; ++begins) {
-    changeHoming([=](FakeDrive& d, int reading) { d.status.homing = reading >= begins && reading <= 40; });
-    ASSERT_TRUE(rig_.ask(E::kHome).accepted);
-    for (int i = 0; i < 40; ++i) ASSERT_EQ(rig_.cycle().state, S::kHoming) << begins;
-    ASSERT_EQ(rig_.cycle().state, S::kReady) << begins;
-  }
-}
-
 TEST_F(HomingFake, ThatOfBeforeDoesNotEndIt) {
   bool homing = true;
   rig_.drive.on_read = [&](FakeDrive& d) { d.status.homing = homing; };

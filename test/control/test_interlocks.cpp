@@ -1,7 +1,6 @@
 #include "control/paper_job.h"
 
 #include <functional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -114,27 +113,6 @@ TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
   }
 }
 
-TEST(SpindleAndCoolant, TurnTheWheelWhileAJobHasTheMachine) {
-  const std::set<S> without_job{S::kDisabled, S::kReady, S::kHoming, S::kFault, S::kLifting, S::kJogging};
-  for (const StateRow& row : kMachineStates) {
-    SCOPED_TRACE(row.name);
-    RigIn rig(row.value);
-    const bool on = without_job.count(row.value) == 0;
-    EXPECT_EQ(rig.drive.written_drive.spindle, on);
-    EXPECT_EQ(rig.drive.written_drive.coolant, on);
-    EXPECT_EQ(rig.drive.written_drive.home, row.value == S::kHoming);
-    EXPECT_EQ(rig.drive.written_drive.enable, row.value != S::kDisabled && row.value != S::kFault);
-  }
-}
-
-TEST(SpindleAndCoolant, AreOffForAStartThatIsRefused) {
-  RigIn rig(S::kReady);
-  rig.drive.status.homed = false;
-  EXPECT_EQ(rig.askToStartPaper().text, "start refused: the axes are not homed");
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
-  EXPECT_FALSE(rig.drive.written_drive.coolant);
-}
-
 /// When a part is lost, and the state in the cycle that detects it.
 struct LossMoment {
   std::string name;
@@ -206,76 +184,33 @@ struct LostRig : Rig<FakeDrive> {
   }
 };
 
-/// Each part lost at each moment.
-template <typename Check>
-void atEveryLoss(const Check& check) {
+TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
   for (const Part& part : parts()) {
     for (const LossMoment& moment : lossMoments()) {
       SCOPED_TRACE(part.name + (" " + moment.name));
       LostRig rig(part, moment);
-      check(rig, part, moment);
-    }
-  }
-}
-
-TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
-  atEveryLoss([](LostRig& rig, const Part& part, const LossMoment& moment) {
-    EXPECT_EQ(rig.last().interlock, part.interlock);
-    EXPECT_EQ(rig.last().state, moment.then);
-    EXPECT_FALSE(rig.last().job_ended);
-    EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
-    ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
-    EXPECT_GE(rig.last().command[kY], kClearanceHeight - 1e-12);
-    EXPECT_EQ(rig.last().interlock, part.interlock);
-    EXPECT_EQ(rig.jobsEnded(), 0);
-    const std::size_t lifted = rig.log.size() - 1;
-    for (int i = 0; i < 2; ++i) {
-      EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
-      rig.run(100);
-    }
-    rig.drive.on_read = restoreParts;
-    rig.run(200);
-    EXPECT_EQ(rig.last().state, S::kRetracted);
-    EXPECT_EQ(rig.last().interlock, part.interlock) << "reported until the job is resumed";
-    EXPECT_TRUE(atRestFrom(rig.log, lifted));
-    ASSERT_TRUE(rig.ask(E::kResume).accepted);
-    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
-    if (rig.jobsEnded() == 0) rig.runToEnd();
-    expectCompleted(rig);
-  });
-}
-
-TEST(Lost, ForASinglePeriodIsAsGoodAsForLong) {
-  atEveryLoss([](LostRig& rig, const Part& part, const LossMoment&) {
-    rig.drive.on_read = restoreParts;
-    ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
-    EXPECT_EQ(rig.last().interlock, part.interlock);
-    expectResumedAndCompleted(rig);
-  });
-}
-
-TEST(Lost, CancelEndsTheJob) {
-  atEveryLoss([](LostRig& rig, const Part&, const LossMoment&) {
-    ASSERT_TRUE(rig.ask(E::kCancel).accepted);
-    if (rig.last().state != S::kReady) rig.runUntil(S::kReady);
-    EXPECT_EQ(rig.jobsEnded(), 1);
-    EXPECT_FALSE(rig.last().wheel_in_work);
-    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
-    EXPECT_FALSE(rig.drive.written_drive.spindle);
-    EXPECT_TRUE(smooth(rig.log));
-  });
-}
-
-TEST(LostPart, WhileCancelingDoesNotKeepTheJobFromEnding) {
-  for (const Part& part : parts()) {
-    SCOPED_TRACE(part.name);
-    RigIn rig(S::kCanceling);
-    rig.drive.on_read = part.lose;
-    rig.runUntil(S::kReady);
-    EXPECT_EQ(rig.jobsEnded(), 1);
-    for (const CycleSample& sample : rig.log) {
-      ASSERT_NE(sample.state, S::kRetracting);
-      ASSERT_EQ(sample.interlock, Interlock::kNone) << "it was not the loop that stopped the job";
+      EXPECT_EQ(rig.last().interlock, part.interlock);
+      EXPECT_EQ(rig.last().state, moment.then);
+      EXPECT_FALSE(rig.last().job_ended);
+      EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
+      ASSERT_NO_FATAL_FAILURE(rig.awaitRetracted());
+      EXPECT_GE(rig.last().command[kY], kClearanceHeight - 1e-12);
+      EXPECT_EQ(rig.last().interlock, part.interlock);
+      EXPECT_EQ(rig.jobsEnded(), 0);
+      const std::size_t lifted = rig.log.size() - 1;
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_EQ(rig.ask(E::kResume).text, std::string("resume refused: ") + part.words);
+        rig.run(100);
+      }
+      rig.drive.on_read = restoreParts;
+      rig.run(200);
+      EXPECT_EQ(rig.last().state, S::kRetracted);
+      EXPECT_EQ(rig.last().interlock, part.interlock) << "reported until the job is resumed";
+      EXPECT_TRUE(atRestFrom(rig.log, lifted));
+      ASSERT_TRUE(rig.ask(E::kResume).accepted);
+      EXPECT_EQ(rig.last().interlock, Interlock::kNone);
+      if (rig.jobsEnded() == 0) rig.runToEnd();
+      expectCompleted(rig);
     }
   }
 }

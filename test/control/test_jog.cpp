@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -178,16 +177,6 @@ TEST_P(JogFrom, VelocityZeroANumberThatIsNoneOrALostReferenceStopsIt) {
   }
 }
 
-TEST_P(JogFrom, AReferenceThatIsLostForACycleEndsItToo) {
-  jogFor(on(kX, 0.1), 400);
-  rig_.drive.status.homed = false;
-  rig_.cycle();
-  rig_.drive.status.homed = true;
-  EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, kStoppedText);
-  expectStop();
-  expectRefused(on(kX, 0.1), kStoppedText);
-}
-
 TEST_P(JogFrom, AfterATimeoutOnlyAReleaseLetsItMoveAgain) {
   jogFor(on(kX, 0.1), 400);
   rig_.run(kTimeoutCycles + 1);
@@ -205,46 +194,6 @@ TEST_P(JogFrom, AfterATimeoutOnlyAReleaseLetsItMoveAgain) {
   release(rig_);
   jogFor(on(kX, 0.1), 10);
   EXPECT_EQ(rig_.last().state, jogging());
-}
-
-TEST_P(JogFrom, OneThatRanIntoItsLimitIsTimedOutToo) {
-  for (int i = 0; i < 100 || rig_.last().state == jogging(); ++i) {
-    ASSERT_LT(i, 10000);
-    if (i % 20 == 0) rig_.loop->postJog(on(kZ, 0.1));
-    rig_.cycle();
-    static_cast<void>(rig_.loop->jogReply());
-  }
-  rig_.run(20 * kTimeoutCycles);
-  expectRefused(on(kZ, -0.01), kTimedOutText);
-}
-
-TEST_P(JogFrom, MessagesForAnotherAxisDoNotKeepItMoving) {
-  jogFor(on(kX, 0.1), 400);
-  ASSERT_TRUE(rig_.jog(on(kX, 0.1)).accepted);
-  const std::size_t message = rig_.log.size() - 1;
-  while (rig_.last().state == jogging()) {
-    ASSERT_LT(rig_.log.size() - message, 2000u);
-    const RequestReply answer = rig_.jog(on(kZ, 0.01));
-    ASSERT_EQ(answer.text, rig_.log.size() - 1 - message <= kTimeoutCycles
-                               ? "jog refused: an axis is being jogged; wait until it rests"
-                               : kTimedOutText);
-  }
-  const double way = rig_.last().command[kX] - rig_.log[message].command[kX];
-  EXPECT_LE(way, 0.1 * 0.001 * (kTimeoutCycles + 3) + brakingDistance(kX, 0.1));
-}
-
-TEST_P(JogFrom, AButtonThatWaitsForAnotherAxisMovesNothingAfterAStop) {
-  for (const JogRequest& first : {step(kX, 0.05), on(kX, 0.1)}) {
-    ASSERT_TRUE(rig_.jog(first).accepted);
-    rig_.run(kTimeoutCycles / 2);
-    if (first.continuous) release(rig_);
-    EXPECT_EQ(rig_.jog(on(kZ, 0.01)).text, "jog refused: an axis is being jogged; wait until it rests");
-    ASSERT_TRUE(rig_.ask(E::kHold).accepted);
-    EXPECT_EQ(rig_.jog(on(kZ, 0.01)).text, kStoppedText);
-    rig_.runUntil(GetParam());
-    expectRefused(on(kZ, 0.01), kStoppedText);
-    release(rig_);
-  }
 }
 
 TEST_P(JogFrom, TheLastMessageCounts) {
@@ -319,38 +268,6 @@ TEST_P(JogFrom, EveryStopStopsItAndAllButAHoldEndAJob) {
   }
 }
 
-TEST_P(JogFrom, AButtonThatIsPressedAgainDoesNotUndoAStop) {
-  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
-    SCOPED_TRACE(toString(stop));
-    RigIn rig(GetParam());
-    for (int i = 0; i < 400; ++i) {
-      if (i % 20 == 0) rig.loop->postJog(on(kX, 0.1));
-      rig.cycle();
-      static_cast<void>(rig.loop->jogReply());
-    }
-    ASSERT_EQ(rig.last().state, jogging());
-    ASSERT_TRUE(rig.ask(stop).accepted);
-    const double from = rig.last().command[kX];
-    EXPECT_TRUE(rig.jog(on(kX, 0)).accepted);
-    for (int i = 0; rig.last().has_setpoint && i < 2000; ++i) {
-      ASSERT_LE(rig.last().command[kX] - from, brakingDistance(kX, 0.1) + 0.1 * 0.003);
-      rig.loop->postJog(on(kX, 0.1));
-      rig.cycle();
-      static_cast<void>(rig.loop->jogReply());
-    }
-    EXPECT_TRUE(stop == E::kHold || rig.last().state != jogging());
-    EXPECT_TRUE(smooth(rig.log));
-  }
-}
-
-TEST_P(JogFrom, AStopInTheSameCycleComesAfterIt) {
-  ASSERT_TRUE(rig_.loop->postJog(step(kX, 0.01)));
-  rig_.loop->postStop(E::kHold);
-  rig_.run(20);
-  EXPECT_EQ(rig_.last().state, GetParam());
-  EXPECT_TRUE(sameBits(rig_.last().command, at_));
-}
-
 TEST_P(JogFrom, AFaultEndsItAndAJob) {
   ASSERT_TRUE(rig_.jog(step(kX, 0.1, 0.1)).accepted);
   rig_.run(100);
@@ -370,33 +287,6 @@ TEST_P(JogFrom, AFaultEndsItAndAJob) {
   rig_.run(100);
   EXPECT_EQ(rig_.last().state, S::kReady);
   ASSERT_TRUE(rig_.jog(step(kX, 0.001)).accepted);
-}
-
-TEST_P(JogFrom, AtRandomMomentsItKeepsTheLimitsAndRestsInTheEnd) {
-  for (unsigned seed = 0; seed < 10; ++seed) {
-    std::mt19937 random(seed);
-    std::uniform_real_distribution<> chance(0, 1);
-    for (int i = 0; i < 3000; ++i) {
-      const int axis = static_cast<int>(random() % 4);
-      const double max = machineConfig().machine.limits.max_velocity[axis];
-      const double velocity = max * (2 * chance(random) - 1);
-      if (chance(random) < 0.02) {
-        rig_.loop->postJog(step(axis, (axis == kA ? 3 : 0.05) * (2 * chance(random) - 1), std::abs(velocity)));
-      } else if (chance(random) < 0.05) {
-        rig_.loop->postJog(on(static_cast<int>(random() % 2), chance(random) < 0.2 ? 0 : velocity / 20));
-      }
-      if (chance(random) < 0.005) rig_.loop->postStop(E::kHold);
-      rig_.cycle(chance(random) < 0.01 ? 1 + 0.9 * chance(random) : 1);
-      const S state = rig_.last().state;
-      ASSERT_TRUE(state == GetParam() || state == jogging()) << toString(state) << rig_.last().fault.text();
-      ASSERT_TRUE(GetParam() == S::kReady || rig_.last().command[kY] >= rig_.loop->status().wheel.clear_y);
-      static_cast<void>(rig_.loop->jogReply());
-    }
-    rig_.loop->postStop(E::kHold);
-    rig_.run(2000);
-    ASSERT_EQ(rig_.last().state, GetParam());
-  }
-  EXPECT_TRUE(smooth(rig_.log));
 }
 
 INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), stateName);
@@ -429,21 +319,6 @@ TEST(Jog, FromOutsideTheLimitsIsRefused) {
   rig.drive.position[kZ] = -0.051;
   rig.enable();
   EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z is at -51 mm, outside its limit -50 mm");
-}
-
-TEST(Jog, AfterAStallOfTheProcessItsMessagesAreWaitedForOnce) {
-  LoopConfig config = machineConfig();
-  config.late_slow_down = config.late_fault = 1e6;
-  RigIn rig(S::kReady, config);
-  ASSERT_TRUE(rig.jog(on(kX, 0.01)).accepted);
-  rig.run(kTimeoutCycles - 10);
-  rig.cycle(300);
-  rig.run(kTimeoutCycles - 10);
-  EXPECT_NEAR(rig.last().setpoint.velocity[kX], 0.01, 1e-9);
-  rig.cycle(300);
-  const double at = rig.last().command[kX];
-  rig.runUntil(S::kReady);
-  EXPECT_LE(rig.last().command[kX] - at, 0.01 * 0.001 * (10 + 3) + brakingDistance(kX, 0.01));
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {

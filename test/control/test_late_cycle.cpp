@@ -85,30 +85,5 @@ TEST(LateCycle, BelowTheLimitTakesTheSpeedUpAnew) {
   }
 }
 
-TEST(LateCycle, JustBelowTwoPeriodsIsNotLate) {
-  RigIn rig(S::kRunning, patient()), punctual(S::kRunning, patient());
-  rig.cycle(1.99);
-  punctual.cycle();
-  rig.run(10);
-  punctual.run(10);
-  EXPECT_TRUE(sameBits(rig.last().command, punctual.last().command));
-}
-
-TEST(LateCycle, OfAnAxisWithoutTheJobTakesItsSpeedUpAnewToo) {
-  for (const S state : {S::kLifting, S::kJogging, S::kJoggingRetracted}) {
-    SCOPED_TRACE(toString(state));
-    RigIn rig(state, patient());
-    rig.run(20);
-    const auto y_step = [&] { return rig.last().command[kY] - rig.log[rig.log.size() - 2].command[kY]; };
-    if (rig.last().setpoint.cycle % 2 == 1) rig.cycle();
-    const double before = y_step();
-    rig.cycle(5);
-    rig.cycle();
-    EXPECT_LT(y_step(), before / 5 + 2e-6);
-    rig.runUntil(state == S::kJoggingRetracted ? S::kRetracted : S::kReady);
-    EXPECT_FALSE(rig.last().wheel_in_work);
-  }
-}
-
 }  // namespace test_late_cycle
 }  // namespace grinder::test_support

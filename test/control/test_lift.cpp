@@ -189,39 +189,6 @@ TEST(YThatWasReadWhereItCannotBe, IsNotBelievedAfterARestart) {
   EXPECT_TRUE(rig.loop->status().wheel.y_doubted);
 }
 
-TEST(WheelInTheWork, IsOneThatComesToRestThereOnItsApproach) {
-  Rig<FakeDrive> rig;
-  rig.startPaper();
-  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kApproach));
-  while (rig.last().command[kY] > kClearanceHeight + 5e-4) rig.cycle();
-  breakDown(rig);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-  turnTo(rig, kClearanceHeight - 1e-4);
-  EXPECT_TRUE(rig.run(1).wheel_in_work);
-  turnTo(rig, kClearanceHeight + 1e-4);
-  EXPECT_FALSE(rig.run(200).wheel_in_work);
-  turnTo(rig, kClearanceHeight - 1e-4);
-  rig.recover();
-  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
-  ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_EQ(rig.last().command[kY], rig.loop->status().wheel.clear_y);
-}
-
-TEST(WheelInTheWork, IsNotOverByReadingsFromBeforeTheJobAndOneAfterAFault) {
-  Rig<FakeDrive> rig;
-  rig.enable();
-  rig.run(200);
-  rig.startPaper();
-  rig.runTo(MoveKind::kStroke);
-  rig.drive.status.fault = true;
-  rig.cycle();
-  const double in_work = rig.drive.position[kY];
-  rig.drive.position[kY] = 0.05;
-  rig.run(2);
-  rig.drive.position[kY] = in_work;
-  EXPECT_TRUE(rig.run(200).wheel_in_work);
-}
-
 TEST(Lift, IsStoppedOnItsWayByEveryStopWithTheWheelStillInTheWork) {
   for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
     SCOPED_TRACE(toString(stop));

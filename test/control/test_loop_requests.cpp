@@ -133,19 +133,6 @@ TEST(ControlLoopEnable, IsRefusedWhenThePowerOfBeforeStays) {
   EXPECT_EQ(rig.last().state, S::kDisabled) << "the refused request came back to life";
 }
 
-TEST(ControlLoopEnable, NeverWritesACommandThatIsNotANumber) {
-  Rig<FakeDrive> rig;
-  rig.cycle();
-  ASSERT_TRUE(rig.loop->post(E::kEnable));
-  rig.cycle();
-  // The encoder fails in the same cycle in which the power comes.
-  rig.drive.on_read = [](FakeDrive& d) { d.position[kY] = kNan; };
-  for (int i = 0; i < 5; ++i) {
-    rig.cycle();
-    EXPECT_TRUE(toAxes(rig.drive.written).isFinite().all()) << "in cycle " << i;
-  }
-}
-
 TEST(ControlLoopEnable, AnEmergencyStopWhileWaitingForPowerTakesTheEnableBack) {
   Rig<FakeDrive> rig;
   rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; };

@@ -52,22 +52,6 @@ TEST_F(ControlLoopThread, ThePeriodsAddUpToTheTime) {
   EXPECT_NEAR(sample.time - first, sum, 1e-6);
 }
 
-TEST_F(ControlLoopThread, GoesOnWhenTheDriveThrows) {
-  struct Thrown : std::exception {
-    const char* what() const noexcept override { return "no clock"; }
-  };
-  drive_.on_wait = [] { throw Thrown(); };
-  loop_->startThread();
-  CycleSample sample;
-  for (int i = 0; i < 5; ++i) {
-    ASSERT_TRUE(popInTime(sample));
-    EXPECT_EQ(sample.drive.fault_text.text(), "no clock (thrown by its wait())");
-    EXPECT_GT(sample.period, 0);
-  }
-  loop_->stopThread();
-  EXPECT_FALSE(drive_.written_drive.enable);
-}
-
 TEST_F(ControlLoopThread, OfADriveWithAClockOfItsOwnThatThrowsAgainLaterKeepsTheTime) {
   using Clock = std::chrono::steady_clock;
   static constexpr int kFailures[]{3, 60};

@@ -15,26 +15,6 @@ class HoldWhileStarting : public testing::Test {
   RigIn rig_{S::kStarting};
 };
 
-TEST_F(HoldWhileStarting, LetsSpindleAndCoolantRunUpIsHeldThenAndResumedGrindsTheWholeJob) {
-  rig_.run(5);
-  EXPECT_EQ(rig_.last().state, S::kStarting);
-  EXPECT_TRUE(rig_.drive.written_drive.spindle);
-  EXPECT_TRUE(rig_.drive.written_drive.coolant);
-  spindleComes();
-  rig_.runUntil(S::kHeld);
-  rig_.run(500);
-  EXPECT_EQ(rig_.last().state, S::kHeld);
-  EXPECT_TRUE(rig_.drive.written_drive.spindle);
-  // No axis was commanded to move.
-  for (const CycleSample& sample : rig_.log) {
-    EXPECT_NE(sample.state, S::kRunning);
-    ASSERT_TRUE(sameBits(sample.command, machineConfig().machine.park)) << toString(sample.state);
-  }
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.runToEnd();
-  EXPECT_TRUE(sameSetpoints(rig_.setpoints(), allSetpoints(SetpointStream(rig_.stream->program()))));
-}
-
 TEST_F(HoldWhileStarting, ResumeWhileStartingTakesItBack) {
   ASSERT_TRUE(rig_.ask(E::kResume).accepted);
   EXPECT_EQ(rig_.last().state, S::kStarting);

@@ -111,20 +111,6 @@ TEST_F(Switches, TheyStayOnWhileAnAxisIsJogged) {
   EXPECT_EQ(on(), "");
 }
 
-TEST_F(Switches, AJobTakesThemOverAndSwitchesThemOff) {
-  switchBothOn();
-  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
-  EXPECT_EQ(on(), "spindle coolant");
-  for (const E event : {E::kSpindleOn, E::kSpindleOff, E::kCoolantOn, E::kCoolantOff}) {
-    EXPECT_FALSE(rig.ask(event).accepted) << toString(event);
-    EXPECT_EQ(on(), "spindle coolant");
-  }
-  rig.runToEnd();
-  rig.runUntil(S::kReady);
-  rig.run(5);
-  EXPECT_EQ(on(), "");
-}
-
 TEST_F(Switches, AJobThatIsRefusedLeavesThemAsTheyAre) {
   switchBothOn();
   SetpointStream job = rig.paperStream();
@@ -191,18 +177,6 @@ TEST(SwitchesInAJob, WhatIsOffKeepsALiftedWheelFromTheWorkUntilItIsOnAndReady) {
     rig.runToEnd();
     expectCompleted(rig);
   }
-}
-
-TEST(SwitchesInAJob, TheySwitchWhileAnAxisIsJoggedToo) {
-  RigIn rig(S::kJoggingRetracted);
-  for (const Switch& part : kSwitches) {
-    ASSERT_TRUE(rig.ask(part.off).accepted);
-    EXPECT_FALSE(rig.drive.written_drive.*part.command);
-  }
-  EXPECT_EQ(rig.last().state, S::kJoggingRetracted);
-  rig.runUntil(S::kRetracted);
-  EXPECT_FALSE(rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
-  EXPECT_EQ(rig.last().interlock, Interlock::kNone);
 }
 
 TEST(SwitchesInAJob, WhatIsLostAfterTheResumeTakesTheWheelOffTheWork) {

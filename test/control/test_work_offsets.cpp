@@ -47,20 +47,6 @@ bool commandsAreShifted(const std::vector<CycleSample>& log, const Axes& offset)
   return true;
 }
 
-/// The log of a job in its own coordinates.
-std::vector<CycleSample> inWork(const std::vector<CycleSample>& log, const Axes& offset) {
-  std::vector<CycleSample> work = log;
-  for (std::size_t i = 0; i < log.size(); ++i) {
-    work[i].command -= offset;
-    if (log[i].has_setpoint) {
-      work[i].command = log[i].setpoint.position;
-    } else if (i > 0 && sameBits(log[i].command, log[i - 1].command)) {
-      work[i].command = work[i - 1].command;
-    }
-  }
-  return work;
-}
-
 TEST_P(WithOffsets, SetpointsAreThePlansAndCommandsTheMachines) {
   Rig<FakeDrive> rig;
   rig.enable();
@@ -117,21 +103,6 @@ TEST_P(WithOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures)
   ASSERT_TRUE(planJob(paper(), machine, {machine.park, {}, offset_}).good());
 }
 
-TEST(WorkOffsets, TheLoopStopsAJobThatWouldLeaveTheMachinesLimits) {
-  Rig<FakeDrive> rig;
-  rig.enable();
-  const Axes offset(0.28, 0, 0, 0);
-  SetpointStream stream = streamAt(offset, rig.last().command);
-  rig.start(stream);
-  rig.runUntil(S::kFault);
-  EXPECT_EQ(rig.last().fault.kind, FaultKind::kLimit);
-  EXPECT_EQ(rig.last().fault.axis, kX);
-  EXPECT_EQ(rig.last().fault.violation.limit, 0.3);
-  EXPECT_GT(rig.last().fault.violation.value, 0.3);
-  EXPECT_LT(rig.last().fault.violation.x, kStrokeTo);
-  for (const CycleSample& sample : rig.log) ASSERT_LE(sample.command[kX], 0.3);
-}
-
 TEST(WorkOffsets, TheParkPositionIsTheMachines) {
   const Axes offset(0, 0.045, 0, 0);
   const Machine machine = machineConfig().machine;
@@ -148,18 +119,6 @@ TEST(WorkOffsets, UnknownOnesAreNoJobs) {
     const Axes offset(0, 0, value, 0);
     EXPECT_FALSE(planJob(paper(), machineConfig().machine, {machineConfig().machine.park, {}, offset}).good()) << value;
   }
-}
-
-/// From any place, whose work coordinates are rounded.
-TEST_P(WithOffsets, AJobStartsWhereItWasPlannedFrom) {
-  const Axes at(between(-0.1, 0.3), between(0, 0.15), between(-0.05, 0.1), between(-120, 120));
-  Rig<FakeDrive> rig;
-  rig.drive.place(at);
-  rig.enable();
-  SetpointStream stream = streamAt(offset_, at);
-  ASSERT_NO_FATAL_FAILURE(rig.start(stream));
-  ASSERT_TRUE(rig.last().has_setpoint);
-  ASSERT_TRUE(((rig.last().command - at).abs() <= kUlp * (offset_.abs() + at.abs())).all());
 }
 
 const Axes kOffset(0.1, 0.0375, -0.02, 7);
@@ -179,27 +138,6 @@ class InAShiftedStroke : public testing::Test {
 
   Rig<FakeDrive> rig_;
 };
-
-TEST_F(InAShiftedStroke, RetractJogAndResume) {
-  ASSERT_NO_FATAL_FAILURE(rig_.hold());
-  const double x = rig_.last().setpoint.position[kX];
-  EXPECT_EQ(rig_.loop->status().place.x, x) << "the job's";
-  ASSERT_NO_FATAL_FAILURE(rig_.retract());
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
-  EXPECT_FALSE(rig_.last().wheel_in_work);
-  Axes at = rig_.last().command;
-  for (const auto& [axis, distance] : {std::pair(kX, -0.02), std::pair(kY, 0.005), std::pair(kA, -2.0)}) {
-    ASSERT_TRUE(rig_.jog({axis, false, distance, axis == kA ? 0.5 : 0.01}).accepted);
-    rig_.runUntil(S::kRetracted);
-    at[axis] += distance;
-    EXPECT_LT((rig_.last().command - at).abs().maxCoeff(), 1e-14) << axis;
-  }
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
-  EXPECT_TRUE(commandsAreShifted(rig_.log, kOffset));
-  EXPECT_TRUE(smooth(inWork(rig_.log, kOffset)));
-}
 
 /// In the middle of a job too the limits are the machine's, and the height to which Y may go down with them.
 TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
@@ -241,37 +179,6 @@ TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
   ASSERT_TRUE(rig.ask(E::kResume).accepted);
   rig.runToEnd();
   ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
-}
-
-/// Its setpoints are rounded as the machine's positions are, which may be far larger than the work's.
-TEST(WorkOffsets, AJogInAJobKeepsItsLimitsFarFromTheMachinesOrigin) {
-  LoopConfig config = machineConfig();
-  config.machine.limits.max_position[kZ] = 0.6;
-  config.machine.limits.max_jerk[kZ] = 0.5;
-  config.machine.park[kZ] = 0.5;
-  Rig<FakeDrive> rig(config);
-  rig.drive.place(config.machine.park);
-  rig.enable();
-  rig.stream.emplace(streamAt(Axes(0, 0, 0.5, 0), rig.last().command, config));
-  rig.start(*rig.stream);
-  rig.runTo(MoveKind::kStroke);
-  ASSERT_NO_FATAL_FAILURE(rig.hold());
-  ASSERT_NO_FATAL_FAILURE(rig.retract());
-  for (const double distance : {1e-3, -1e-3}) {
-    ASSERT_TRUE(rig.jog({kZ, false, distance, 0.01}).accepted);
-    rig.runUntil(S::kRetracted);
-  }
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.runToEnd();
-  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
-}
-
-TEST_F(InAShiftedStroke, CancelLiftsTheWheelClear) {
-  ASSERT_TRUE(rig_.ask(E::kCancel).accepted);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kCanceled);
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight + 0.0375, 1e-15);
-  EXPECT_FALSE(rig_.last().wheel_in_work);
 }
 
 TEST_F(InAShiftedStroke, AfterAFaultTheLoopAndANewOneLiftItWithoutTheOffset) {

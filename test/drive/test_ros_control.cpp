@@ -12,7 +12,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 // What the drive for ros_control's RobotHW does without a RobotHW: signals, commands to other programs, switching over.
 namespace grinder::test_support {

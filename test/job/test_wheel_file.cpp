@@ -8,14 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <string>
-#include <vector>
 
 /// @file
 /// A job gets the wheel of a wheel file as it would get it from keys of its own, and a wheel file's mistakes are

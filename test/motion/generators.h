@@ -6,9 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <ostream>
-#include <stdexcept>
 
 // What the property tests draw from: machines and jobs.
 namespace grinder::test_support {

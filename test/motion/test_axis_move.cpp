@@ -26,13 +26,6 @@ std::vector<Setpoint> all(AxisMove& move) {
   return setpoints;
 }
 
-TEST(AxisMove, HasNothingToDoBeforeItBegins) {
-  AxisMove move(plainMachine());
-  Setpoint p;
-  EXPECT_FALSE(move.next(p));
-  EXPECT_TRUE(move.finished());
-}
-
 TEST(AxisMove, RefusesAMachineWithoutLimitsOfAnAxis) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     Machine machine = plainMachine();
@@ -80,13 +73,6 @@ TEST_P(AxisMoveAlong, GoesStraightExactlyToItsEnd) {
 
 INSTANTIATE_TEST_SUITE_P(, AxisMoveAlong,
                          ::testing::Combine(::testing::Values(kX, kY, kZ, kA), ::testing::Values(1, -1)));
-
-TEST(AxisMove, ToWhereTheAxisStandsNothingMoves) {
-  AxisMove move(plainMachine());
-  move.begin(MoveKind::kLift, kFrom, kY, kFrom[kY], 0.01);
-  for (const Setpoint& p : all(move)) EXPECT_TRUE((p.position == kFrom).all());
-  EXPECT_TRUE(move.finished());
-}
 
 TEST(AxisMove, StopsAtSpeedZeroAndGoesOnAtAnother) {
   AxisMove move(plainMachine());

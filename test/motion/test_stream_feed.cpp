@@ -138,26 +138,6 @@ TEST(SetpointStream, AnotherFeedIsReachedAsSoonAsTheLimitsAllow) {
   }
 }
 
-TEST(SetpointStream, NoFeedRestsOnThePathUntilThereIsFeedAgain) {
-  PaperStroke ride(10e-3);
-  ride.stream().setFeedOverride(0);
-  ride.runToRest();
-  const Setpoint rest = ride.last();
-  EXPECT_EQ(rest.move, MoveKind::kStroke);
-  EXPECT_LT(rest.position[kX], 11e-3);
-  EXPECT_EQ(ride.stream().rest(), Rest::kNoFeed);
-  EXPECT_TRUE(ride.stream().onPath());
-  EXPECT_FALSE(ride.next());
-  ride.stream().resume();  // which is for holds
-  EXPECT_FALSE(ride.next());
-  ride.stream().setFeedOverride(1e-3);
-  ASSERT_TRUE(ride.next());
-  EXPECT_EQ(ride.last().cycle, rest.cycle + 1);
-  ride.stream().setFeedOverride(1);
-  ride.runToRest();
-  EXPECT_EQ(ride.stream().rest(), Rest::kEnd);
-}
-
 TEST(SetpointStream, AFeedThatThereIsNotIsNotTaken) {
   const double not_taken[]{
       std::numeric_limits<double>::quiet_NaN(), -1e-9, -1, 1.2 + 1e-9, 100, std::numeric_limits<double>::infinity(),

@@ -245,54 +245,5 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
   expectIgnored("resumed");
 }
 
-TEST(SetpointStream, TheWayBackFromAJogCanBeHeldAndLeftForAnotherJog) {
-  PaperStroke ride(10e-3);
-  SetpointStream& stream = ride.stream();
-  stream.hold();
-  ride.runToRest();
-  stream.retract();
-  ride.runToRest();
-  const Axes lifted = ride.last().position;
-  for (int cycles = 50; cycles < 400; cycles += 50) {
-    Setpoint last = ride.last();
-    jog(stream, plainMachine(), last, kX, 0.05);
-    jog(stream, plainMachine(), last, kY, 0.02);
-    jog(stream, plainMachine(), last, kA, -1);
-    stream.resume();
-    for (int i = 0; i < cycles; ++i) ASSERT_TRUE(ride.next());
-    ASSERT_FALSE(stream.onPath());
-    stream.hold();
-    ride.runToRest();
-    ASSERT_GE(ride.last().position[kY], lifted[kY]);
-    const Axes held = ride.last().position;
-    stream.retract();
-    ride.runToRest();
-    ASSERT_EQ(stream.rest(), Rest::kLifted);
-    ASSERT_TRUE((ride.last().position == held).all()) << "it is off the work";
-  }
-  stream.resume();
-  ride.runToRest();
-  EXPECT_EQ(stream.rest(), Rest::kEnd);
-  EXPECT_TRUE((ride.last().position == plainMachine().park).all());
-}
-
-TEST(SetpointStream, LiftedBeforeItBeginsGoesOnAsIfItWereNot) {
-  Axes start = plainMachine().park;
-  start[kY] = 0;
-  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), start));
-  stream.retract();
-  Setpoint p;
-  ASSERT_TRUE(stream.next(p));
-  EXPECT_TRUE((p.position == start).all());
-  while (stream.next(p)) {
-  }
-  EXPECT_NEAR(p.position[kY], kPaperClearance, 1e-15);
-  stream.resume();
-  while (stream.next(p)) {
-  }
-  EXPECT_EQ(stream.rest(), Rest::kEnd);
-  EXPECT_TRUE((p.position == plainMachine().park).all());
-}
-
 }  // namespace test_stream_hold
 }  // namespace grinder

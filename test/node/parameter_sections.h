@@ -9,7 +9,6 @@
 #include "yaml_parameters.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 /// @file

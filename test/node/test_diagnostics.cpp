@@ -5,7 +5,6 @@
 
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
-#include <cmath>
 #include <limits>
 #include <map>
 #include <string>

@@ -3,7 +3,6 @@
 #include "state_file_fixture.h"
 
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 // The work offsets on disk. How their file is kept is in test_state_file.cpp, how its fields are in test_journal.cpp.

@@ -11,7 +11,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <vector>
 
 namespace grinder {
 namespace test_parameters {

@@ -9,7 +9,6 @@
 
 #include <functional>
 #include <future>
-#include <vector>
 
 namespace grinder {
 namespace test_planner {

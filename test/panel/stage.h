@@ -26,7 +26,6 @@
 #include <std_srvs/Trigger.h>
 #include <QFileInfo>
 
-#include <cmath>
 #include <mutex>
 #include <string>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 // What every setpoint of a job must keep to, computed anew from the laws of its strokes: curve, depth, limits, order.

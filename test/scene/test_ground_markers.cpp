@@ -15,7 +15,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <filesystem>
 
 namespace grinder {
 namespace test_ground_markers {

@@ -18,9 +18,7 @@
 #include <limits>
 #include <optional>
 #include <random>
-#include <string>
 #include <tuple>
-#include <vector>
 
 namespace grinder {
 namespace test_rake_touch {

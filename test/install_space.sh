@@ -29,7 +29,8 @@ grep -q libcrypto "$folder/plain/CMakeFiles/stream_a_job.dir/link.txt"
 [ -f include/flute_grinder/drive/drive.h ]
 [ -z "$(ls include/flute_grinder/drive | grep -E 'hal_|simulated_drive')" ]
 
-port=${ROS_MASTER_URI##*:}
+port=$("$root/test/free_port.py")
+export ROS_MASTER_URI=http://127.0.0.1:$port
 # For a host that stalls, as test/patient.yaml.
 sed 's/^late_cycle: .*/late_cycle: {slow_down: 1.0e+6, fault: 1.0e+6}/' share/flute_grinder/config/grinder.yaml >"$folder/patient.yaml"
 grep -q 'fault: 1.0e+6' "$folder/patient.yaml"

@@ -44,6 +44,8 @@ def run_commands(session, item):
 
 def check_output(session, item, last):
     command = item.directive[len('output of '):] if item.directive.startswith('output of ') else last
+    if command in NOT_RUN:
+        return
     if command not in session.outputs:
         raise Failure('line %d: no output of %s' % (item.line, command))
     line = missing_line(item.lines, session.outputs[command])
@@ -68,7 +70,7 @@ def do(session, item, last):
         write_file(session.clone / item.path.replace('~', str(session.home)), item.lines)
     elif item.kind == 'commands':
         run_commands(session, item)
-    elif item.kind == 'output' and last not in NOT_RUN:
+    elif item.kind == 'output':
         check_output(session, item, last)
     elif item.kind == 'figures':
         found = figures.wrong(item, lambda path: (ROOT / path).read_text(), grind_job)

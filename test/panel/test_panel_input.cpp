@@ -265,11 +265,18 @@ TEST_F(Asked, AQuestionTakesNoClickAtFirstAndNoKeyAndItsAnswerLiesApartFromTheOn
 }
 
 TEST_F(Asked, SpaceHoldsWhatTheLastAnswerHasStarted) {
-  for (const char* answer : {"discard", "ignore-offsets", "confirm-swivel"}) panel.press(answer);
+  for (const char* answer : {"discard", "ignore-offsets"}) panel.press(answer);
+  WAIT_FOR(panel.isVisible("confirm-swivel"));
+  for (const char* shown : {"Is the swivel set to this angle and clamped?", "31.769 deg", "not known"}) {
+    EXPECT_TRUE(panel.says("job_question", shown)) << shown;
+  }
+  panel.picture("swivel_question");
+  panel.press("confirm-swivel");
   WAIT_FOR(goals().size() == 1);
   EXPECT_EQ(goals().at(0).goal.answers, (std::vector<std::string>{answerId(kUnfinished, NeedAnswer::kDiscard),
                                                                   answerId(kNoZeros, NeedAnswer::kIgnoreOffsets),
                                                                   answerId(kSwivelToSet, NeedAnswer::kConfirmSwivel)}));
+  EXPECT_EQ(goals().at(0).goal.job_name, "paper.yaml");
   EXPECT_FALSE(panel.isVisible("confirm-swivel"));
   WAIT_FOR(panel.says("messages", "The job begins at a feed override of 50 %"));
   // From the goal on: a job that is still planned begins held.

@@ -155,12 +155,13 @@ TEST_F(SetupSheet, IsNotWrittenIfAPlanWouldRefuseItAndCountsTheWheelsPlaceOnTheS
   ASSERT_TRUE(ros::param::get("/grinder/geometry/flange", flange));
   ros::param::set("/grinder/geometry/flange", 0);  // as YAML reads it without a decimal point
   // Each tooth has a helix of its own, and the set-up is for the middle.
-  open({{"paper.setup.yaml", "job.setup.yaml"},
-        {"teeth: 1", "teeth: 2"},
-        {"spiral_angle_deg: 30", "spiral_angles_deg: [27, 33]"},
-        {"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n"
-         "    corner_radius_mm: [0, 0]    # at the lower and the upper face\n    wear_mm: 0\n",
-         "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}});
+  open({{"roughing_d10_t4.setup.yaml", "job.setup.yaml"},
+        {"teeth: 4", "teeth: 2"},
+        {"spiral_angle_deg: 35", "spiral_angles_deg: [32, 38]"},
+        {"wheel:\n    diameter_mm: 100\n    width_mm: 3\n    profile: straight\n    corner_radius_mm: [0, 0]\n"
+         "    wear_mm: 0\n    wear_per_pass_mm: 0.0002\n",
+         "wheel: {file: ../wheels/straight_d100_w3.yaml}\n"}},
+       QString(kJob).replace("paper", "roughing_d10_t4"));
   ros::param::set("/grinder/geometry/flange", flange);
   EXPECT_NE(figure("with the wheel's middle"), 0);
   EXPECT_TRUE(panel->says("setup_sheet", "a plan would refuse this tool: cutter.rake_angle_deg = 8 deg"));

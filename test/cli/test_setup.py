@@ -76,9 +76,11 @@ class TestSetup(CommandLine):
         self.assertRegex(self.grind(1, 'setup', job, '--write').stderr, r'^(a plan would refuse this tool: .*\n)+.*job\.setup\.yaml: nothing was written\n$')
         self.assertEqual(os.listdir(self.folder), ['job.yaml'])
 
-    def test_what_else_a_plan_refuses_is_said_beforehand(self):
-        done = self.grind(0, 'setup', self.job(shank_diameter_mm='40'), '--write')
-        self.assertRegex(done.stderr, r'(?m)^a plan of it is refused: collision_clearance = 1 mm: .* shank .*; change .*$')
+    def test_what_the_job_asks_for_is_kept_and_what_else_a_plan_refuses_said_beforehand(self):
+        job = self.job(setup='{file: job.setup.yaml, swivel_deg: 32.5}', rake_tolerance_deg=2, core_tolerance_mm=0.2, shank_diameter_mm=40)
+        found, said = self.json(0, 'setup', job, '--write')
+        self.assertEqual(found['swivel_deg'], 32.5)
+        self.assertRegex(said, r'(?m)^a plan of it is refused: collision_clearance = 1 mm: .* shank .*; change .*$')
 
     def test_wheel_above_the_swivel(self):
         machine = self.write('machine.yaml', self.text(gc.package_file('config/grinder.yaml')).replace(

@@ -3,6 +3,7 @@
 when the node asks it to, and commands count again only when they have the new reference. The encoders are those of
 incremental.hal; the test plays the machine's part."""
 
+import tempfile
 import unittest
 
 import rospy
@@ -117,7 +118,14 @@ class TestHoming(unittest.TestCase):
         self.check_steps(RECORDER.read()[first:])
 
 
+def load_encoders():
+    with open(hal_bench.ROOT + '/test/hal/incremental.hal') as file, tempfile.NamedTemporaryFile('w', suffix='.hal') as expanded:
+        expanded.writelines(line.replace('@', axis) for line in file for axis in (AXES if '@' in line else 'x'))
+        expanded.flush()
+        hal_bench.halcmd('-f', expanded.name)
+
+
 if __name__ == '__main__':
-    hal_bench.halcmd('-f', hal_bench.ROOT + '/test/hal/incremental.hal')
+    load_encoders()
     rospy.init_node('test_hal_homing')
     rostest.rosrun('flute_grinder', 'hal_homing', '__main__')

@@ -78,7 +78,7 @@ def tables(lines, first):
 def read_page(text):
     """All items of a page, in order."""
     lines = text.splitlines()
-    items, directive, said, i = [], '', '', 0
+    items, directive, said, last, i = [], '', '', '', 0
     while i < len(lines):
         line = lines[i]
         note = re.fullmatch(r'<!-- (test|figures): (.*) -->', line)
@@ -104,7 +104,7 @@ def read_page(text):
         else:
             items += [Item('mention', i + 1, [span]) for span in re.findall(r'`([^`]+)`', line) if COMMAND.match(span)]
             said = line
-            last = line or last if i else line
+            last = line or last
         i += 1
     return items
 

@@ -34,7 +34,6 @@ const std::vector<double> kOtherSwivels{0, -4 * kDegree, 12 * kDegree, -12 * kDe
 constexpr int kHeights = 4, kMoreHeights = 12;
 constexpr std::size_t kMostAsked = 4;  ///< number of the best set-ups that are asked whether they may be taken
 constexpr double kStartDepths[] = {0.1, 0.3, 0.6};  ///< starting depths, per radius, if the core has no influence
-constexpr double kWidestSwivel = 80 * kDegree;      ///< maximum swivel of a set-up beyond the machine's range
 constexpr double kAtLimit = 5 * kDegree;            ///< angle to the swivel's limit that may have stopped a fit
 constexpr double kLeastWheel = 0.25;                ///< part of a wheel's diameter and width that a hint leaves
 
@@ -220,6 +219,7 @@ FoundFlute findFluteSetup(const FluteRequest& request, const AcceptsFlute& accep
   if (std::min(nearest - request.swivel.from, request.swivel.to - nearest) >= kAtLimit) return here;
   FluteRequest wide = request;
   wide.swivel = {-kWidestSwivel, kWidestSwivel};
+  if (request.swivel.from <= wide.swivel.from && request.swivel.to >= wide.swivel.to) return here;
   const FoundFlute anywhere = found(
       wide, [](const JudgedFlute&) { return true; }, false);
   if (anywhere.accepted) here.swivel_beyond = anywhere.best->point.swivel;

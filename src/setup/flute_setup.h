@@ -1,11 +1,15 @@
 #pragma once
 
+#include "flute_grinder/base/units.h"
 #include "setup/flute_judge.h"
 
 #include <functional>
 #include <optional>
 
 namespace grinder {
+
+/// Maximum swivel at which the set-up of a flute or a relief is sought [rad].
+constexpr double kWidestSwivel = 80 * units::kDegree;
 
 /// The result of looking for a flute's set-up.
 struct FoundFlute {

@@ -28,7 +28,7 @@ struct FluteRequest {
   double pitch = 0;           ///< minimum angle from one tooth to the next [rad]
   WheelProfile wheel;         ///< wheel with its present wear
   double nominal_radius = 0;  ///< radius of the wheel that touches the small end at Y = 0 [m]
-  Range swivel;               ///< range that the machine allows [rad]
+  Range swivel;               ///< range that is searched [rad]
   std::optional<SetupFigure> keep;
   SetupPoint kept;  ///< values of the figure that stays
 };

@@ -69,6 +69,11 @@ double minPitch(const std::vector<double>& angles) {
 /// 1, or -1 for a left-hand cutter, which is set up as the mirror image of a right-hand one.
 double handOf(const GrindJob& job) { return job.cutter.cut == CutDirection::kRightHand ? 1 : -1; }
 
+/// The part of a machine's range in which the set-ups of flutes and reliefs are sought.
+Range ofPeriphery(const Range& machine) {
+  return {std::max(machine.from, -kWidestSwivel), std::min(machine.to, kWidestSwivel)};
+}
+
 FluteRequest requestOf(const GrindJob& job, const Range& swivel, std::optional<SetupFigure> keep) {
   const GrindProcess& p = job.process();
   const double hand = handOf(job);
@@ -144,7 +149,7 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   }
   const ValidJob flutes = withLaws(ValidJob(job.ofOperation(0)));
   const auto asked = keep ? std::optional(job.process().setup_swivel) : std::nullopt;
-  const ReliefSetup found = findReliefSetup(job, flutes, swivel, asked);
+  const ReliefSetup found = findReliefSetup(job, flutes, ofPeriphery(swivel), asked);
   if (!found.refused.empty()) {
     return "no set-up grinds this relief; at a swivel of " + text(Quantity{found.swivel, Unit::kRadian}, 5) + ", " +
            found.refused;
@@ -223,7 +228,7 @@ std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const R
     return fieldName("process.setup_swivel") + " = " + text(Quantity{kept, Unit::kRadian}, 5) + "; " + machine() +
            "; change it";
   }
-  const FluteRequest request = requestOf(job, swivel, keep);
+  const FluteRequest request = requestOf(job, ofPeriphery(swivel), keep);
   const FoundFlute found = findFlute(request, job);
   if (found.swivel_beyond) {
     return "the set-up takes a swivel of " + text(Quantity{handOf(job) * *found.swivel_beyond, Unit::kRadian}, 5) +

@@ -24,7 +24,7 @@ struct ReliefSetup {
 /// is refused.
 /// @param job job of a relief; its swivel is tried, too.
 /// @param flutes job of the flutes, with its laws.
-/// @param swivel range of the machine's swivel [rad].
+/// @param swivel range that is searched [rad].
 /// @param asked swivel to use instead of the nearest one [rad].
 ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
                             std::optional<double> asked);

@@ -39,7 +39,7 @@ TEST(MachineShapes, HasEveryShapeOfTheShippedMachine) {
 /// The spindle's axis is (-sin s, 0, cos s), and its centre 147.5 mm up that axis from the wheel's.
 TEST(MachineShapes, TheSpindleSwivelsBothWays) {
   const MachineShapes machine = shippedShapes();
-  for (const double swivel : {-40 * kDegree, 0.0, 30 * kDegree}) {
+  for (const double swivel : {-40 * kDegree, 0.0, 30 * kDegree, 84 * kDegree}) {
     const MachinePart spindle = partOf(machine.parts(0.055, swivel), "spindle");
     const Vector3d axis(-std::sin(swivel), 0, std::cos(swivel));
     EXPECT_TRUE(spindle.solid.pose.translation().isApprox(Vector3d(0, 0.055, 0) + 0.1475 * axis, 1e-12)) << swivel;

@@ -57,7 +57,7 @@ class TestSetup(CommandLine):
 
     def check_sheet(self, sheet, found):
         swivel, height = found['swivel_deg'] * DEG, found['height_mm']
-        lines = [r"swivel +%.3f deg; the machine's range is -60 to 60 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
+        lines = [r"swivel +%.3f deg; the machine's range is -90 to 90 deg" % found['swivel_deg'], 'height +%.3f mm' % height,
                  'shift in X +%.3f mm' % found['x_shift_mm'], 'upper face %.3f mm' % (height + 1.5 / math.cos(swivel)),
                  r"%.4f mm less per mm of the wheel's middle above the swivel's centre" % (1 - math.cos(swivel)),
                  r'reads D/2 - %.3f mm: %.3f mm for D = 10 mm' % (height - 1.5, 6.5 - height),

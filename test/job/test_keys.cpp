@@ -190,7 +190,7 @@ TEST(Ranges, AreWhatTheMachineAndTheToolsNeed) {
     }
     return std::string();
   };
-  EXPECT_EQ(range("process.setup.swivel_deg"), "-80 to 80 deg");
+  EXPECT_EQ(range("process.setup.swivel_deg"), "-89 to 89 deg");
   EXPECT_EQ(range("cutter.cone_angle_deg"), "-3 to 30 deg");
   EXPECT_EQ(range("process.feed_mm_min"), "0.1 to 10000 mm/min");
   EXPECT_EQ(range("process.wheel.diameter_mm"), "1 to 500 mm");

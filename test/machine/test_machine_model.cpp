@@ -62,9 +62,9 @@ std::vector<std::pair<std::string, std::string>> attributesOf(const XMLElement& 
 
 TEST(MachineModel, TakesTheShippedMachine) {
   const MachineModel model(shipped());
-  constexpr double kSixtyDegrees = 1.04719755;
-  EXPECT_NEAR(model.swivel().from, -kSixtyDegrees, 1e-7);
-  EXPECT_NEAR(model.swivel().to, kSixtyDegrees, 1e-7);
+  constexpr double kQuarterTurn = 1.57079633;
+  EXPECT_NEAR(model.swivel().from, -kQuarterTurn, 1e-7);
+  EXPECT_NEAR(model.swivel().to, kQuarterTurn, 1e-7);
   EXPECT_EQ(model.link("wheel").collision_array.size(), 3U);
   // With a byte order mark, as some editors save it.
   EXPECT_EQ(MachineModel("\xEF\xBB\xBF" + shipped()).link("wheel").collision_array.size(), 3U);
@@ -131,7 +131,7 @@ TEST(MachineModel, NeedsTheJointsAndLinksOfAGrinder) {
     expectRefused(replaced(shipped(), name + type, name + " type=\"floating\""),
                   std::string("joint ") + joint + " must be " + (turns ? "revolute" : "prismatic"));
   }
-  const std::string limit = "<limit lower=\"-1.0471976\" upper=\"1.0471976\"";
+  const std::string limit = "<limit lower=\"-1.5707963\" upper=\"1.5707963\"";
   expectRefused(replaced(shipped(), limit, "<limit lower=\"0.5\" upper=\"-0.5\""),
                 "limits of joint wheel_swivel: 0.5 to -0.5 rad; allowed: the lower below the upper");
   expectRefused(replaced(shipped(), limit, "<limit lower=\"-1.6\" upper=\"1\""),

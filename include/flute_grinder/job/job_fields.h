@@ -103,7 +103,7 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).wheel_wear; });
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed", "0"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
-  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -80, 80, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
+  visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -89, 89, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
         [](auto& j) -> auto& { return processOf(j).setup_swivel; });
   visit(F{"process.setup_height", "process.setup.height_mm", mm, -100, 100, "of the wheel's centre above the cutter's axis at Z = 0"},
         [](auto& j) -> auto& { return processOf(j).setup_height; });

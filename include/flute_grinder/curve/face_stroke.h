@@ -1,0 +1,95 @@
+#pragma once
+
+#include "flute_grinder/base/axes.h"
+#include "flute_grinder/curve/conical_cutter.h"
+
+#include <Eigen/Core>
+
+namespace grinder {
+
+/// A direction or a place on a tooth: along the axis from the end toward the shank, along the radius through the
+/// tooth's edge at the end, and behind the edge.
+using OnTooth = Eigen::Vector3d;
+
+/// How a plane of a tooth comes to lie on a face of the wheel. The faces are parallel to Y at every swivel, so a plane
+/// has one swivel and one angle of the tooth, and the wheel moves along Y within the plane.
+struct FacePose {
+  double swivel = 0;  ///< as for a flute [rad]
+  double tooth = 0;   ///< machine angle of the tooth, from Y toward Z: A is the tooth's own angle less this [rad]
+};
+
+/// The outward normal of a plane flank behind an edge on a surface of revolution.
+/// @param colatitude angle from the axis to the surface's normal: 0 for a flat end, minus the dish for a dished one, a
+///        quarter turn for the periphery [rad].
+/// @param clearance angle between flank and surface, normal to the edge [rad].
+/// @param spiral angle of the edge to the surface's generatrix; positive if the edge trails toward the shank [rad].
+OnTooth flankNormal(double colatitude, double clearance, double spiral = 0) noexcept;
+
+/// The outward normal of the flank of an end tooth.
+/// @param clearance axial clearance, in the section along a circle about the axis [rad].
+/// @param dish angle by which the end is hollow toward the axis [rad].
+OnTooth endNormal(double clearance, double dish) noexcept;
+
+/// The outward normal of the rake face of an end tooth, toward the chip.
+/// @param rake axial rake, in the section along a circle about the axis [rad].
+/// @param dish as for endNormal() [rad].
+OnTooth gashNormal(double rake, double dish) noexcept;
+
+/// The pose in which the wheel's lower face grinds a plane that faces the end. A left-hand tooth stands on the far side
+/// of the axis, as the mirror image in Y: in that in Z, the spindle would be on the side of the work.
+/// @param normal outward, of unit length.
+FacePose flankPose(const OnTooth& normal, CutDirection cut) noexcept;
+
+/// The pose in which the wheel's upper face grinds a rake face. A left-hand one is ground by the lower face, as the
+/// mirror image in Z.
+/// @param normal outward, of unit length.
+FacePose gashPose(const OnTooth& normal, CutDirection cut) noexcept;
+
+/// The wheel that grinds a plane.
+struct FaceWheel {
+  double nominal_radius = 0;  ///< radius of the wheel that touches the small end's circle at Y = 0 [m]
+  double radius = 0;          ///< present radius [m]
+  double width = 0;           ///< width without wear [m]
+  double face_wear = 0;       ///< wear of the face that grinds [m]
+  double height = 0;          ///< height of the wheel's centre above the cutter's axis at Z = 0 [m]
+  double inner_radius = 0;    ///< inner radius of a cup's rim; 0 for a wheel without a recess [m]
+};
+
+/// The end of a tool at one of its teeth.
+struct EndTooth {
+  double radius = 0;  ///< radius of the tool at its end [m]
+  double pitch = 0;   ///< angle to the next tooth behind the edge [rad]
+  CutDirection cut = CutDirection::kRightHand;
+};
+
+/// A straight stroke at constant A, during which the wheel's face stays in one plane.
+struct FaceStroke {
+  double swivel = 0;              ///< [rad]
+  Axes from = Axes::Zero();       ///< begin, clear of a blank that ends at X = 0; A for a tooth at angle 0 [m, rad]
+  Axes to = Axes::Zero();         ///< end [m], A [rad]
+  Axes per_stock = Axes::Zero();  ///< shift of the whole stroke for each metre of stock that it leaves
+};
+
+/// The stroke that grinds a flank of an end tooth. For a right-hand tool the wheel comes down along Y until its rim has
+/// passed the axis by as much as the next tooth's edge allows. For a left-hand one a cup comes along X, the inner edge
+/// of its rim beside the next tooth's edge. Stock is normal to the flank.
+/// @param normal outward, from endNormal().
+/// @param through a place on the flank.
+/// @param gap distance of the rim from the next tooth's edge; negative to pass it, for a tooth to the centre [m].
+/// @param clear distance of the wheel from the blank at the begin [m].
+FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
+                     double gap, double clear) noexcept;
+
+/// The gap below which a cup reaches the next tooth's edge away from the axis [m].
+double leastCupGap(const EndTooth& tooth, const OnTooth& normal, const FaceWheel& wheel) noexcept;
+
+/// The stroke that gashes an end tooth with the wheel's rim: inward along the gash's bottom, to the end. Stock is
+/// radial, as for a flute.
+/// @param normal outward, from gashNormal().
+/// @param angle angle of the gash's bottom to the axis, positive [rad].
+/// @param past distance by which the bottom is past the axis at the end; negative before it [m].
+/// @param clear as for endStroke() [m].
+FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle, double past, const FaceWheel& wheel,
+                      double clear) noexcept;
+
+}  // namespace grinder

@@ -1,0 +1,283 @@
+#include "flute_grinder/curve/face_stroke.h"
+
+#include "flute_grinder/base/units.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace grinder {
+namespace test_face_stroke {
+
+using Eigen::Vector3d;
+using units::kDegree;
+using units::kMillimetre;
+using units::kPi;
+
+constexpr double kGap = 0.05 * kMillimetre;  ///< of the rim from the next tooth's edge
+constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
+
+class Random {
+ public:
+  double between(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
+
+ private:
+  std::mt19937 engine_{7};
+};
+
+/// A tooth's direction in the machine, by a rotation about X; behind a left-hand edge is against it.
+Vector3d turned(OnTooth direction, double tooth, CutDirection cut) {
+  if (cut == CutDirection::kLeftHand) direction[2] *= -1;
+  return Eigen::AngleAxisd(tooth, Vector3d::UnitX()) * direction;
+}
+
+Vector3d upperFaceNormal(double swivel) { return {-std::sin(swivel), 0, std::cos(swivel)}; }
+
+TEST(FaceStroke, LaysAnyFlankOnTheLowerFace) {
+  Random random;
+  for (int i = 0; i < 10000; ++i) {
+    const double colatitude = random.between(-10, 90) * kDegree, clearance = random.between(0.1, 45) * kDegree;
+    const double spiral = random.between(-60, 60) * kDegree;
+    const OnTooth normal = flankNormal(colatitude, clearance, spiral);
+    // The edge lies in the flank, which falls by the clearance at right angles to it.
+    const OnTooth surface(-std::cos(colatitude), std::sin(colatitude), 0);
+    const OnTooth edge(std::sin(colatitude) * std::cos(spiral), std::cos(colatitude) * std::cos(spiral),
+                       std::sin(spiral));
+    EXPECT_NEAR(normal.norm(), 1, 1e-12);
+    EXPECT_NEAR(normal.dot(edge), 0, 1e-12);
+    EXPECT_NEAR(normal.dot(surface), std::cos(clearance), 1e-12);
+    EXPECT_GT(normal[2], 0);
+    for (const CutDirection cut : kHands) {
+      const FacePose pose = flankPose(normal, cut);
+      EXPECT_NEAR((turned(normal, pose.tooth, cut) - upperFaceNormal(pose.swivel)).norm(), 0, 1e-12);
+    }
+  }
+}
+
+TEST(FaceStroke, LaysAnyEndToothOnTheWheel) {
+  Random random;
+  for (int i = 0; i < 10000; ++i) {
+    const double clearance = random.between(0.1, 45) * kDegree, dish = random.between(0, 10) * kDegree;
+    const double rake = random.between(-20, 30) * kDegree;
+    const OnTooth edge(-std::tan(dish), 1, 0);
+    const OnTooth flank = endNormal(clearance, dish), face = gashNormal(rake, dish);
+    EXPECT_NEAR(flank.dot(edge), 0, 1e-12);
+    EXPECT_NEAR(flank.dot(OnTooth(std::tan(clearance), 0, 1)), 0, 1e-12);
+    EXPECT_LT(flank[0], 0);
+    EXPECT_NEAR(face.dot(edge), 0, 1e-12);
+    EXPECT_NEAR(face.dot(OnTooth(1, 0, std::tan(rake))), 0, 1e-12);
+    EXPECT_LT(face[2], 0);
+    for (const CutDirection cut : kHands) {
+      const FacePose end = flankPose(flank, cut), gash = gashPose(face, cut);
+      EXPECT_NEAR((turned(flank, end.tooth, cut) - upperFaceNormal(end.swivel)).norm(), 0, 1e-12);
+      const double hand = cut == CutDirection::kRightHand ? 1 : -1;
+      EXPECT_NEAR((turned(face, gash.tooth, cut) + hand * upperFaceNormal(gash.swivel)).norm(), 0, 1e-12);
+    }
+  }
+}
+
+TEST(FaceStroke, HasTheSetUpsOfTheTrade) {
+  struct Row {
+    OnTooth normal;
+    double swivel, tooth;
+  };
+  const auto end = [](double clearance, double dish) { return endNormal(clearance * kDegree, dish * kDegree); };
+  for (const auto& [normal, swivel, tooth] :
+       {Row{end(8, 2), 81.76, -13.95}, Row{end(18, 2), 71.90, -6.13}, Row{end(6, 0), 84.00, 0},
+        Row{flankNormal(45 * kDegree, 10 * kDegree), 44.14, 76.00},
+        Row{flankNormal(59 * kDegree, 12 * kDegree), 30.25, 76.07}}) {
+    const FacePose right = flankPose(normal, CutDirection::kRightHand);
+    const FacePose left = flankPose(normal, CutDirection::kLeftHand);
+    EXPECT_NEAR(right.swivel / kDegree, swivel, 0.005);
+    EXPECT_NEAR(right.tooth / kDegree, tooth, 0.005);
+    EXPECT_EQ(left.swivel, right.swivel);
+    EXPECT_NEAR(left.tooth / kDegree, 180 - tooth, 0.005);
+  }
+}
+
+/// A tool of which strokes take away what the wheel covers anywhere on their way: nothing but the axes' figures and the
+/// wheel's.
+class BruteForce {
+ public:
+  BruteForce(const FaceWheel& wheel, double end_radius, bool lower_face_grinds)
+      : wheel_(wheel),
+        end_radius_(end_radius),
+        lower_(-wheel.width / 2 + (lower_face_grinds ? wheel.face_wear : 0)),
+        upper_(wheel.width / 2 - (lower_face_grinds ? 0 : wheel.face_wear)) {}
+
+  void grind(const FaceStroke& stroke, double tooth_angle, int poses) {
+    for (int i = 0; i <= poses; ++i) {
+      const Axes at = stroke.from + (stroke.to - stroke.from) * (static_cast<double>(i) / poses);
+      const Vector3d centre(at[kX], end_radius_ + wheel_.nominal_radius + at[kY], wheel_.height + at[kZ]);
+      poses_.push_back({centre, upperFaceNormal(stroke.swivel), at[kA] + tooth_angle});
+    }
+  }
+
+  bool isGround(double x, double r, double angle) const {
+    for (const Pose& pose : poses_) {
+      const double turn = angle - pose.a;
+      const Vector3d from_centre = Vector3d(x, r * std::cos(turn), r * std::sin(turn)) - pose.centre;
+      const double w = from_centre.dot(pose.spindle), q = (from_centre - w * pose.spindle).norm();
+      if (w >= lower_ && w <= upper_ && q <= wheel_.radius && q >= wheel_.inner_radius) return true;
+    }
+    return false;
+  }
+
+  /// X of the surface that is left on a ray along the axis; the largest of those that lower faces leave.
+  double top(double r, double angle) const {
+    double top = -std::numeric_limits<double>::infinity();
+    for (const Pose& pose : poses_) {
+      const double turn = angle - pose.a, y = r * std::cos(turn), z = r * std::sin(turn);
+      const Vector3d face = pose.centre + lower_ * pose.spindle;
+      const double x = face[0] - (z - face[2]) * pose.spindle[2] / pose.spindle[0];
+      const double q = (Vector3d(x, y, z) - face).norm();
+      if (q <= wheel_.radius && q >= wheel_.inner_radius) top = std::max(top, x);
+    }
+    return top;
+  }
+
+ private:
+  struct Pose {
+    Vector3d centre, spindle;
+    double a;
+  };
+  FaceWheel wheel_;
+  double end_radius_, lower_, upper_;
+  std::vector<Pose> poses_;
+};
+
+struct End {
+  int teeth;
+  double clearance, dish;  // [deg]
+  CutDirection cut = CutDirection::kRightHand;
+  double diameter = 10, wheel = 100;  // [mm]
+};
+
+/// What brute force finds of an end.
+struct MeasuredEnd {
+  double dish = 0, clearance = 0;  ///< of the first tooth [deg]
+  double whole_from = 0;           ///< radius outside which no other tooth has touched it [mm]
+  double lowest_y = 0;             ///< [mm]
+};
+
+MeasuredEnd measured(const End& end) {
+  const bool right = end.cut == CutDirection::kRightHand;
+  FaceWheel wheel;
+  wheel.nominal_radius = (end.wheel / 2 + 0.3) * kMillimetre;
+  wheel.radius = end.wheel / 2 * kMillimetre;
+  wheel.width = 10 * kMillimetre;
+  wheel.height = 3 * kMillimetre;
+  wheel.face_wear = 0.4 * kMillimetre;
+  if (!right) wheel.inner_radius = wheel.radius - (end.diameter / 2 + 1) * kMillimetre;
+  const double radius = end.diameter / 2 * kMillimetre;
+  const EndTooth tooth{radius, 2 * kPi / end.teeth, end.cut};
+  const OnTooth normal = endNormal(end.clearance * kDegree, end.dish * kDegree);
+  const double gap = right ? kGap : std::max(kGap, leastCupGap(tooth, normal, wheel));
+  const OnTooth through(0, radius, 0);
+  const double clear = 1 * kMillimetre;
+  const FaceStroke stroke = endStroke(tooth, normal, through, wheel, gap, clear);
+  BruteForce tool(wheel, radius, true);
+  for (int i = 0; i < end.teeth; ++i) tool.grind(stroke, i * tooth.pitch, right ? 60 : 1);
+
+  const double hand = right ? 1 : -1, tip = 1e-6;
+  const auto edge = [&](double r) { return tool.top(r, hand * tip); };
+  MeasuredEnd found;
+  const double outer = 0.95 * radius, inner = 0.6 * radius;
+  found.dish = std::atan((edge(inner) - edge(outer)) / (outer - inner)) / kDegree;
+  const double step = 1e-3;
+  found.clearance =
+      std::atan((tool.top(outer, hand * step) - tool.top(outer, hand * tip)) / (outer * (step - tip))) / kDegree;
+  const double slope = std::tan(end.dish * kDegree);
+  for (double r = 0.02 * kMillimetre; r < radius; r += 0.02 * kMillimetre) {
+    if (!(std::abs(edge(r) - (radius - r) * slope) < 1e-7)) found.whole_from = r / kMillimetre + 0.02;
+  }
+  found.lowest_y = stroke.to[kY] / kMillimetre + 0.3;  // of a wheel of the nominal radius
+  // It begins clear of the blank, and the stock that is left is normal to the flank.
+  BruteForce begin(wheel, radius, true);
+  begin.grind({stroke.swivel, stroke.from, stroke.from, stroke.per_stock}, 0, 1);
+  for (double angle = 0; angle < 6.28; angle += 0.1) EXPECT_LE(begin.top(radius, angle), -clear);
+  EXPECT_NEAR(stroke.per_stock[kX] * std::sin(stroke.swivel), -1, 1e-12);
+  return found;
+}
+
+/// The rim is a gap away from the next tooth's edge, so that it leaves the tooth's own edge where that is as near.
+double wholeFrom(const End& end) {
+  if (end.teeth == 2) return kGap / kMillimetre / std::cos(std::atan(end.dish / end.clearance));
+  return kGap / kMillimetre / std::sin(2 * kPi / end.teeth);
+}
+
+TEST(FaceStroke, GrindsEndsAsBruteForceFindsThem) {
+  struct Row {
+    End end;
+    double y;
+  };
+  constexpr CutDirection kLeft = CutDirection::kLeftHand;
+  for (const auto& [end, y] :
+       {Row{{2, 8, 2}, -4.95}, Row{{3, 8, 2}, -6.9}, Row{{4, 8, 2}, -6.4}, Row{{4, 18, 2}, -5.2}, Row{{6, 8, 1}, -15},
+        Row{{2, 8, 2, kLeft}, -11}, Row{{3, 8, 2, kLeft}, -12}, Row{{4, 8, 2, kLeft}, -13}}) {
+    const MeasuredEnd found = measured(end);
+    EXPECT_NEAR(found.lowest_y, y, 0.1) << end.teeth << " teeth, clearance " << end.clearance;
+  }
+}
+
+TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    End end{2 + i % 5, random.between(5, 20), random.between(0.5, 3), kHands[i / 5 % 2]};
+    end.diameter = random.between(6, 16);
+    SCOPED_TRACE(testing::Message() << end.teeth << " teeth, D " << end.diameter << ", clearance " << end.clearance
+                                    << ", dish " << end.dish << ", hand " << i / 5 % 2);
+    const MeasuredEnd found = measured(end);
+    EXPECT_NEAR(found.dish, end.dish, 0.01);
+    EXPECT_NEAR(found.clearance, end.clearance, 0.01);
+    EXPECT_LE(found.whole_from, wholeFrom(end) + 0.02);
+  }
+}
+
+/// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
+TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
+  Random random;
+  for (int i = 0; i < 40; ++i) {
+    const CutDirection cut = kHands[i % 2];
+    const double hand = i % 2 ? -1 : 1;
+    const double rake = random.between(-8, 12) * kDegree, dish = random.between(0, 3) * kDegree;
+    const double angle = random.between(25, 60) * kDegree, past = random.between(-0.3, 0.1) * kMillimetre;
+    FaceWheel wheel;
+    wheel.nominal_radius = 40 * kMillimetre;
+    wheel.radius = 39.8 * kMillimetre;
+    wheel.width = 2 * kMillimetre;
+    wheel.height = -4 * kMillimetre;
+    wheel.face_wear = 0.3 * kMillimetre;
+    const EndTooth tooth{random.between(3, 8) * kMillimetre, kPi / 2, cut};
+    const FaceStroke stroke = gashStroke(tooth, gashNormal(rake, dish), angle, past, wheel, 1 * kMillimetre);
+    SCOPED_TRACE(testing::Message() << "rake " << rake / kDegree << ", dish " << dish / kDegree << ", hand " << hand);
+    EXPECT_NEAR(stroke.to[kY] + wheel.nominal_radius, -past - tooth.radius + wheel.radius * std::cos(angle),
+                1e-12);  // the bottom, less its sagitta
+    EXPECT_NEAR(stroke.from[kY] - stroke.to[kY], tooth.radius + past + 1 * kMillimetre, 1e-12);
+    BruteForce tool(wheel, tooth.radius, cut == CutDirection::kLeftHand);
+    tool.grind(stroke, 0, 2000);
+    for (int k = 0; k < 200; ++k) {
+      const double x = random.between(0.02, 3) * kMillimetre, r = random.between(0.05, 1) * tooth.radius;
+      double face = 0;
+      for (int step = 0; step < 20; ++step) {
+        const double from_edge = x - (tooth.radius - r * std::cos(face)) * std::tan(dish);
+        face = std::asin(std::clamp(from_edge * std::tan(rake) / r, -0.5, 0.5));
+      }
+      // Along the face's plane from the end, and across it from the axis.
+      const FacePose pose = gashPose(gashNormal(rake, dish), cut);
+      const double above =
+          r * std::cos(face + pose.tooth * hand) - (-past + x / std::cos(pose.swivel) * std::tan(angle));
+      if (std::abs(above) < 0.03 * kMillimetre || std::abs(face) > 0.4) continue;
+      const double tip = 2e-6 * kMillimetre / r;
+      EXPECT_EQ(tool.isGround(x, r, hand * (face - tip)), above > 0) << x << ' ' << r << ' ' << above;
+      EXPECT_FALSE(tool.isGround(x, r, hand * (face + tip))) << x << ' ' << r;
+    }
+  }
+}
+
+}  // namespace test_face_stroke
+}  // namespace grinder

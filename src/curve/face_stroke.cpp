@@ -3,6 +3,7 @@
 #include "flute_grinder/base/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grinder {
@@ -11,6 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kFaceSteps = 8;                 ///< steps to the centre of a face, each of which finds it more exactly
 constexpr double kOpposite = units::kPi / 6;  ///< angle within which the next tooth is about opposite
 
 /// A place of a tooth in the machine, while the tooth stands at an angle.
@@ -30,18 +32,63 @@ Axes axesAt(const Vector3d& centre, double tooth, double radius, const FaceWheel
   return axes;
 }
 
-/// The edge of the next tooth as it is seen along X on the plane of the face.
-struct NextEdge {
-  bool is_opposite;      ///< about opposite to the tooth, so that it is on the other side of the axis
-  double along, across;  ///< direction from the axis outward, of unit length: along Y, and in the plane across it
-  double length;         ///< [m]
+/// In the plane of the wheel's faces: along Y, and across it from the axis at X = 0.
+using InFace = Eigen::Vector2d;
+
+Vector3d acrossAt(double swivel) { return {std::cos(swivel), 0, std::sin(swivel)}; }
+
+/// What of the next tooth must stay outside the wheel, as seen along the spindle from the axis outward: its edge, and
+/// the place under the edge, along X, on the plane that is ground.
+struct NextTooth {
+  std::array<std::array<InFace, 2>, 2> lines;
+
+  /// @param place a place on the plane.
+  NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
+    const double turn = tooth.cut == CutDirection::kRightHand ? tooth.pitch : -tooth.pitch;
+    const double y = tooth.radius * std::cos(pose.tooth + turn), z = tooth.radius * std::sin(pose.tooth + turn);
+    const double sin = std::sin(pose.swivel), cos = std::cos(pose.swivel);
+    const double hollow = tooth.radius * normal[1] / normal[0];
+    const double under = (place[0] - place[2] * cos / sin) * cos;
+    lines = {{{InFace(0, hollow * cos), InFace(y, z * sin)}, {InFace(0, under), InFace(y, z / sin + under)}}};
+  }
 };
 
-NextEdge nextEdge(const EndTooth& tooth, const FacePose& pose) {
-  const double turn = tooth.cut == CutDirection::kRightHand ? tooth.pitch : -tooth.pitch;
-  const double along = std::cos(pose.tooth + turn), across = std::sin(pose.tooth + turn) / std::sin(pose.swivel);
-  const double stretch = std::hypot(along, across);
-  return {std::abs(tooth.pitch - units::kPi) < kOpposite, along / stretch, across / stretch, tooth.radius * stretch};
+/// The distance of a place from a line between two others.
+double distance(const std::array<InFace, 2>& line, const InFace& place) {
+  const InFace way = line[1] - line[0];
+  const double part = std::clamp((place - line[0]).dot(way) / way.squaredNorm(), 0.0, 1.0);
+  return (place - line[0] - part * way).norm();
+}
+
+/// The centre of the face of a wheel whose rim is outside the next tooth, as near to the axis as that allows.
+/// @param rim radius of the wheel, with the gap [m].
+InFace besideNext(const NextTooth& next, double rim) {
+  const auto& [inner, outer] = next.lines[1];
+  const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
+  InFace centre = inner + rim * toward;
+  for (int i = 0; i < kFaceSteps; ++i) {
+    double nearest = rim;
+    for (const auto& line : next.lines) nearest = std::min(nearest, distance(line, centre));
+    centre += (rim - nearest) * toward;
+  }
+  return centre;
+}
+
+/// The centre of the face of a cup whose rim goes round the next tooth.
+/// @param rim inner radius of the rim, less the gap [m].
+InFace roundNext(const NextTooth& next, double rim) {
+  const auto& [inner, outer] = next.lines[1];
+  const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
+  const double half = (outer - inner).norm() / 2;
+  InFace centre = (inner + outer) / 2 + std::sqrt(rim * rim - half * half) * toward;
+  for (int i = 0; i < kFaceSteps; ++i) {
+    double farthest = rim;
+    for (const auto& line : next.lines) {
+      for (const InFace& end : line) farthest = std::max(farthest, (end - centre).norm());
+    }
+    centre -= (farthest - rim) * toward;
+  }
+  return centre;
 }
 
 }  // namespace
@@ -78,21 +125,14 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   const FacePose pose = flankPose(normal, tooth.cut);
   const Vector3d spindle = spindleAt(pose.swivel), place = inMachine(through, pose.tooth, tooth.cut);
   const bool right = tooth.cut == CutDirection::kRightHand;
-  // Along Y and across it, in the face's plane: the centre of the face from the axis.
-  const NextEdge next = nextEdge(tooth, pose);
-  double along = 0, across = 0;
-  if (next.is_opposite) {
-    along = right ? wheel.radius + gap : wheel.inner_radius - gap;
-  } else {
-    // The rim of a wheel touches the next tooth's edge at the axis; that of a cup goes round the edge.
-    const double rim = right ? wheel.radius + gap : wheel.inner_radius - gap, middle = right ? 0 : next.length / 2;
-    along = rim * next.across + middle * next.along;
-    across = -rim * next.along + middle * next.across;
-  }
-  const double y = along, z = across * std::sin(pose.swivel);
-  // The face's centre lies in the plane: spindle . (face - place) = 0.
-  const double x = place[0] + (z - place[2]) * spindle[2] / -spindle[0];
-  const Vector3d centre = Vector3d(x, y, z) + (wheel.width / 2 - wheel.face_wear) * spindle;
+  const double rim = right ? wheel.radius + gap : wheel.inner_radius - gap;
+  const NextTooth next(tooth, normal, pose, place);
+  InFace in_face = right ? besideNext(next, rim) : roundNext(next, rim);
+  // The edge of a tooth that is about opposite is on the other side of the axis.
+  if (std::abs(tooth.pitch - units::kPi) < kOpposite) in_face = {rim, place[0] / spindle[2]};
+  const Vector3d face =
+      in_face[0] * Vector3d::UnitY() + in_face[1] * acrossAt(pose.swivel) + place.dot(spindle) * spindle;
+  const Vector3d centre = face + (wheel.width / 2 - wheel.face_wear) * spindle;
 
   FaceStroke stroke;
   stroke.swivel = pose.swivel;
@@ -107,18 +147,12 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   return stroke;
 }
 
-double leastCupGap(const EndTooth& tooth, const OnTooth& normal, const FaceWheel& wheel) noexcept {
-  const NextEdge next = nextEdge(tooth, flankPose(normal, tooth.cut));
-  const double half = next.is_opposite ? 0 : next.length / 2;
-  return wheel.inner_radius - std::sqrt(wheel.inner_radius * wheel.inner_radius - half * half);
-}
-
 FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle, double past, const FaceWheel& wheel,
                       double clear) noexcept {
   const FacePose pose = gashPose(normal, tooth.cut);
   const double hand = tooth.cut == CutDirection::kRightHand ? 1 : -1;
   const Vector3d spindle = spindleAt(pose.swivel);
-  const Vector3d along(std::cos(pose.swivel), 0, std::sin(pose.swivel));
+  const Vector3d along = acrossAt(pose.swivel);
   const Vector3d corner = inMachine({0, tooth.radius, 0}, pose.tooth, tooth.cut);
   // Where the face's plane crosses X = 0 and Y = 0.
   const Vector3d origin(0, 0, corner[2] - spindle[0] / spindle[2] * (0 - corner[0]));

@@ -72,16 +72,13 @@ struct FaceStroke {
 
 /// The stroke that grinds a flank of an end tooth. For a right-hand tool the wheel comes down along Y until its rim has
 /// passed the axis by as much as the next tooth's edge allows. For a left-hand one a cup comes along X, the inner edge
-/// of its rim beside the next tooth's edge. Stock is normal to the flank.
+/// of its rim round the next tooth. Stock is normal to the flank.
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
-/// @param gap distance of the rim from the next tooth's edge; negative to pass it, for a tooth to the centre [m].
+/// @param gap least distance of the rim from the next tooth; negative to pass it, for a tooth to the centre [m].
 /// @param clear distance of the wheel from the blank at the begin [m].
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept;
-
-/// The gap below which a cup reaches the next tooth's edge away from the axis [m].
-double leastCupGap(const EndTooth& tooth, const OnTooth& normal, const FaceWheel& wheel) noexcept;
 
 /// The stroke that gashes an end tooth with the wheel's rim: inward along the gash's bottom, to the end. Stock is
 /// radial, as for a flute.

@@ -1,0 +1,53 @@
+#pragma once
+
+#include "flute_grinder/curve/face_stroke.h"
+#include "flute_grinder/tool/wheel_profile.h"
+
+#include <vector>
+
+namespace grinder {
+
+/// The volume that a wheel removes in a FaceStroke, as ranges of X on rays parallel to the cutter's axis. Found on the
+/// continuous stroke, and on the way out of it along Y.
+class FaceSweep {
+ public:
+  /// @param profile the wheel with its present wear, convex; its faces are at the ends of FaceWheel::width.
+  /// @param end_radius radius of the tool at its end [m].
+  /// @param tooth_angle added to A of the stroke [rad].
+  /// @param stock left by the stroke, see FaceStroke [m].
+  FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProfile profile, double end_radius,
+            double tooth_angle, double stock = 0);
+
+  /// Adds the ranges of X that the wheel passes through on a ray. They may overlap.
+  /// @param r,angle the ray: distance from the axis [m], angle in the sense of A [rad].
+  void addRemoved(double r, double angle, std::vector<Range>& ranges) const;
+
+ private:
+  /// A convex part of the path of the wheel's centre in the face's plane, seen from its end.
+  struct Leg {
+    Eigen::Vector2d from, to;  ///< across Y and along it [m]
+    bool endless;              ///< on upward from `to`, without end
+
+    double distance(const Eigen::Vector2d& at) const noexcept;
+    /// The places across Y, at a place along it, that are within a distance; empty if `from` is above `to`.
+    Range within(double distance, double along) const noexcept;
+  };
+  /// A ray in the wheel: along its axis from the middle of its width, and in the plane of its faces, at X = 0 and for
+  /// each metre of X.
+  struct Ray {
+    double w, w_per_x;
+    Eigen::Vector2d at, at_per_x;
+  };
+
+  Range removed(const Ray& ray, const Leg& leg) const;
+  void addPlunged(const Ray& ray, std::vector<Range>& ranges) const;
+  double depth(const Ray& ray, const Leg& leg, double x) const;
+
+  WheelProfile profile_;
+  double inner_radius_, a_;
+  Eigen::Vector3d end_, spindle_, across_;  ///< of the wheel's centre at the stroke's end, and its directions
+  bool plunges_;                            ///< whether the stroke is along X rather than within the face's plane
+  std::vector<Leg> legs_;
+};
+
+}  // namespace grinder

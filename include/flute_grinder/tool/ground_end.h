@@ -1,0 +1,73 @@
+#pragma once
+
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/tool/face_sweep.h"
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace grinder {
+
+/// What a stroke on the end of a tool grinds.
+enum class EndFace : std::uint8_t { kGash, kPrimary, kSecondary };
+
+/// A stroke on the end of a tool.
+struct EndCut {
+  std::size_t tooth = 0;
+  EndFace face = EndFace::kGash;
+  FaceSweep sweep;
+};
+
+/// An end tooth at a distance from the axis, on the rays of a line at right angles to the radius through the tooth's
+/// angle. Without an edge that gash and primary flank of the tooth itself form, everything is empty.
+struct EndSection {
+  double r = 0;                            ///< distance of the line from the axis [m]
+  std::optional<double> edge;              ///< X of the edge [m]
+  double behind = 0;                       ///< distance of the edge from the radius, against the cut [m]
+  std::optional<double> rake;              ///< axial rake at the edge, of the face that the gash leaves [rad]
+  std::optional<double> clearance;         ///< axial clearance at the edge [rad]
+  std::optional<double> land;              ///< width of the primary flank, seen along the axis, to the secondary [m]
+  std::optional<double> second_clearance;  ///< axial clearance at the beginning of the secondary flank [rad]
+};
+
+/// The end of a tool as strokes leave it, measured on rays parallel to the axis.
+class GroundEnd {
+ public:
+  /// @param radius of the tool at its end [m].
+  /// @param blank_x X of the blank's flat end, 0 or less [m].
+  GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_angles, std::vector<EndCut> cuts,
+            double blank_x);
+
+  /// @param r distance from the axis, positive [m].
+  EndSection section(std::size_t tooth, double r) const;
+
+  /// The smallest radius outside which a tooth's edge is whole, up to the corner; nothing if it is not whole even there
+  /// [m].
+  std::optional<double> wholeFrom(std::size_t tooth) const;
+
+  double radius() const noexcept { return radius_; }
+
+ private:
+  /// The surface that is left on a ray: its X, and the cut that formed it, or none.
+  struct Surface {
+    double x;
+    const EndCut* cut;
+  };
+  Surface surface(std::size_t tooth, double r, double behind) const;
+  enum class By { kAny, kOwnGash };
+  bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;
+  bool isLand(std::size_t tooth, double r, double behind) const;
+  std::optional<double> edge(std::size_t tooth, double r) const;
+  double slope(std::size_t tooth, double r, double behind) const;
+  void measureFlanks(std::size_t tooth, EndSection& section) const;
+  void measureRake(std::size_t tooth, EndSection& section) const;
+
+  double radius_;
+  double hand_;
+  std::vector<double> tooth_angles_;
+  std::vector<EndCut> cuts_;
+  double blank_x_;
+};
+
+}  // namespace grinder

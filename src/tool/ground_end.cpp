@@ -1,0 +1,155 @@
+#include "flute_grinder/tool/ground_end.h"
+
+#include "flute_grinder/base/units.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+constexpr int kEdgeHalvings = 45;
+constexpr double kStep = 0.02;       ///< step of the search for an edge and for the end of a land, per radius
+constexpr double kFarthest = 0.6;    ///< how far behind the radius an edge is searched, per radius
+constexpr double kNearby = 1e-5;     ///< distance between the rays of a slope, per radius
+constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake face is found, per radius
+constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
+
+/// Between a place where a condition does not hold and one where it does.
+template <typename Condition>
+double change(double fails, double holds, const Condition& condition) {
+  for (int i = 0; i < kEdgeHalvings; ++i) {
+    const double middle = (fails + holds) / 2;
+    (condition(middle) ? holds : fails) = middle;
+  }
+  return holds;
+}
+
+bool isOf(const EndCut* cut, std::size_t tooth, EndFace face) {
+  return cut != nullptr && cut->tooth == tooth && cut->face == face;
+}
+
+}  // namespace
+
+GroundEnd::GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_angles, std::vector<EndCut> cuts,
+                     double blank_x)
+    : radius_(radius),
+      hand_(cut == CutDirection::kRightHand ? 1 : -1),
+      tooth_angles_(std::move(tooth_angles)),
+      cuts_(std::move(cuts)),
+      blank_x_(blank_x) {}
+
+GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind) const {
+  const double from_axis = std::hypot(r, behind);
+  const double angle = tooth_angles_[tooth] + hand_ * std::atan2(behind, r);
+  struct Piece {
+    Range range;
+    const EndCut* cut;
+  };
+  std::vector<Piece> pieces;
+  std::vector<Range> ranges;
+  for (const EndCut& cut : cuts_) {
+    ranges.clear();
+    cut.sweep.addRemoved(from_axis, angle, ranges);
+    for (const Range& range : ranges) pieces.push_back({range, &cut});
+  }
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.range.from < b.range.from; });
+  Surface left{blank_x_, nullptr};
+  for (const Piece& piece : pieces) {
+    if (piece.range.from > left.x) break;
+    if (piece.range.to > left.x) left = {piece.range.to, piece.cut};
+  }
+  return left;
+}
+
+bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, By by) const {
+  const double from_axis = std::hypot(r, behind);
+  const double angle = tooth_angles_[tooth] + hand_ * std::atan2(behind, r);
+  std::vector<Range> ranges;
+  for (const EndCut& cut : cuts_) {
+    if (by == By::kOwnGash && !isOf(&cut, tooth, EndFace::kGash)) continue;
+    cut.sweep.addRemoved(from_axis, angle, ranges);
+  }
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [x](const Range& range) { return x >= range.from && x <= range.to; });
+}
+
+bool GroundEnd::isLand(std::size_t tooth, double r, double behind) const {
+  return isOf(surface(tooth, r, behind).cut, tooth, EndFace::kPrimary);
+}
+
+std::optional<double> GroundEnd::edge(std::size_t tooth, double r) const {
+  const auto is_land = [&](double behind) { return isLand(tooth, r, behind); };
+  const double step = kStep * radius_;
+  double before = -step;
+  if (is_land(before)) return std::nullopt;
+  for (double behind = kNearby * radius_; behind < kFarthest * radius_; behind += step) {
+    if (is_land(behind)) {
+      const double edge = change(before, behind, is_land);
+      const double x = surface(tooth, r, edge).x + kNearby * radius_;
+      const bool gashed = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnGash);
+      return gashed ? std::optional(edge) : std::nullopt;
+    }
+    before = behind;
+  }
+  return std::nullopt;
+}
+
+double GroundEnd::slope(std::size_t tooth, double r, double behind) const {
+  const double step = kNearby * radius_;
+  return (surface(tooth, r, behind + 2 * step).x - surface(tooth, r, behind + step).x) / step;
+}
+
+EndSection GroundEnd::section(std::size_t tooth, double r) const {
+  EndSection section;
+  section.r = r;
+  const std::optional<double> behind = edge(tooth, r);
+  if (!behind) return section;
+  section.behind = *behind;
+  section.edge = surface(tooth, r, *behind).x;
+  measureFlanks(tooth, section);
+  measureRake(tooth, section);
+  return section;
+}
+
+void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
+  section.clearance = std::atan(slope(tooth, section.r, section.behind));
+  const auto is_other = [&](double behind) { return !isLand(tooth, section.r, behind); };
+  const double step = kStep * radius_;
+  double behind = section.behind + step;
+  while (!is_other(behind)) {
+    behind += step;
+    if (behind > 2 * radius_) return;
+  }
+  const double end = change(behind - step, behind, is_other);
+  if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, EndFace::kSecondary)) return;
+  section.land = end - section.behind;
+  section.second_clearance = std::atan(slope(tooth, section.r, end));
+}
+
+/// A little below the edge, the rake face is between what the gash removed and the tooth.
+void GroundEnd::measureRake(std::size_t tooth, EndSection& section) const {
+  const double depth = kRakeDepth * radius_, x = *section.edge + depth;
+  const auto is_tooth = [&](double behind) { return !isRemoved(tooth, section.r, behind, x, By::kAny); };
+  const double behind = section.behind + depth, before = section.behind - depth;
+  if (!is_tooth(behind) || is_tooth(before)) return;
+  const double face = change(before, behind, is_tooth);
+  if (!isRemoved(tooth, section.r, face - kNearby * depth, x, By::kOwnGash)) return;
+  section.rake = std::atan((face - section.behind) / depth);
+}
+
+std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
+  const auto is_whole = [&](double r) { return edge(tooth, r).has_value(); };
+  const double corner = radius_ * (1 - kNearby), step = kStep * radius_;
+  if (!is_whole(corner)) return std::nullopt;
+  for (double r = corner - step;; r -= step) {
+    if (r < kInnermost * radius_)
+      return is_whole(kInnermost * radius_) ? 0 : change(kInnermost * radius_, r + step, is_whole);
+    if (!is_whole(r)) return change(r, r + step, is_whole);
+  }
+}
+
+}  // namespace grinder

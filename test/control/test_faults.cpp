@@ -252,6 +252,16 @@ TEST(Enable, NeverCommandsAWrongReading) {
   }
 }
 
+/// Even while two readings disagree, though each is within the following error.
+TEST(Enable, OfAMachineThatIsOnChangesNothing) {
+  RigIn rig(S::kReady);
+  rig.drive.on_read = [](FakeDrive& d) { d.position[kX] += d.status.feedback_count % 2 == 0 ? 0.8e-3 : -0.8e-3; };
+  rig.run(2);
+  EXPECT_TRUE(rig.ask(E::kEnable).accepted);
+  EXPECT_TRUE(rig.drive.written_drive.enable);
+  EXPECT_EQ(rig.run(20).state, S::kReady) << rig.last().fault.text();
+}
+
 TEST(Enable, IsRefusedWhilePositionsJump) {
   for (const bool enabled : {true, false}) {
     Rig<FakeDrive> rig;

@@ -108,6 +108,48 @@ TEST_F(HomingFake, IsNotDoneByAReadingThatTheNextOneBeliesAndNothingJumps) {
   EXPECT_EQ(rig_.last().fault.kind, FaultKind::kHoming);
 }
 
+/// What was read before says nothing of the reference: it neither ends the homing nor excuses a second jump.
+TEST_F(HomingFake, EndsByNewReadingsOnly) {
+  Axes there = machineConfig().machine.park;
+  for (const bool jumps_again : {false, true}) {
+    SCOPED_TRACE(jumps_again);
+    changeHoming([=](FakeDrive& d, int reading) {
+      d.status.homing = reading <= 10;
+      if (reading == 11 || reading == 13) --d.status.feedback_count;
+      d.place(there);
+      if (reading >= 12) d.position[kZ] += 0.01;
+      if (reading >= 14 && jumps_again) d.position[kZ] += 0.01;
+    });
+    ASSERT_TRUE(rig_.ask(E::kHome).accepted);
+    rig_.run(20);
+    EXPECT_EQ(rig_.last().state, jumps_again ? S::kFault : S::kReady) << rig_.last().fault.text();
+    there[kZ] += 0.01;
+  }
+  EXPECT_EQ(rig_.last().fault.kind, FaultKind::kHoming);
+}
+
+/// A jump of Y is doubted against a reading that had the reference: not after one in homing, without it, or before all.
+TEST(Homing, LeavesNothingByWhichYIsDoubted) {
+  for (const S state : {S::kHoming, S::kDisabled}) {
+    SCOPED_TRACE(toString(state));
+    RigIn rig(state);
+    rig.loop->postStop(E::kDisable);
+    rig.drive.status.homed = state == S::kHoming;
+    ASSERT_EQ(rig.cycle().state, S::kDisabled);
+    rig.drive.status.homed = true;
+    rig.drive.position[kY] += 0.01;
+    EXPECT_TRUE(rig.cycle().drive.homed);
+    rig.drive.position[kY] += 0.01;
+    EXPECT_FALSE(rig.cycle().drive.homed);
+  }
+  Rig<FakeDrive> rig;
+  rig.drive.on_read = [](FakeDrive& d) { d.status.feedback_count = 0, d.position = {}; };
+  rig.run(3);
+  rig.drive.on_read = nullptr;
+  rig.drive.place(machineConfig().machine.park);
+  EXPECT_TRUE(rig.cycle().drive.homed);
+}
+
 TEST_F(HomingFake, ThatNeverEndsOrNeverBeginsFaultsAfterTheTimeout) {
   for (const bool begins : {true, false}) {
     SCOPED_TRACE(begins);

@@ -334,6 +334,31 @@ TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
   EXPECT_GE(rig.log.size() - 1 - reached, 4u);
 }
 
+/// A stall of the host is a late cycle and starts the count of a silence anew, but only once.
+TEST(Jog, AStallIsForgivenOncePerMessage) {
+  LoopConfig config = machineConfig();
+  config.feedback_timeout = 1;
+  constexpr double kSpeed = 0.002;
+  for (const bool for_client : {false, true}) {
+    SCOPED_TRACE(for_client);
+    RigIn rig(S::kReady, config, 1);
+    rig.drive.status.commands_waiting = 1;  // so that the axis goes on in a stall
+    JogRequest jog = for_client ? step(kX, 0.05, kSpeed) : on(kX, kSpeed);
+    jog.for_client = for_client;
+    rig.loop->keepAlive();
+    ASSERT_TRUE(rig.jog(jog).accepted);
+    rig.run(40);
+    rig.cycle(52);
+    rig.run(40);  // 42 ms of silence
+    EXPECT_NEAR(rig.last().setpoint.velocity[kX], kSpeed, 1e-9);
+    rig.cycle(52);
+    rig.run(6);  // 50 ms
+    EXPECT_NEAR(rig.last().setpoint.velocity[kX], kSpeed, 1e-9);
+    rig.run(10);
+    EXPECT_LT(rig.last().setpoint.velocity[kX], 0.9 * kSpeed);
+  }
+}
+
 TEST(JogInTheWork, OnlyUpwardsIsAllowed) {
   RigInTheWork rig;
   for (const JogRequest& jog : {step(kX, 0.001), step(kX, -0.001), step(kY, -0.0001), step(kZ, 0.001), step(kA, 0.01),

@@ -147,6 +147,8 @@ TEST_P(ProbeForClient, AStepEndsWithIt) {
   EXPECT_TRUE(rig_.loop->status().client_lost);
   alive(1);
   EXPECT_EQ(rig_.jog(next).text, "jog refused: a stop came first");
+  ASSERT_TRUE(rig_.jog(this->next()).accepted);
+  EXPECT_FALSE(rig_.loop->status().client_lost) << "of the step before";
   EXPECT_TRUE(smooth(rig_.log));
 }
 
@@ -182,13 +184,16 @@ TEST_P(ProbeForClient, TheSpindleIsNotSwitchedOnInAStep) {
 }
 
 TEST_P(ProbeForClient, AStepForOneThatIsGoneMovesNothing) {
-  const JogRequest next = this->next();
-  rig_.run(100);
-  const std::size_t rest = rig_.log.size() - 1;
-  ASSERT_TRUE(rig_.jog(next).accepted);
-  rig_.runUntil(GetParam());
-  for (std::size_t i = rest; i < rig_.log.size(); ++i) EXPECT_TRUE((rig_.log[i].command == at_).all()) << i;
-  EXPECT_EQ(rig_.loop->status().stops, next.stops + 1);
+  for (const int messages : {0, 1}) {
+    alive(messages);
+    const JogRequest next = this->next();
+    rig_.run(100);
+    const std::size_t rest = rig_.log.size() - 1;
+    ASSERT_TRUE(rig_.jog(next).accepted);
+    rig_.runUntil(GetParam());
+    for (std::size_t i = rest; i < rig_.log.size(); ++i) EXPECT_TRUE((rig_.log[i].command == at_).all()) << i;
+    EXPECT_EQ(rig_.loop->status().stops, next.stops + 1);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(, ProbeFrom, testing::Values(S::kReady, S::kRetracted), stateName);

@@ -1,5 +1,6 @@
 #include "flute_grinder/curve/relief_path.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "refusal.h"
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -65,7 +67,10 @@ struct BruteForce {
     return on_rim && r > 0 ? r : std::numeric_limits<double>::infinity();
   }
 
-  double radius(double x, double behind) const {
+  double radius(double x, double behind) const { return ray(x, behind, poseOf(x, behind)); }
+
+  /// The place of the axis X that leaves that radius.
+  double poseOf(double x, double behind) const {
     constexpr int kPoses = 2000;
     const double middle = x + path.xShift(), reach = 2 * wheel.width, step = 2 * reach / kPoses;
     int best = 0;
@@ -78,7 +83,7 @@ struct BruteForce {
       const double third = (to - from) / 3;
       (at(from + third) < at(to - third) ? to : from) += at(from + third) < at(to - third) ? -third : third;
     }
-    return std::min(at(best), at((from + to) / 2));
+    return middle - reach + (at(best) < at((from + to) / 2) ? best : (from + to) / 2) * step;
   }
 
   /// By how much the radius falls between two angles behind the edge.
@@ -195,6 +200,37 @@ TEST(ReliefPath, EndsWhereTheWheelsCornersBegin) {
   }
 }
 
+/// The stroke goes on beyond the flute until the rim's end has formed the surface at the flute's ends.
+TEST(ReliefPath, GoesBeyondTheFluteAsFarAsTheRimsEndNeeds) {
+  const struct {
+    ConicalCutter cutter;
+    double wheel, width, swivel, contact;
+  } rows[]{{ConicalCutter(cutterOf(10, 5, 30)), 100, 6, 30, -2.5},
+           {ConicalCutter(cutterOf(10, 5, -30, CutDirection::kLeftHand)), 100, 6, -30, -2.5},
+           {ConicalCutter(cutterOf(10, 0, 30)), 100, 6, -20, -2.5},  // on the rim's other half
+           {ConicalCutter(cutterOf(4.92, -1.9, 6.1)), 75, 3.9, 20, 0.5}};
+  const ReliefStart start{10 * kDegree, 1, 3 * kDegree};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(row.swivel);
+    const ReliefWheel wheel = wheelOf(row.cutter, start, row.wheel, row.width, row.swivel, row.contact);
+    const ReliefPath path(row.cutter, start, wheel);
+    const BruteForce left{row.cutter, path, wheel};
+    const double length = row.cutter.cone().flute_length;
+    const auto formedAt = [&](double x) {
+      return left.poseOf(x, path.surface(x, 0.999 * path.reach()).behind) - path.xShift();
+    };
+    EXPECT_NEAR(path.beyondEnd(), std::max(0.0, -formedAt(0)), 10e-6);
+    EXPECT_NEAR(path.beyondShank(), std::max(0.0, formedAt(length) - length), 10e-6);
+    EXPECT_GT(path.beyondEnd() + path.beyondShank(), 100e-6);
+  }
+  // Swivelled against the helix, the rim's end forms nothing: it needs no way.
+  const ConicalCutter cutter(cutterOf(4.92, -1.9, 6.1));
+  const ReliefPath against(cutter, start, wheelOf(cutter, start, 75, 3.9, -29, 0.5));
+  ASSERT_TRUE(std::isnan(against.surface(0, against.reach()).behind));
+  EXPECT_EQ(against.beyondEnd(), 0);
+  EXPECT_EQ(against.beyondShank(), 0);
+}
+
 // A flat facet has one normal: behind the edge its clearance falls as the radius turns.
 TEST(ReliefPath, WithoutSpiralConeAndSwivelItIsAFlatFacet) {
   const ConicalCutter cutter(cutterOf(10, 0, 0));
@@ -276,10 +312,24 @@ TEST(ReliefPath, RefusesWhatItCannotGrind) {
   const ReliefStart start{20 * kDegree};
   const ReliefWheel steep{50 * kMillimetre, 0, 6 * kMillimetre, 78 * kDegree, 0};
   EXPECT_THROW(ReliefPath(cutter, start, steep), std::invalid_argument);
-  ReliefWheel beside = wheelOf(cutter, start, 100, 6, 30, -3);
-  beside.height += 0.01 * kMillimetre;
-  const std::string said = test_support::refusalOf<std::invalid_argument>([&] { ReliefPath(cutter, start, beside); });
-  EXPECT_NE(said.find("setup.height"), std::string::npos) << said;
+  // 10 um beyond either end of the rim, and the heights of these ends in ascending order.
+  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+    const double hand = cut == CutDirection::kLeftHand ? -1 : 1;
+    const ConicalCutter handed(cutterOf(10, 5, hand * 30, cut));
+    const auto wheelAt = [&](double contact) { return wheelOf(handed, start, 100, 6, hand * 30, contact); };
+    // The corners of the lower and the upper face, which change sides with the hand.
+    const double from = hand > 0 ? 0.2 - 3 : 0.5 - 3, to = hand > 0 ? 3 - 0.5 : 3 - 0.2;
+    const double end = wheelAt(from).height, other = wheelAt(to).height;
+    for (const double contact : {from - 0.01, to + 0.01}) {
+      ReliefWheel beside = wheelAt(contact);
+      beside.corner_radius = {0.2 * kMillimetre, 0.5 * kMillimetre};
+      EXPECT_EQ(
+          test_support::refusalOf<std::invalid_argument>([&] { ReliefPath(handed, start, beside); }),
+          format("setup.height = %g mm; allowed: %g to %g mm, with the edge on the wheel's rim",
+                 beside.height / kMillimetre, std::min(end, other) / kMillimetre, std::max(end, other) / kMillimetre));
+    }
+    EXPECT_NO_THROW(ReliefPath(handed, start, wheelAt(2.99)));
+  }
 }
 
 }  // namespace test_relief_path

@@ -101,6 +101,18 @@ TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
   EXPECT_FALSE(table.complete);
   ASSERT_EQ(table.rows.size(), 1u);
   EXPECT_EQ(table.rows.front().point.x, 0);
+  // The cone closes at 95 mm: the first step of a pair ends before, the second one behind it.
+  const StepTable half = tableOf(back, EvenStepRule::kPublished, 75 * kMm);
+  EXPECT_FALSE(half.complete);
+  EXPECT_EQ(half.rows.size(), 1u);
+}
+
+TEST(StepTable, EndsWhereAStepLeadsNowhere) {
+  for (const double step_length : {0.0, -0.2 * kMm, std::nan("")}) {
+    const StepTable table = papersTable(step_length);
+    EXPECT_FALSE(table.complete) << step_length;
+    EXPECT_EQ(table.rows.size(), 1u) << step_length;
+  }
 }
 
 }  // namespace test_step_table

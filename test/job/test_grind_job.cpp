@@ -45,6 +45,27 @@ void chord(GrindJob& j, double depth) {
   j.cutter.chordal_rake_depth = depth;
 }
 
+/// A wheel of 100 x 8 mm by its points [mm].
+void points(GrindJob& j, const std::vector<std::pair<double, double>>& mm) {
+  j.process().wheel_profile = WheelShape::kPoints;
+  for (const auto& [w, radius] : mm) j.process().wheel_points.push_back({w * 1e-3, radius * 1e-3});
+}
+
+/// Flutes, before reliefs with all that they need.
+void reliefs(GrindJob& j, std::size_t count) {
+  j.operations.resize(1 + count);
+  for (std::size_t i = 1; i <= count; ++i) j.operations[i].kind = static_cast<OperationKind>(i);
+  j.cutter.clearance = j.cutter.second_clearance = 10 * kDeg;
+  j.cutter.clearance_tolerance = 1 * kDeg;
+  j.cutter.land = 0.5e-3;
+}
+
+/// A back taper that closes 1.08 mm beyond the flute, and the shift of the wheel.
+void shifted(GrindJob& j, double x_shift, double shank) {
+  backTaper(j, 18e-3, shank);
+  j.process().setup_x_shift = x_shift;
+}
+
 /// Contradictions between the figures of a job, each with its only reason.
 TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
   const struct {
@@ -57,6 +78,19 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
        "process.overtravel_mm[1] = 2 mm; allowed: less than 1.081136688 mm, where the cone closes"},
       // 10 mm at 5 deg closes at X = -57.15 mm.
       {[](GrindJob& j) { j.process().overtravel_end = 58e-3; },
+       "process.overtravel_mm[0] = 58 mm; allowed: less than 57.15026151 mm, where the cone closes"},
+      // The shift moves the wheel, but takes nothing back of what closes the cone.
+      {[](GrindJob& j) { shifted(j, -1.0812e-3, 0); },
+       "process.setup.x_shift_mm = -1.0812 mm; allowed: -1.081136688 to 100 mm"},
+      {[](GrindJob& j) { shifted(j, -0.5e-3, 1e-3); },
+       "process.overtravel_mm[1] = 1 mm; allowed: less than 0.5811366877 mm, where the cone closes"},
+      {[](GrindJob& j) { shifted(j, 0.5e-3, 1.2e-3); },
+       "process.overtravel_mm[1] = 1.2 mm; allowed: less than 1.081136688 mm, where the cone closes"},
+      {[](GrindJob& j) { j.process().setup_x_shift = 58e-3; },
+       "process.setup.x_shift_mm = 58 mm; allowed: less than 57.15026151 mm, where the cone closes"},
+      {[](GrindJob& j) { j.process().setup_x_shift = 28e-3, j.process().overtravel_end = 30e-3; },
+       "process.overtravel_mm[0] = 30 mm; allowed: less than 29.15026151 mm, where the cone closes"},
+      {[](GrindJob& j) { j.process().setup_x_shift = -28e-3, j.process().overtravel_end = 58e-3; },
        "process.overtravel_mm[0] = 58 mm; allowed: less than 57.15026151 mm, where the cone closes"},
       {[](GrindJob& j) { j.process().depth = 5e-3; },
        "process.depth_mm = 5 mm; allowed: less than 5 mm, the cutter's radius at the small end"},
@@ -95,6 +129,52 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
       {[](GrindJob& j) { j.process().z_law = static_cast<ZLaw>(2); }, "process.z_law = 2; allowed: 0 to 1"},
       {[](GrindJob& j) { j.interpolation.even_step = static_cast<EvenStepRule>(3); },
        "interpolation.even_step = 3; allowed: 0 to 2"},
+      {[](GrindJob& j) {
+         points(j, {{0, 50}});
+       },
+       "process.wheel.points_mm = 1; allowed: 2 to 100"},
+      {[](GrindJob& j) { points(j, std::vector<std::pair<double, double>>(101)); },
+       "process.wheel.points_mm = 101; allowed: 2 to 100"},
+      {[](GrindJob& j) {
+         points(j, {{-4, 50}, {4, 0.0499}});
+       },
+       "process.wheel.points_mm = 0.0499 mm; allowed: 0.05 to 250 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-4, 50}, {0, kNan}, {4, 50}});
+       },
+       "process.wheel.points_mm = nan mm; allowed: 0.05 to 250 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-3.9995, 50}, {4.0005, 50}});
+       },
+       "process.wheel.points_mm = -3.9995 mm; allowed: the middle of the width at 0, so -4.0005 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-4.0005, 50}, {3.9995, 50}});
+       },
+       "process.wheel.points_mm = -4.0005 mm; allowed: the middle of the width at 0, so -3.9995 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-4, 50.0005}, {4, 49}});
+       },
+       "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 100.001 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-4, 49}, {4, 49.9995}});
+       },
+       "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 99.999 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-4.0005, 50}, {4.0005, 50}});
+       },
+       "process.wheel.width_mm = 8 mm; allowed: that of its points, 8.001 mm"},
+      {[](GrindJob& j) {
+         points(j, {{-3.9995, 50}, {3.9995, 50}});
+       },
+       "process.wheel.width_mm = 8 mm; allowed: that of its points, 7.999 mm"},
+      {[](GrindJob& j) { reliefs(j, 1), j.cutter.clearance = 0; },
+       "cutter.clearance_deg = 0 deg; allowed: more than 0 with a relief"},
+      {[](GrindJob& j) { reliefs(j, 1), j.cutter.clearance_tolerance = 0; },
+       "cutter.clearance_tolerance_deg = 0 deg; allowed: more than 0 with a relief"},
+      {[](GrindJob& j) { reliefs(j, 2), j.cutter.land = 0; },
+       "cutter.land_mm = 0 mm; allowed: more than 0 with a secondary relief"},
+      {[](GrindJob& j) { reliefs(j, 2), j.cutter.second_clearance = 0; },
+       "cutter.second_clearance_deg = 0 deg; allowed: more than 0 with a secondary relief"},
   };
   for (const auto& row : rows) {
     GrindJob job = paperJob();
@@ -107,6 +187,17 @@ TEST(GrindJob, TakesAsMuchAsIsAllowed) {
   std::vector<std::function<void(GrindJob&)>> changes{
       [](GrindJob& j) { j.process().overtravel_end = 57e-3; },
       [](GrindJob& j) { backTaper(j, 18e-3, 1e-3), j.process().overtravel_end = 100e-3; },
+      [](GrindJob& j) { shifted(j, -1.081e-3, 0); },
+      [](GrindJob& j) { shifted(j, 0.5e-3, 1.08e-3); },
+      [](GrindJob& j) { j.process().setup_x_shift = -28e-3, j.process().overtravel_end = 57e-3; },
+      [](GrindJob& j) {
+        points(j, {{-4, 50}, {0, 0.05}, {4, 49}});
+      },
+      [](GrindJob& j) {
+        points(j, {{-4, 250}, {4, 250}}), j.process().wheel_diameter = 500e-3;
+      },
+      [](GrindJob& j) { reliefs(j, 2); },
+      [](GrindJob& j) { reliefs(j, 1), j.cutter.land = j.cutter.second_clearance = 0; },
       [](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 - 1e-6)); },
       [](GrindJob& j) { j.process().depth_end = 7.62e-3; },
       [](GrindJob& j) { chord(j, 1.499e-3); },

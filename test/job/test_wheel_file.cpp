@@ -250,6 +250,11 @@ TEST(WheelFile, ReportsAMistakeWithFileLineKeyAndWhatIsAllowed) {
        "6: dressed = yesterday; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},
       {"angle_deg: 20", "angle_deg: 0", "5: angle_deg = 0 deg; allowed: more than 0 for this profile"},
       {"99.4", ".nan", "10: measured.diameter_mm = nan mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+      {"99.4", "100.1",
+       "10: measured.diameter_mm = 100.1 mm; allowed: 1 to 100 mm, the diameter to which Y = 0 is set"},
+      {"diameter_mm: 100", "diameter_mm: 300",
+       "10: measured.diameter_mm = 99.4 mm; allowed: 100 to 300 mm, the diameter to which Y = 0 is set"},
+      {"diameter_mm: 100", "diameter_mm: 600", "3: diameter_mm = 600 mm; allowed: 1 to 500 mm"},
       {"width_mm: 7.9", "width_mm: 0.25",
        "7: corner_radius_mm[0] = 0.3 mm; allowed: up to the wheel's width for both corners together, 0.25 mm"},
       // At 20 deg a radius of 2.8 mm is used up over 2.8 mm / tan 20 deg.

@@ -310,6 +310,50 @@ TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
   }
 }
 
+TEST(FeedSchedule, LeavesTheOverrideWhatAAllows) {
+  Machine machine = boundless();
+  machine.period = 1e-7;
+  const double asked = 0.01 / test_support::edgePerTravel(thinCutter());
+  const auto turn = static_cast<double>(ReferenceCurve(thinCutter()).slope(-0.5e-3));
+  machine.limits.max_velocity[kA] = 1.1 * asked * std::abs(turn);
+  const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+  EXPECT_TRUE(schedule.feedLimits().empty());
+  EXPECT_NEAR(schedule.feedSpeed(), asked, 1e-9 * asked);
+  EXPECT_NEAR(schedule.limits().velocity, 1.1 * asked, 1e-4 * asked);
+}
+
+/// Z'' v^2 is of Z's acceleration, and Z''' v^3 + 3 Z'' v a of its jerk, of which the last term takes at most a
+/// quarter.
+TEST(FeedSchedule, LeavesXWhatTheBendsOfZDoNotTake) {
+  FeedSchedule::Stroke stroke = plainStroke();
+  ZCorrection& z = stroke.z_correction;
+  z.from = stroke.from;
+  z.pieces = 4;
+  z.piece = (stroke.to - stroke.from) / 4;
+  for (std::size_t i = 0; i < 9; ++i) z.coefficients[i] = i % 2 == 0 ? 0.1e-3 : -0.1e-3;
+  const ZCorrection::Bounds bends = z.bounds();
+  const double cone = std::tan(12 * units::kDegree) * static_cast<double>(zPerY(thinCutter()));
+  const double slope = std::max(std::abs(cone + bends.min_first), std::abs(cone + bends.max_first));
+  const double v = 1.2 * 0.01 / test_support::edgePerTravel(thinCutter());
+  for (const bool by_jerk : {false, true}) {
+    SCOPED_TRACE(by_jerk);
+    Machine machine = boundless();
+    machine.period = 1e-7;
+    double& acceleration = machine.limits.max_acceleration[kZ];
+    double& jerk = machine.limits.max_jerk[kZ];
+    if (!by_jerk) acceleration = 8 * bends.second * v * v;
+    const double beside = (acceleration - bends.second * v * v) / slope;
+    jerk = 8 * bends.third * v * v * v + (by_jerk ? 0 : 24 * bends.second * v * beside);
+    const double left = by_jerk ? jerk / 4 / (3 * bends.second * v) : beside;
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
+    ASSERT_EQ(causesOf(schedule.feedLimits()), "");
+    EXPECT_NEAR(schedule.limits().velocity, v, 1e-9 * v);
+    EXPECT_NEAR(schedule.limits().acceleration, left, 1e-9 * left);
+    const double jerk_left = (jerk - bends.third * v * v * v - 3 * bends.second * v * left) / slope;
+    EXPECT_NEAR(schedule.limits().jerk, jerk_left, 1e-9 * jerk_left);
+  }
+}
+
 TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
   const double x_speed = 0.01 / test_support::edgePerTravel(thinCutter());
   const struct {

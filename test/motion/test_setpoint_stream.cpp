@@ -71,6 +71,9 @@ RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndReportsTheMeanVe
   for (std::size_t i = 1; i < setpoints.size(); ++i) {
     const Axes moved = setpoints[i].position - setpoints[i - 1].position;
     RC_ASSERT(((setpoints[i].velocity * work.machine.period - moved).abs() <= 4 * kEps * moved.abs()).all());
+    // What turns A alone has no feed.
+    RC_ASSERT(setpoints[i].feed <= 2 * work.machine.limits.max_velocity.head<3>().maxCoeff() ||
+              setpoints[i].step != StepKind::kNone);
   }
 }
 
@@ -95,6 +98,8 @@ TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
     EXPECT_EQ(stream.rest() == Rest::kEnd, p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
   EXPECT_EQ(stream.rest(), Rest::kEnd);
   const Setpoint last = p;
+  stream.retract();
+  EXPECT_EQ(stream.rest(), Rest::kEnd);
   stream.resume();
   EXPECT_FALSE(stream.next(p));
   EXPECT_EQ(p.cycle, last.cycle);

@@ -241,8 +241,43 @@ TEST(SetpointStream, AdoptsNothingUnlessItRestsLifted) {
   ride.stream().retract();
   ride.runToRest();
   EXPECT_EQ(ride.stream().rest(), Rest::kLifted);
+  EXPECT_NEAR(ride.last().position[kY], kPaperClearance, 1e-15) << "all of the lift";
   ride.stream().resume();
   expectIgnored("resumed");
+}
+
+TEST(SetpointStream, ARetractAboveTheWorkMovesNothing) {
+  Setpoint p;
+  // On the way from a park position above the clearance.
+  SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
+  while (p.cycle < 20) stream.next(p);
+  stream.hold();
+  all(stream, p);
+  ASSERT_GT(p.position[kY], kPaperClearance + 0.01);
+  const Axes held = p.position;
+  stream.retract();
+  all(stream, p);
+  EXPECT_EQ(stream.rest(), Rest::kLifted);
+  EXPECT_TRUE((p.position == held).all());
+  stream.resume();
+  all(stream, p);
+  EXPECT_EQ(stream.rest(), Rest::kEnd);
+  // On the way back from a jog.
+  PaperStroke ride(10e-3);
+  ride.stream().hold();
+  ride.runToRest();
+  ride.stream().retract();
+  ride.runToRest();
+  p = ride.last();
+  jog(ride.stream(), plainMachine(), p, kX, 0.01);
+  ride.stream().resume();
+  for (int i = 0; i < 20; ++i) ride.next();
+  ride.stream().hold();
+  ride.runToRest();
+  ASSERT_EQ(ride.stream().rest(), Rest::kHeld);
+  ride.stream().retract();
+  EXPECT_EQ(ride.stream().rest(), Rest::kLifted);
+  EXPECT_FALSE(ride.next());
 }
 
 }  // namespace test_stream_hold

@@ -51,6 +51,9 @@ ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 # Much longer than anything takes, even on a host that stalls.
 PATIENCE = 60
 
+# Found once: it takes a search of the whole clone.
+PACKAGE = rospkg.RosPack().get_path('flute_grinder')
+
 
 def add_sub_test(result, _test, sub_test, error):
     """rosunit counts a sub-test that fails, and would write nothing of it."""
@@ -100,7 +103,7 @@ def program(name):
 
 
 def package_file(path):
-    return rospkg.RosPack().get_path('flute_grinder') + '/' + path
+    return PACKAGE + '/' + path
 
 
 def grind(*arguments, environment=(), **options):
@@ -631,17 +634,22 @@ def grinder():
     return Grinder()
 
 
+@lru_cache(None)
+def yaml_file(path):
+    """What a file of the package says, not to be changed."""
+    with open(package_file(path)) as text:
+        return yaml.safe_load(text)
+
+
 def shipped_machine():
     """The machine's parameters as shipped."""
-    with open(package_file('config/grinder.yaml')) as text:
-        return yaml.safe_load(text)
+    return copy.deepcopy(yaml_file('config/grinder.yaml'))
 
 
 def machine(pace=1):
     """The same on a host that may stall, without a blank that a jog would touch. Simulated time runs `pace` times as fast as the
     clock; what a test interferes with in a stroke is then to have a feed that is as much lower."""
-    with open(package_file('test/patient.yaml')) as text:
-        parameters = dict(shipped_machine(), **yaml.safe_load(text))
+    parameters = dict(shipped_machine(), **copy.deepcopy(yaml_file('test/patient.yaml')))
     del parameters['hardware']['blank']
     if pace != 1:
         parameters['hardware']['pace'] = pace

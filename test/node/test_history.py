@@ -8,8 +8,8 @@ import re
 import signal
 import subprocess
 import time
+import xml.etree.ElementTree as xml
 
-import rospkg
 import rospy
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -96,7 +96,7 @@ class TestRecords(gc.OwnNode):
     def check_machine(self):
         limits = self.grinder.limits()
         message = rospy.wait_for_message('/kept/machine', MachineInfo, gc.PATIENCE)
-        version = rospkg.RosPack().get_manifest('flute_grinder').version
+        version = xml.parse(gc.package_file('package.xml')).findtext('version')
         self.assertEqual((message.name, message.version, message.drive, message.period),
                          ('flute_grinder', version, 'flute_grinder/SimulatedDrive', 0.001))
         self.assertEqual(list(message.max_velocity), limits['max_velocity'])

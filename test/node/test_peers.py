@@ -4,7 +4,6 @@ most memory that the node has had, in a row for each mistake."""
 import contextlib
 import os
 import random
-import re
 import resource
 import socket
 import struct
@@ -63,9 +62,9 @@ class Fuzzer:
                         zip(message.__slots__, message._slot_types))
 
     def _field(self, kind, value):
-        array = re.fullmatch(r'(.*)\[(\d*)\]', kind)
-        if array:
-            return self._array(array.group(1), int(array.group(2) or 0), value)
+        if kind.endswith(']'):
+            item, size = kind[:-1].split('[')
+            return self._array(item, int(size or 0), value)
         odd = self.chance.random() < self.often
         if kind in INTEGERS:
             return struct.pack('<' + INTEGERS[kind], self._integer(kind) if odd else int(value))
@@ -103,6 +102,11 @@ class Fuzzer:
                            self.chance.choice((0, 1, 10 ** 9 - 1, 10 ** 9, MOST_NANOSECONDS)))
 
 
+def random_bytes(chance, length):
+    # In Python 3.8 no bits are an error.
+    return chance.getrandbits(8 * length).to_bytes(length, 'little') if length else b''
+
+
 class Noise:
     """Messages of random bytes, of any length or of none."""
 
@@ -110,7 +114,7 @@ class Noise:
         self.chance, self._longest = random.Random(seed), longest
 
     def message(self, _):
-        return bytes(self.chance.choices(range(256), k=self.chance.randint(0, self._longest)))
+        return random_bytes(self.chance, self.chance.randint(0, self._longest))
 
 
 class Topic:
@@ -326,7 +330,7 @@ class TestPeers(unittest.TestCase):
                 connection = self.connect((self.api_port, self.tcpros_port)[i % 2])
                 with contextlib.suppress(ConnectionError):
                     connection.sendall(chance.choice((b'', b'GET / HTTP/1.1\r\n\r\n', b'POST / HTTP/1.1\r\nContent-length: 200\r\n\r\n')) +
-                                       bytes(chance.choices(range(256), k=chance.randrange(600))))
+                                       random_bytes(chance, chance.randrange(600)))
                 connection.close()
             loggers = rospy.ServiceProxy('/attacked/get_loggers', GetLoggers)().loggers
             self.assertIn('ros.flute_grinder', {logger.name for logger in loggers})

@@ -1,4 +1,4 @@
-#include "flute_grinder/tool/face_sweep.h"
+#include "tool/face_sweep.h"
 
 #include <algorithm>
 #include <cmath>

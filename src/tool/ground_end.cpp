@@ -1,4 +1,4 @@
-#include "flute_grinder/tool/ground_end.h"
+#include "tool/ground_end.h"
 
 #include "flute_grinder/base/units.h"
 

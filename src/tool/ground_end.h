@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flute_grinder/base/enum_table.h"
-#include "flute_grinder/tool/face_sweep.h"
+#include "tool/face_sweep.h"
 
 #include <cstdint>
 #include <optional>

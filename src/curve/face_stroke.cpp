@@ -91,6 +91,21 @@ InFace roundNext(const NextTooth& next, double rim) {
   return centre;
 }
 
+/// A stroke that only ends, at the centre of the lower face in its plane.
+/// @param place a place in the plane.
+FaceStroke flankStroke(const EndTooth& tooth, const FacePose& pose, const Vector3d& place, const InFace& centre,
+                       const FaceWheel& wheel) {
+  const Vector3d spindle = spindleAt(pose.swivel);
+  const double along_spindle = place.dot(spindle) + wheel.width / 2 - wheel.face_wear;
+  FaceStroke stroke;
+  stroke.swivel = pose.swivel;
+  stroke.to = axesAt(centre[0] * Vector3d::UnitY() + centre[1] * acrossAt(pose.swivel) + along_spindle * spindle,
+                     pose.tooth, tooth.radius, wheel);
+  stroke.from = stroke.to;
+  stroke.per_stock[kX] = -1 / std::sin(pose.swivel);
+  return stroke;
+}
+
 }  // namespace
 
 OnTooth flankNormal(double colatitude, double clearance, double spiral) noexcept {
@@ -120,6 +135,12 @@ FacePose gashPose(const OnTooth& normal, CutDirection cut) noexcept {
   return {hand * swivel, hand * (units::kPi / 2 - std::atan2(-normal[2], -normal[1]))};
 }
 
+OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake) noexcept {
+  // From the end's edge to the periphery the rake face falls back by what the chamfer's edge rises along the axis.
+  const double behind = (std::cos(angle) + std::sin(angle) * std::tan(dish)) * tan_rake;
+  return flankNormal(units::kPi / 2 - angle, clearance, std::atan(behind));
+}
+
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept {
   const FacePose pose = flankPose(normal, tooth.cut);
@@ -127,23 +148,30 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   const bool right = tooth.cut == CutDirection::kRightHand;
   const double rim = right ? wheel.radius + gap : wheel.inner_radius - gap;
   const NextTooth next(tooth, normal, pose, place);
-  InFace in_face = right ? besideNext(next, rim) : roundNext(next, rim);
-  // The edge of a tooth that is about opposite is on the other side of the axis.
-  if (std::abs(tooth.pitch - units::kPi) < kOpposite) in_face = {rim, place[0] / spindle[2]};
-  const Vector3d face =
-      in_face[0] * Vector3d::UnitY() + in_face[1] * acrossAt(pose.swivel) + place.dot(spindle) * spindle;
-  const Vector3d centre = face + (wheel.width / 2 - wheel.face_wear) * spindle;
-
-  FaceStroke stroke;
-  stroke.swivel = pose.swivel;
-  stroke.to = axesAt(centre, pose.tooth, tooth.radius, wheel);
-  stroke.from = stroke.to;
+  InFace centre = right ? besideNext(next, rim) : roundNext(next, rim);
+  // The edge of a tooth that is about opposite is on the other side of the axis; anywhere along it the wheel does.
+  if (std::abs(tooth.pitch - units::kPi) < kOpposite) centre = {rim, place.dot(spindle) * spindle[2] / spindle[0]};
+  FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   if (right) {
     stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;
   } else {
     stroke.from[kX] -= clear / std::sin(pose.swivel) + 2 * tooth.radius * std::abs(spindle[2] / spindle[0]);
   }
-  stroke.per_stock[kX] = -1 / std::sin(pose.swivel);
+  return stroke;
+}
+
+FaceStroke chamferStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
+                         double gap, double clear) noexcept {
+  const FacePose pose = flankPose(normal, tooth.cut);
+  const Vector3d place = inMachine(through, pose.tooth, tooth.cut);
+  // Where the flank leaves the periphery at the end, behind the edge: N . (0, R cos, R sin) is as at the edge.
+  const double part = normal.dot(through) / (tooth.radius * std::hypot(normal[1], normal[2]));
+  const double behind = std::atan2(normal[2], normal[1]) + std::acos(std::clamp(part, -1.0, 1.0));
+  const double turn = tooth.cut == CutDirection::kRightHand ? behind : -behind;
+  const double lowest = std::min(place[1], tooth.radius * std::cos(pose.tooth + turn));
+  const InFace centre(lowest - gap + wheel.radius, place.dot(acrossAt(pose.swivel)));
+  FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
+  stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;
   return stroke;
 }
 

@@ -77,18 +77,18 @@ bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, 
                      [x](const Range& range) { return x >= range.from && x <= range.to; });
 }
 
-bool GroundEnd::isLand(std::size_t tooth, double r, double behind) const {
-  return isOf(surface(tooth, r, behind).cut, tooth, EndFace::kPrimary);
+bool GroundEnd::isFlank(std::size_t tooth, EndFace face, double r, double behind) const {
+  return isOf(surface(tooth, r, behind).cut, tooth, face);
 }
 
-std::optional<double> GroundEnd::edge(std::size_t tooth, double r) const {
-  const auto is_land = [&](double behind) { return isLand(tooth, r, behind); };
+std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r) const {
+  const auto is_flank = [&](double behind) { return isFlank(tooth, face, r, behind); };
   const double step = kStep * radius_;
   double before = -step;
-  if (is_land(before)) return std::nullopt;
+  if (is_flank(before)) return std::nullopt;
   for (double behind = kNearby * radius_; behind < kFarthest * radius_; behind += step) {
-    if (is_land(behind)) {
-      const double edge = change(before, behind, is_land);
+    if (is_flank(behind)) {
+      const double edge = change(before, behind, is_flank);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
       const bool gashed = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnGash);
       return gashed ? std::optional(edge) : std::nullopt;
@@ -106,7 +106,7 @@ double GroundEnd::slope(std::size_t tooth, double r, double behind) const {
 EndSection GroundEnd::section(std::size_t tooth, double r) const {
   EndSection section;
   section.r = r;
-  const std::optional<double> behind = edge(tooth, r);
+  const std::optional<double> behind = edge(tooth, EndFace::kPrimary, r);
   if (!behind) return section;
   section.behind = *behind;
   section.edge = surface(tooth, r, *behind).x;
@@ -117,7 +117,7 @@ EndSection GroundEnd::section(std::size_t tooth, double r) const {
 
 void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
   section.clearance = std::atan(slope(tooth, section.r, section.behind));
-  const auto is_other = [&](double behind) { return !isLand(tooth, section.r, behind); };
+  const auto is_other = [&](double behind) { return !isFlank(tooth, EndFace::kPrimary, section.r, behind); };
   const double step = kStep * radius_;
   double behind = section.behind + step;
   while (!is_other(behind)) {
@@ -142,14 +142,36 @@ void GroundEnd::measureRake(std::size_t tooth, EndSection& section) const {
 }
 
 std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
-  const auto is_whole = [&](double r) { return edge(tooth, r).has_value(); };
-  const double corner = radius_ * (1 - kNearby), step = kStep * radius_;
+  const auto is_whole = [&](double r) {
+    return edge(tooth, EndFace::kPrimary, r).has_value() || edge(tooth, EndFace::kChamfer, r).has_value();
+  };
+  const double corner = radius_ * (1 - kNearby), innermost = kInnermost * radius_;
   if (!is_whole(corner)) return std::nullopt;
-  for (double r = corner - step;; r -= step) {
-    if (r < kInnermost * radius_)
-      return is_whole(kInnermost * radius_) ? 0 : change(kInnermost * radius_, r + step, is_whole);
-    if (!is_whole(r)) return change(r, r + step, is_whole);
+  for (double r = corner; r > innermost;) {
+    const double inner = std::max(innermost, r - kStep * radius_);
+    if (!is_whole(inner)) return change(inner, r, is_whole);
+    r = inner;
   }
+  return 0;
+}
+
+std::optional<ChamferFigures> GroundEnd::chamfer(std::size_t tooth) const {
+  const auto at = [&](double r) { return edge(tooth, EndFace::kChamfer, r); };
+  const double corner = radius_ * (1 - kNearby), step = kStep * radius_;
+  if (!at(corner)) return std::nullopt;
+  double r = corner - step;
+  while (r > 0 && at(r)) r -= step;
+  const double inner = change(std::max(r, 0.0), r + step, [&](double r_here) { return at(r_here).has_value(); });
+  // Along the edge, and across it: X of the flank over radius and distance behind it.
+  const double middle = (inner + corner) / 2, nearby = kNearby * radius_;
+  const double from = *at(middle), to = *at(middle + nearby);
+  const double rise =
+      (surface(tooth, middle + nearby, to + nearby).x - surface(tooth, middle, from + nearby).x) / nearby;
+  const double per_behind = slope(tooth, middle, from);
+  const double per_r = rise - per_behind * (to - from) / nearby;
+  const OnTooth flank = OnTooth(-1, per_r, per_behind).normalized(), surface_here = OnTooth(-1, rise, 0).normalized();
+  return ChamferFigures{radius_ - inner, units::kPi / 2 - std::atan(rise),
+                        std::acos(std::clamp(flank.dot(surface_here), -1.0, 1.0))};
 }
 
 }  // namespace grinder

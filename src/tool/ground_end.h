@@ -10,7 +10,7 @@
 namespace grinder {
 
 /// What a stroke on the end of a tool grinds.
-enum class EndFace : std::uint8_t { kGash, kPrimary, kSecondary };
+enum class EndFace : std::uint8_t { kGash, kPrimary, kSecondary, kChamfer };
 
 /// A stroke on the end of a tool.
 struct EndCut {
@@ -31,6 +31,13 @@ struct EndSection {
   std::optional<double> second_clearance;  ///< axial clearance at the beginning of the secondary flank [rad]
 };
 
+/// The chamfer of a tooth between end and periphery.
+struct ChamferFigures {
+  double width = 0;      ///< seen along the axis [m]
+  double angle = 0;      ///< of its edge to the axis [rad]
+  double clearance = 0;  ///< normal to its edge [rad]
+};
+
 /// The end of a tool as strokes leave it, measured on rays parallel to the axis.
 class GroundEnd {
  public:
@@ -46,7 +53,8 @@ class GroundEnd {
   /// [m].
   std::optional<double> wholeFrom(std::size_t tooth) const;
 
-  double radius() const noexcept { return radius_; }
+  /// Nothing if the corner has no chamfer.
+  std::optional<ChamferFigures> chamfer(std::size_t tooth) const;
 
  private:
   /// The surface that is left on a ray: its X, and the cut that formed it, or none.
@@ -57,8 +65,9 @@ class GroundEnd {
   Surface surface(std::size_t tooth, double r, double behind) const;
   enum class By { kAny, kOwnGash };
   bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;
-  bool isLand(std::size_t tooth, double r, double behind) const;
-  std::optional<double> edge(std::size_t tooth, double r) const;
+  bool isFlank(std::size_t tooth, EndFace face, double r, double behind) const;
+  /// How far behind the radius the tooth has an edge that its gash and this flank form.
+  std::optional<double> edge(std::size_t tooth, EndFace face, double r) const;
   double slope(std::size_t tooth, double r, double behind) const;
   void measureFlanks(std::size_t tooth, EndSection& section) const;
   void measureRake(std::size_t tooth, EndSection& section) const;

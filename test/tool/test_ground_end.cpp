@@ -138,17 +138,32 @@ TEST(GroundEnd, FindsTheFiguresOfAnyEnd) {
     const FaceStroke gash = gashStroke(tooth, gashNormal(rake, dish), 45 * kDegree, past, thin, 1 * kMillimetre);
     const FaceStroke primary = strokeOf(endNormal(clearance, dish), {0, tooth.radius, 0});
     const FaceStroke secondary = strokeOf(endNormal(second, dish), {land * std::tan(clearance), tooth.radius, land});
+    const double width = random.between(0.02, 0.05) * tooth.radius, angle = random.between(30, 60) * kDegree;
+    const double chamfer_clearance = random.between(6, 14) * kDegree;
+    const double corner_x = width * (1 / std::tan(angle) + std::tan(dish));
+    const FaceWheel plain = wheelOf(100, 10);
+    const FaceStroke chamfer =
+        chamferStroke(tooth, chamferNormal(angle, chamfer_clearance, dish, std::tan(rake)),
+                      {corner_x, tooth.radius, corner_x * std::tan(rake)}, plain, 0.05 * kMillimetre, 1 * kMillimetre);
+    if (!right) {
+      // A left-hand tool's edge is the lowest place of the flank.
+      const double at = -chamfer.to[kA], edge = tooth.radius * std::cos(at) + corner_x * std::tan(rake) * std::sin(at);
+      const double rim = tooth.radius + plain.nominal_radius + chamfer.to[kY] - plain.radius;
+      EXPECT_NEAR(rim, edge - 0.05 * kMillimetre, 1e-12);
+    }
     const WheelProfile profile = WheelProfile::straight(2 * wheel.radius, wheel.width);
     const WheelProfile gasher = WheelProfile::straight(2 * thin.radius, thin.width);
     std::vector<double> angles;
     std::vector<EndCut> cuts;
     for (int k = 0; k < teeth; ++k) {
-      const double angle = k * tooth.pitch;
+      const double tooth_angle = k * tooth.pitch;
       const auto number = static_cast<std::size_t>(k);
-      angles.push_back(angle);
-      cuts.push_back({number, EndFace::kPrimary, {primary, wheel, profile, tooth.radius, angle}});
-      cuts.push_back({number, EndFace::kSecondary, {secondary, wheel, profile, tooth.radius, angle}});
-      cuts.push_back({number, EndFace::kGash, {gash, thin, gasher, tooth.radius, angle + (right ? turn : -turn)}});
+      angles.push_back(tooth_angle);
+      cuts.push_back({number, EndFace::kPrimary, {primary, wheel, profile, tooth.radius, tooth_angle}});
+      cuts.push_back({number, EndFace::kSecondary, {secondary, wheel, profile, tooth.radius, tooth_angle}});
+      cuts.push_back({number, EndFace::kChamfer, {chamfer, plain, profile, tooth.radius, tooth_angle}});
+      cuts.push_back(
+          {number, EndFace::kGash, {gash, thin, gasher, tooth.radius, tooth_angle + (right ? turn : -turn)}});
     }
     const GroundEnd end(tooth.radius, cut, angles, cuts, 0);
     for (std::size_t k = 0; k < angles.size(); ++k) {
@@ -164,6 +179,7 @@ TEST(GroundEnd, FindsTheFiguresOfAnyEnd) {
           if (isInWheel(gash, thin, gasher, tooth.radius, place)) return true;
           if (isInWheel(primary, wheel, profile, tooth.radius, place)) return true;
           if (isInWheel(secondary, wheel, profile, tooth.radius, place)) return true;
+          if (isInWheel(chamfer, plain, profile, tooth.radius, place)) return true;
         }
         return false;
       };
@@ -175,7 +191,14 @@ TEST(GroundEnd, FindsTheFiguresOfAnyEnd) {
         EXPECT_TRUE(is_whole(*whole_from + 0.01 * tooth.radius));
         EXPECT_FALSE(is_whole(*whole_from - 0.01 * tooth.radius)) << *whole_from;
       }
-      for (const double part : {0.4, 0.7, 0.95}) {
+      if (turn == 0) {
+        const std::optional<ChamferFigures> found = end.chamfer(k);
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(found->width, width, 1e-7);
+        EXPECT_NEAR(found->angle, angle, 1e-4);
+        EXPECT_NEAR(found->clearance, chamfer_clearance, 1e-4);
+      }
+      for (const double part : {0.4, 0.65, 0.85}) {
         const double r = part * tooth.radius;
         const EndSection section = end.section(k, r);
         ASSERT_TRUE(section.edge) << part;

@@ -80,6 +80,22 @@ struct FaceStroke {
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept;
 
+/// The outward normal of the flank of a chamfer between end and periphery.
+/// @param angle between chamfer and axis [rad].
+/// @param clearance normal to the chamfer's edge [rad].
+/// @param dish of the end, as for endNormal() [rad].
+/// @param tan_rake tangent of the rake face's angle to the axis at the corner: of the helix, or of the gash.
+OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake) noexcept;
+
+/// The stroke that grinds the flank of a chamfer, with the wheel's lower face: down along Y, until the rim has passed
+/// all of the flank. Stock is normal to the flank.
+/// @param normal outward, from chamferNormal().
+/// @param through a place on the chamfer's edge, on the periphery.
+/// @param gap distance by which the rim passes [m].
+/// @param clear as for endStroke() [m].
+FaceStroke chamferStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
+                         double gap, double clear) noexcept;
+
 /// The stroke that gashes an end tooth with the wheel's rim: inward along the gash's bottom, to the end. Stock is
 /// radial, as for a flute.
 /// @param normal outward, from gashNormal().

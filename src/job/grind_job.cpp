@@ -138,30 +138,77 @@ void checkWheel(Checker& checker, const GrindProcess& p) {
   }
 }
 
-/// Checks the order of the operations, and that the cutter has the dimensions that the reliefs need.
+bool has(const GrindJob& job, OperationKind kind) {
+  const auto is_it = [kind](const GrindProcess& p) { return p.kind == kind; };
+  return std::any_of(job.operations.begin(), job.operations.end(), is_it);
+}
+
+/// Checks the order of the operations, and that the cutter has the dimensions that they need. Flutes and reliefs begin
+/// with the flutes; what is ground on the end may do without.
 void checkOperations(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
-  const int count = static_cast<int>(job.operations.size());
   const auto ask = [&](const char* path, double value, Unit unit, const char* what) {
     if (!(value > 0)) checker.refuse(ReasonKind::kNotAllowed, path, {value, unit}, what);
   };
-  for (int i = 0; i < count && checker.good(); ++i) {
-    checker.whole("process.kind", static_cast<int>(job.operations[static_cast<std::size_t>(i)].kind), i, i);
+  int least = 0;
+  for (std::size_t i = 0; i < job.operations.size() && checker.good(); ++i) {
+    const OperationKind kind = job.operations[i].kind;
+    const int number = static_cast<int>(kind), at = static_cast<int>(i);
+    checker.whole("process.kind", number, isStraight(kind) ? countOf<OperationKind>() - 1 : at, least);
+    least = number + 1;
   }
   if (!checker.good()) return;
-  if (count < 2) return;
-  ask("cutter.clearance", c.clearance, Unit::kRadian, "more than 0 with a relief");
-  ask("cutter.clearance_tolerance", c.clearance_tolerance, Unit::kRadian, "more than 0 with a relief");
-  if (count < 3) return;
-  ask("cutter.land", c.land, Unit::kMetre, "more than 0 with a secondary relief");
-  ask("cutter.second_clearance", c.second_clearance, Unit::kRadian, "more than 0 with a secondary relief");
+  if (has(job, OperationKind::kPrimaryRelief)) {
+    ask("cutter.clearance", c.clearance, Unit::kRadian, "more than 0 with a relief");
+    ask("cutter.clearance_tolerance", c.clearance_tolerance, Unit::kRadian, "more than 0 with a relief");
+  }
+  if (has(job, OperationKind::kSecondaryRelief)) {
+    ask("cutter.land", c.land, Unit::kMetre, "more than 0 with a secondary relief");
+    ask("cutter.second_clearance", c.second_clearance, Unit::kRadian, "more than 0 with a secondary relief");
+  }
+  if (has(job, OperationKind::kGash)) {
+    ask("cutter.end_rake_tolerance", c.end_rake_tolerance, Unit::kRadian, "more than 0 with a gash");
+  }
+  if (has(job, OperationKind::kPrimaryEnd) || has(job, OperationKind::kSecondaryEnd)) {
+    ask("cutter.end_clearance", c.end_clearance, Unit::kRadian, "more than 0 with end teeth");
+    ask("cutter.end_clearance_tolerance", c.end_clearance_tolerance, Unit::kRadian, "more than 0 with end teeth");
+  }
+  if (has(job, OperationKind::kSecondaryEnd)) {
+    ask("cutter.end_land", c.end_land, Unit::kMetre, "more than 0 with secondary flanks of the end");
+    ask("cutter.end_second_clearance", c.end_second_clearance, Unit::kRadian,
+        "more than 0 with secondary flanks of the end");
+  }
+  if (has(job, OperationKind::kChamfer)) {
+    ask("cutter.chamfer_width", c.chamfer_width, Unit::kMetre, "more than 0 with a chamfer");
+    ask("cutter.chamfer_angle", c.chamfer_angle, Unit::kRadian, "more than 0 with a chamfer");
+    ask("cutter.chamfer_clearance", c.chamfer_clearance, Unit::kRadian, "more than 0 with a chamfer");
+  }
 }
 
-/// A relief needs a straight wheel, since the rim grinds it.
-void checkReliefWheel(Checker& checker, const GrindProcess& p) {
+/// A relief needs a straight wheel, since the rim grinds it; so does an operation on the end, of which the faces do.
+void checkStraightWheel(Checker& checker, const GrindProcess& p) {
   if (p.wheel_profile == WheelShape::kStraight) return;
   checker.refuse(ReasonKind::kNotAllowed, "process.wheel_profile", {static_cast<double>(p.wheel_profile), Unit::kNone},
-                 "0, straight, for a relief: its cylinder is what grinds it");
+                 isRelief(p.kind) ? "0, straight, for a relief: its cylinder is what grinds it"
+                                  : "0, straight, for an operation on the end");
+}
+
+/// Checks what only an operation on the end has.
+void checkEnd(Checker& checker, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process();
+  const double radius = c.end_diameter / 2;
+  if (p.kind == OperationKind::kGash && !(p.gash_past > -radius)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
+                   "more than the cutter's radius at the end,", -radius);
+  }
+  if (p.kind == OperationKind::kChamfer) {
+    checker.below("cutter.chamfer_width", c.chamfer_width, radius, "the cutter's radius at the end");
+  }
+  if (p.kind == OperationKind::kSecondaryEnd && !(c.end_second_clearance > c.end_clearance)) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.end_second_clearance", {c.end_second_clearance, Unit::kRadian},
+                   "more than that of the primary flank,", c.end_clearance);
+  }
 }
 
 /// Checks numbers that are each within their range against each other.
@@ -188,8 +235,9 @@ void checkTogether(Checker& checker, const GrindJob& job) {
     checker.below("process.overtravel_end", p.overtravel_end, -apex - std::max(0.0, p.setup_x_shift),
                   "where the cone closes");
   }
-  if (isRelief(p.kind)) {
-    checkReliefWheel(checker, p);
+  if (p.kind != OperationKind::kFlute) {
+    checkStraightWheel(checker, p);
+    if (isStraight(p.kind)) checkEnd(checker, job);
     return checkWheel(checker, p);
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");

@@ -7,7 +7,9 @@
 #include "flute_grinder/job/flat_file.h"
 #include "flute_grinder/job/job_fields.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <vector>
 
@@ -130,7 +132,7 @@ void takeWheelFile(FlatFile& file, const ProcessKeys& keys, const std::string& p
 /// The figure of a set-up that an operation may ask for beside a set-up file; nothing for any other number.
 std::optional<SetupFigure> figureOf(const JobField& field, OperationKind kind) {
   for (const SetupFigureRow& row : kSetupFigures) {
-    const bool is_allowed = !isRelief(kind) || row.value == SetupFigure::kSwivel;
+    const bool is_allowed = kind == OperationKind::kFlute || (isRelief(kind) && row.value == SetupFigure::kSwivel);
     if (is_allowed && std::string_view(row.path) == field.path) return row.value;
   }
   return std::nullopt;
@@ -207,18 +209,34 @@ class OperationReader {
     return true;
   }
 
-  void takeKind() {
-    const std::string kind = keys_("process.kind"), relief = keys_("process.relief");
-    std::string word;
-    if (!file_.take(kind, "flute, relief", word)) return;
-    if (word == "flute") return;
-    if (word != "relief") return file_.fail(file_.line(kind), kind + " = " + word + "; allowed: flute, relief");
-    if (!file_.take(relief, "primary, secondary", word)) return;
-    const auto which = valueOf<OperationKind>(word);
-    if (!which || !isRelief(*which)) {
-      return file_.fail(file_.line(relief), relief + " = " + word + "; allowed: primary, secondary");
+  /// Takes a word that a column of the operations' table has.
+  /// @param fits whether a row counts.
+  template <typename Fits>
+  std::string takeWord(const std::string& key, const char* OperationRow::*column, const Fits& fits) {
+    std::vector<std::string> words;
+    for (const OperationRow& row : kOperationKinds) {
+      if (fits(row) && std::find(words.begin(), words.end(), row.*column) == words.end()) words.push_back(row.*column);
     }
-    job_.process().kind = *which;
+    std::string allowed, word;
+    for (const std::string& one : words) allowed += (allowed.empty() ? "" : ", ") + one;
+    if (!file_.take(key, allowed, word)) return "";
+    if (std::find(words.begin(), words.end(), word) != words.end()) return word;
+    file_.fail(file_.line(key), key + " = " + word + "; allowed: " + allowed);
+    return "";
+  }
+
+  void takeKind() {
+    const std::string kind =
+        takeWord(keys_("process.kind"), &OperationRow::kind, [](const OperationRow&) { return true; });
+    const auto is_kind = [&kind](const OperationRow& row) { return row.kind == kind; };
+    const auto first = std::find_if(std::begin(kOperationKinds), std::end(kOperationKinds), is_kind);
+    if (first == std::end(kOperationKinds)) return;
+    job_.process().kind = first->value;
+    if (*first->relief == '\0') return;
+    const std::string relief = takeWord(keys_("process.relief"), &OperationRow::relief, is_kind);
+    for (const OperationRow& row : kOperationKinds) {
+      if (is_kind(row) && row.relief == relief) job_.process().kind = row.value;
+    }
   }
 
   /// Whether a relief takes a key from the preceding operation.
@@ -254,7 +272,7 @@ class OperationReader {
     takeOrInherit("process.spark_out", &GrindProcess::spark_out, [&](const std::string& key, int& value) {
       file_.take(key, otherJobKey("process.spark_out").allowed, value);
     });
-    if (isRelief(p.kind)) return;
+    if (p.kind != OperationKind::kFlute) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
     const std::string incomplete_ok = keys_("process.incomplete_ok");
     if (file_.mayHave(incomplete_ok))

@@ -47,8 +47,11 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
   for (const char* of_relief : {"cutter.clearance", "cutter.land", "cutter.second_clearance"}) {
     if (path == of_relief) return isRelief(kind);
   }
+  if ((begins(path, "cutter.end_") && path != "cutter.end_diameter") || begins(path, "cutter.chamfer_")) {
+    return isStraight(kind) && path.find("tolerance") == std::string_view::npos;
+  }
   if (begins(path, "process.wheel_")) return path.find("wear") == std::string_view::npos;
-  if (path == "process.behind") return field.isOf(kind);
+  if (path == "process.behind" || begins(path, "process.gash_")) return field.isOf(kind);
   return begins(path, "cutter.") && path.find("tolerance") == std::string_view::npos;
 }
 
@@ -67,7 +70,7 @@ std::vector<std::string> solvedFor(const GrindJob& job) {
     const auto& [w, radius] = job.process().wheel_points[i];
     add(element("process.wheel.points_mm", i), asked(w, Unit::kMetre) + ", " + asked(radius, Unit::kMetre));
   }
-  if (!isRelief(job.process().kind)) add("process.z_law", toString(job.process().z_law));
+  if (job.process().kind == OperationKind::kFlute) add("process.z_law", toString(job.process().z_law));
   return lines;
 }
 
@@ -102,7 +105,7 @@ void clearSetup(GrindJob& job) {
   visitJobFields([&](const JobField& field, auto of) {
     if (isOfSetup(field)) of(job) = 0;
   });
-  if (isRelief(job.process().kind)) return;
+  if (job.process().kind != OperationKind::kFlute) return;
   const CutterGeometry& c = job.cutter;
   job.process().depth = (c.end_diameter - c.core_diameter) / 2;
   constexpr double run_in = 1e-3;

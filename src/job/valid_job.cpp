@@ -1,9 +1,11 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_fields.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -30,6 +32,50 @@ std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& de
 /// The travel of a relief's start in a stroke: X of the cutter [m].
 Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
+}
+
+constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
+
+/// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
+/// @param wear wear of the wheel's radius [m].
+FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
+  const GrindProcess& p = job.process();
+  const FaceWheel wheel{p.wheel_diameter / 2, p.wheel_diameter / 2 - wear, p.wheel_width, 0, p.setup_height, 0};
+  const EndPlane plane = endPlaneOf(job);
+  const EndTooth end = endToothOf(job, tooth);
+  switch (p.kind) {
+    case OperationKind::kGash: return gashStroke(end, plane.normal, p.gash_angle, p.gash_past, wheel, p.clearance);
+    case OperationKind::kChamfer: return chamferStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
+    default: return endStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
+  }
+}
+
+/// Difference of a set-up's swivel from the plane's that its rounding explains, and no figure of a tool shows [rad].
+constexpr double kSameSwivel = 0.01 * units::kDegree;
+
+/// A plane of the end has one swivel.
+/// @throw InvalidJob if the set-up has another.
+void requireSwivelOfPlane(const GrindJob& job) {
+  const double swivel = job.process().setup_swivel, asked = lastFaceStroke(job, 0, 0).swivel;
+  if (std::abs(swivel - asked) <= kSameSwivel) return;
+  throw InvalidJob({{ReasonKind::kNotAllowed, 0, "process.setup_swivel", "that of the plane that is ground,",
+                     Unit::kRadian, swivel, 0, asked}});
+}
+
+/// The stock that an operation on the end finds on a tooth, as FaceStroke counts it: of a gash radial, else normal to
+/// the plane.
+double endStockOf(const GrindJob& job, int tooth) {
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process();
+  const double radius = c.end_diameter / 2;
+  if (p.kind == OperationKind::kGash) return radius + p.gash_past + p.stock * std::tan(p.gash_angle);
+  const EndPlane plane = endPlaneOf(job);
+  const double half = units::kPi / 2, far = radius * std::sin(std::min(half, endToothOf(job, tooth).pitch));
+  OnTooth highest(-p.stock, radius, 0);
+  if (p.kind == OperationKind::kPrimaryEnd) highest = {-p.stock, 0, far};
+  // After the primary flank.
+  if (p.kind == OperationKind::kSecondaryEnd) highest = {far * std::tan(c.end_clearance) - p.stock, radius, far};
+  return std::max(0.0, plane.normal.dot(highest - plane.through));
 }
 
 /// The paths of a relief behind all teeth.
@@ -98,6 +144,34 @@ ReliefStart reliefStartOf(const GrindJob& job, const ConicalCutter& tooth) {
   return {c.second_clearance, end.radius / tooth.radius(0), end.behind};
 }
 
+EndPlane endPlaneOf(const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const double radius = c.end_diameter / 2;
+  const OnTooth corner(0, radius, 0);
+  switch (job.process().kind) {
+    case OperationKind::kGash: return {gashNormal(c.end_rake, c.end_dish), corner};
+    case OperationKind::kSecondaryEnd:
+      return {endNormal(c.end_second_clearance, c.end_dish),
+              corner + c.end_land * OnTooth(std::tan(c.end_clearance), 0, 1)};
+    case OperationKind::kChamfer: {
+      const double hand = c.cut == CutDirection::kRightHand ? 1 : -1, tan_rake = hand * std::tan(c.spiral_angle);
+      const double x = c.chamfer_width * (1 / std::tan(c.chamfer_angle) + std::tan(c.end_dish));
+      const double behind = x * tan_rake / radius;
+      return {chamferNormal(c.chamfer_angle, c.chamfer_clearance, c.end_dish, tan_rake),
+              {x, radius * std::cos(behind), radius * std::sin(behind)}};
+    }
+    default: return {endNormal(c.end_clearance, c.end_dish), corner};
+  }
+}
+
+EndTooth endToothOf(const GrindJob& job, int tooth) {
+  const std::vector<double>& angles = job.tooth_angles;
+  const std::size_t count = angles.size(), i = static_cast<std::size_t>(tooth);
+  const bool right = job.cutter.cut == CutDirection::kRightHand;
+  const double next = right ? angles[(i + 1) % count] - angles[i] : angles[i] - angles[(i + count - 1) % count];
+  return {job.cutter.end_diameter / 2, next > 0 ? next : next + units::kTurn, job.cutter.cut};
+}
+
 InvalidJob::InvalidJob(std::vector<Reason> reasons)
     : std::invalid_argument(text(reasons)), reasons_(std::move(reasons)) {}
 
@@ -111,6 +185,13 @@ ValidJob::ValidJob(GrindJob job) {
   if (isRelief(job.process().kind)) {
     content.job = std::move(job);
     takeReliefs(content, content.cutters);
+  } else if (grinder::isStraight(job.process().kind)) {
+    requireSwivelOfPlane(job);
+    for (int tooth = 0; tooth < static_cast<int>(job.tooth_angles.size()); ++tooth) {
+      content.deepest = std::max(content.deepest, endStockOf(job, tooth));
+    }
+    content.job = std::move(job);
+    takePasses(content);
   } else {
     content.deepest = job.process().deepest();
     content.depths = passDepths(job.process());
@@ -123,17 +204,33 @@ ValidJob::ValidJob(GrindJob job) {
 }
 
 void ValidJob::takeReliefs(Content& content, const std::vector<CutterGeometry>& edges) {
-  const GrindProcess& p = content.job.process();
   content.reliefs = reliefsOf(content.job, edges);
   content.deepest = 0;
   for (const ReliefPath& path : content.reliefs) content.deepest = std::max(content.deepest, path.depth());
+  takePasses(content);
+}
+
+void ValidJob::takePasses(Content& content) {
+  const GrindProcess& p = content.job.process();
   const double passes = content.deepest / p.infeed + p.spark_out + 2;
-  if (!(passes * static_cast<double>(edges.size()) <= kMaxPassesOfAll)) {
-    throw InvalidJob({otherReason("process.infeed_mm is too small for a relief as deep as this: more than " +
-                                  std::to_string(kMaxPassesOfAll) + " passes of all teeth")});
+  if (!(passes * static_cast<double>(content.cutters.size()) <= kMaxPassesOfAll)) {
+    throw InvalidJob(
+        {otherReason("process.infeed_mm is too small for a " + std::string(rowOf(p.kind).words) +
+                     " as deep as this: more than " + std::to_string(kMaxPassesOfAll) + " passes of all teeth")});
   }
   content.depths = passDepths(p, content.deepest);
   content.passes = passesOf(content.job, content.depths);
+}
+
+FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const noexcept {
+  FaceStroke stroke = lastFaceStroke(content_->job, tooth, wear);
+  const Axes shift = (content_->deepest - depth) * stroke.per_stock;
+  const double angle = content_->job.tooth_angles[static_cast<std::size_t>(tooth)];
+  for (Axes* at : {&stroke.from, &stroke.to}) {
+    *at += shift;
+    (*at)[kA] += angle;
+  }
+  return stroke;
 }
 
 const StrokeLaw& ValidJob::strokeLaw(int tooth) const {
@@ -153,7 +250,8 @@ DepthLaw ValidJob::depthLaw(int tooth, double depth, double wear) const noexcept
 }
 
 double ValidJob::depthAtEnd(double depth) const noexcept {
-  return content_->reliefs.empty() ? depth * (content_->job.process().depth / content_->deepest) : depth;
+  const bool of_flute = content_->job.process().kind == OperationKind::kFlute;
+  return of_flute ? depth * (content_->job.process().depth / content_->deepest) : depth;
 }
 
 const ReliefPath* ValidJob::relief(int tooth) const noexcept {

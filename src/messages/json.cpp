@@ -78,9 +78,10 @@ Json fieldsOf(const GrindJob& job) {
 /// An operation as an element of a job file's list.
 Json operationOf(const GrindJob& job) {
   Json process = fieldsOf(job)["process"];
-  process["kind"] = isRelief(job.process().kind) ? "relief" : "flute";
-  if (!isRelief(job.process().kind)) return process;
-  process["relief"] = toString(job.process().kind);
+  const OperationRow& row = rowOf(job.process().kind);
+  process["kind"] = row.kind;
+  if (*row.relief != '\0') process["relief"] = row.relief;
+  if (row.value == OperationKind::kFlute) return process;
   for (const char* key : {"z_law", "incomplete_ok"}) process.erase(key);
   return process;
 }

@@ -16,6 +16,7 @@ constexpr double kMinPeriod = 1e-6;  ///< minimum control cycle [s]
 
 FeedSchedule::Stroke strokeOf(const ValidJob& job) {
   FeedSchedule::Stroke stroke;
+  if (job.isStraight()) return stroke;
   stroke.from = job.strokeLaw(0).from;
   stroke.to = job.strokeLaw(0).to;
   stroke.surface_feed = job->process().feed;
@@ -81,6 +82,7 @@ std::size_t indexOf(const std::vector<Helix>& helices, double spiral_angle) {
 
 std::vector<Helix> helicesOf(const ValidJob& job, FeedSchedule::Stroke stroke, const Machine& machine) {
   std::vector<Helix> helices;
+  if (job.isStraight()) return helices;
   for (int tooth = 0; tooth < job.teeth(); ++tooth) {
     const StrokeLaw& law = job.strokeLaw(tooth);
     if (indexOf(helices, law.cutter.spiral_angle) < helices.size()) continue;
@@ -110,8 +112,16 @@ Axes termsOf(const ValidJob& job, const std::vector<Helix>& helices, const FeedS
       add(kA, helix.curve.slope(x) * x);
     }
   }
+  if (job.isStraight()) return terms;
   for (int tooth = 0; tooth < job.teeth(); ++tooth) add(kA, job.strokeLaw(tooth).a);
   return terms;
+}
+
+/// Y at which the wheel is clear of the work all along the strokes.
+double clearanceOf(const ValidJob& job, const std::vector<Helix>& helices, const FeedSchedule::Stroke& stroke) {
+  if (helices.empty()) return job->process().clearance;
+  const ConicalCutter& cutter = helices.front().edge.cutter;
+  return std::max(cutter.y(stroke.from), cutter.y(stroke.to)) + job->process().clearance;
 }
 
 }  // namespace
@@ -122,9 +132,9 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       run_(run),
       stroke_(strokeOf(job)),
       helices_(helicesOf(job, stroke_, machine)),
-      helix_of_tooth_(job->tooth_angles.size()),
+      helix_of_tooth_(helices_.empty() ? 0 : job->tooth_angles.size()),
       terms_(termsOf(job, helices_, stroke_)),
-      clearance_y_(std::max(cutter().y(stroke_.from), cutter().y(stroke_.to)) + job->process().clearance) {
+      clearance_y_(clearanceOf(job, helices_, stroke_)) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
     helix_of_tooth_[tooth] = indexOf(helices_, job.strokeLaw(static_cast<int>(tooth)).cutter.spiral_angle);
   }
@@ -161,7 +171,24 @@ void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, 
       {kind, static_cast<std::uint16_t>(pass.tooth), static_cast<std::uint16_t>(pass.pass), to, wear, taper});
 }
 
+void GrindProgram::appendStraightPass(const JobPass& pass, Axes& at) {
+  const FaceStroke stroke = job_.faceStroke(pass.place.tooth, pass.depth, pass.wear);
+  const auto go = [&](MoveKind kind) { append(kind, pass.place, at, pass.wear); };
+  at[kA] = stroke.from[kA];
+  go(MoveKind::kIndex);
+  at[kX] = stroke.from[kX];
+  at[kZ] = stroke.from[kZ];
+  go(MoveKind::kPosition);
+  at = stroke.from;
+  go(MoveKind::kApproach);
+  at = stroke.to;
+  go(MoveKind::kStroke);
+  at[kY] = clearance_y_;
+  go(MoveKind::kRetract);
+}
+
 void GrindProgram::appendPass(const JobPass& pass, Axes& at) {
+  if (isStraight()) return appendStraightPass(pass, at);
   const Helix& helix = this->helix(pass.place.tooth);
   const ConicalCutter& cutter = helix.edge.cutter;
   const LogCurve& curve = helix.curve;

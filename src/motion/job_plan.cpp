@@ -30,13 +30,15 @@ void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine,
 
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
 double minDuration(const ValidJob& job, const ToothPass& first) {
-  const double travel = std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
+  const auto lengthOf = [](const FaceStroke& s) { return (s.to - s.from).head<3>().matrix().norm(); };
+  const double travel = job.isStraight() ? lengthOf(job.faceStroke(0, job.deepest(), 0))
+                                         : std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
   const auto teeth = static_cast<double>(job.teeth());
   double edge = std::numeric_limits<double>::infinity();  // shortest edge of all teeth, per axial travel
   for (int i = 0; i < job.teeth(); ++i) {
     edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
   }
-  const double way = job->process().clearance + travel * edge;
+  const double way = job.isStraight() ? travel : job->process().clearance + travel * edge;
   const auto passes = static_cast<double>(job.depths().size());
   const double before = job->process().order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
                                                                         : first.pass * teeth + first.tooth;

@@ -141,6 +141,7 @@ void PlanChecks::checkRoom(LimitViolation place, double room) {
 
 /// Checks A at a stroke's end, which an interrupted stroke reaches to within the tolerance.
 void PlanChecks::checkStrokeEnd(const Move& stroke, std::uint64_t cycle) {
+  if (program_.isStraight()) return;
   const double at = stroke.to[kA] + program_.run().offset[kA];
   const double room = deviation_.limit / program_.helix(stroke.tooth).edge.deviation(stroke.to[kX], 1);
   checkRoom({kA, LimitedQuantity::kPosition, at, 0, cycle, stroke.to[kX], stroke.kind, stroke.tooth, stroke.pass},

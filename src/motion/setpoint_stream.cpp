@@ -39,11 +39,7 @@ SetpointStream::SetpointStream(GrindProgram program)
     : SetpointStream(std::make_shared<const GrindProgram>(std::move(program))) {}
 
 SetpointStream::SetpointStream(std::shared_ptr<const GrindProgram> program)
-    : program_(std::move(program)),
-      helix_(&program_->helix(program_->moves().front().tooth)),
-      period_(program_->machine().period),
-      interpolator_(helix_->curve, program_->job()->interpolation.rotary_scale,
-                    program_->job()->interpolation.even_step, program_->strokeFrom()) {
+    : program_(std::move(program)), helix_(helixOf(program_->moves().front())), period_(program_->machine().period) {
   const Move& first = program_->moves().front();
   current_.position = program_->start();
   current_.move = first.kind;
@@ -62,7 +58,7 @@ bool SetpointStream::next(Setpoint& setpoint) noexcept {
   const Axes before = current_.position;
   if (lost_) {
     current_.position.setConstant(std::numeric_limits<double>::quiet_NaN());
-  } else if (current_.move == MoveKind::kStroke) {
+  } else if (onHelix()) {
     if (mid_pair_) {
       strokePoint(even_point_, StepKind::kEven);
       current_.move_fraction = strokeParameter() / helix_->schedule.length();
@@ -97,7 +93,7 @@ void SetpointStream::retract() noexcept {
     if (current_.move != MoveKind::kLift) law_ = SCurveProfile();
     return;
   }
-  if (leg_ == Leg::kPath && current_.move == MoveKind::kStroke) {
+  if (leg_ == Leg::kPath && onHelix()) {
     reentry_ = std::max(0.0, strokeParameter() - helix_->schedule.runUp());
   }
   leg_ = Leg::kLift;
@@ -119,7 +115,7 @@ void SetpointStream::adopt(Setpoint& setpoint) noexcept {
 MoveShape SetpointStream::shape() const noexcept {
   MoveShape shape;
   shape.kind = current_.move;
-  if (shape.kind == MoveKind::kStroke) {
+  if (onHelix()) {
     shape.helix = static_cast<std::size_t>(helix_ - program_->helices().data());
     shape.taper = taper_;
   } else {
@@ -133,7 +129,7 @@ void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noe
   interpolator_ = later.interpolator_;
   even_point_ = later.even_point_;
   current_.cycle += cycles;
-  if (current_.move == MoveKind::kStroke) {
+  if (onHelix()) {
     strokePoint(even_point_, StepKind::kEven);
   } else {
     current_.position = clamped(from_ + way_ * law_.position(), from_, to_);
@@ -141,7 +137,7 @@ void SetpointStream::skip(const SetpointStream& later, std::uint64_t cycles) noe
 }
 
 std::uint64_t SetpointStream::skipCruise(std::uint64_t cycles, std::uint64_t at_most) noexcept {
-  if (current_.move == MoveKind::kStroke) return 0;
+  if (onHelix()) return 0;
   const std::uint64_t count = law_.skipCruise(period_, static_cast<double>(cycles) * period_, at_most);
   if (count == 0) return 0;
   current_.cycle += count;
@@ -183,27 +179,30 @@ void SetpointStream::beginNext() noexcept {
         leg_ = Leg::kBack;
         return beginReturn();
       }
-      // A straight move is restarted: from above, it moves to its original target.
+      // Another move is restarted: from above, it moves to its original target.
       leg_ = Leg::kPath;
       if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
       return;
     case Leg::kBack: {
       leg_ = Leg::kPlunge;
+      if (helix_ == nullptr) return beginStraight(MoveKind::kApproach, strokeBegin());
       Axes on_path = current_.position;
       on_path[kY] = strokeY(on_path[kX]);
       return beginStraight(MoveKind::kInfeed, on_path);
     }
-    case Leg::kPlunge: leg_ = Leg::kPath; return beginStroke(reentry_);
+    case Leg::kPlunge:
+      leg_ = Leg::kPath;
+      return helix_ != nullptr ? beginStroke(reentry_) : beginMove(program_->moves()[next_move_ - 1]);
   }
 }
 
 void SetpointStream::beginMove(const Move& move) noexcept {
-  helix_ = &program_->helix(move.tooth);
+  helix_ = helixOf(move);
   current_.tooth = move.tooth;
   current_.pass = move.pass;
   current_.move_index = static_cast<std::uint32_t>(next_move_ - 1);
   current_.move_fraction = 0;
-  if (move.kind != MoveKind::kStroke) return beginStraight(move.kind, move.to);
+  if (move.kind != MoveKind::kStroke || helix_ == nullptr) return beginStraight(move.kind, move.to);
   taper_ = move.taper;
   y_offset_ = 0;
   y_offset_ = current_.position[kY] - strokeY(program_->strokeFrom());
@@ -225,11 +224,23 @@ void SetpointStream::beginWayBack() noexcept {
 }
 
 void SetpointStream::beginReturn() noexcept {
+  if (helix_ == nullptr) {
+    Axes above = strokeBegin();
+    above[kY] = current_.position[kY];
+    return beginStraight(MoveKind::kPosition, above);
+  }
   const double x = helix_->schedule.x(reentry_);
   Axes above;
   above << x, current_.position[kY], helix_->z(x), a_offset_ + helix_->curve.a(x);
   beginStraight(MoveKind::kPosition, above);
 }
+
+const Helix* SetpointStream::helixOf(const Move& move) const noexcept {
+  return program_->isStraight() ? nullptr : &program_->helix(move.tooth);
+}
+
+/// Before a stroke the program has the approach to its begin.
+const Axes& SetpointStream::strokeBegin() const noexcept { return program_->moves()[next_move_ - 2].to; }
 
 void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   current_.move = kind;
@@ -259,7 +270,7 @@ void SetpointStream::beginStroke(double s) noexcept {
   const GrindInterpolation& settings = program_->job()->interpolation;
   current_.move = MoveKind::kStroke;
   stroke_from_ = s;
-  interpolator_ = OddEvenInterpolator(helix_->curve, settings.rotary_scale, settings.even_step, helix_->schedule.x(s));
+  interpolator_.emplace(helix_->curve, settings.rotary_scale, settings.even_step, helix_->schedule.x(s));
   beginLaw(helix_->schedule.limits(), helix_->schedule.length() - s, helix_->schedule.feedSpeed());
 }
 
@@ -294,8 +305,8 @@ void SetpointStream::strokePair() noexcept {
   const bool was_steady = steady();
   law_.advance(2 * period_);
   const double s = strokeParameter();
-  const double dx = helix_->schedule.x(s) - interpolator_.position().x;
-  const OddEvenPair pair = interpolator_.advance(dx);
+  const double dx = helix_->schedule.x(s) - interpolator_->position().x;
+  const OddEvenPair pair = interpolator_->advance(dx);
   current_.feed = law_.speed() * helix_->schedule.rate(s) * helix_->edge.cutter.edgePerTravel();
   current_.at_feed = was_steady && steady();
   even_point_ = pair.even;

@@ -19,6 +19,17 @@ struct CutterGeometry : Cone {
   double clearance_tolerance = 0;     ///< maximum allowed difference of the ground clearances from the asked ones [rad]
   double land = 0;                    ///< asked width of the primary relief at the small end; 0: up to the heel [m]
   double second_clearance = 0;        ///< asked clearance of the secondary relief at its start; 0: none [rad]
+  double end_clearance = 0;           ///< asked axial clearance of the end teeth at their edges; 0: no end teeth [rad]
+  double end_second_clearance = 0;    ///< asked axial clearance of their secondary flanks; 0: none [rad]
+  double end_land = 0;                ///< asked width of their primary flanks; 0: up to the heel [m]
+  double end_dish = 0;                ///< angle by which the end is hollow toward the axis [rad]
+  double end_rake = 0;                ///< asked axial rake of the gashes [rad]
+  double end_clearance_tolerance = 0;  ///< maximum allowed difference of the ground clearances of the end [rad]
+  double end_rake_tolerance = 0;       ///< maximum allowed difference of the ground rake of the gashes [rad]
+  double end_uncut_diameter = 0;       ///< diameter in which edges of end teeth may be missing [m]
+  double chamfer_width = 0;            ///< asked width of the chamfer, seen along the axis; 0: none [m]
+  double chamfer_angle = 0;            ///< asked angle between chamfer and axis [rad]
+  double chamfer_clearance = 0;        ///< asked clearance of the chamfer, normal to its edge [rad]
 };
 
 }  // namespace grinder

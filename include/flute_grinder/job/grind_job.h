@@ -35,18 +35,32 @@ constexpr auto& rowsOf(GrindOrder) noexcept { return kGrindOrders; }
 constexpr auto& rowsOf(StrokeDirection) noexcept { return kStrokeDirections; }
 
 /// What an operation grinds.
-enum class OperationKind { kFlute, kPrimaryRelief, kSecondaryRelief };
+enum class OperationKind { kFlute, kPrimaryRelief, kSecondaryRelief, kGash, kPrimaryEnd, kSecondaryEnd, kChamfer };
+/// How an operation's strokes run: along the flutes, behind their edges, or straight at constant A.
+enum class StrokeForm { kFlute, kRelief, kStraight };
 struct OperationRow : EnumRow<OperationKind> {
   const char* words = "";  ///< name for people
+  StrokeForm form = StrokeForm::kFlute;
+  const char* kind = "";    ///< its `kind` in job files
+  const char* relief = "";  ///< and which of the two; empty for a kind that has but one
 };
-/// Each kind with its name in job files and on the command line.
+/// Each kind with its name on the command line and in set-up files.
 inline constexpr OperationRow kOperationKinds[]{
-    {{OperationKind::kFlute, "flute"}, "flute"},
-    {{OperationKind::kPrimaryRelief, "primary"}, "primary relief"},
-    {{OperationKind::kSecondaryRelief, "secondary"}, "secondary relief"},
+    {{OperationKind::kFlute, "flute"}, "flute", StrokeForm::kFlute, "flute"},
+    {{OperationKind::kPrimaryRelief, "primary"}, "primary relief", StrokeForm::kRelief, "relief", "primary"},
+    {{OperationKind::kSecondaryRelief, "secondary"}, "secondary relief", StrokeForm::kRelief, "relief", "secondary"},
+    {{OperationKind::kGash, "gash"}, "gash", StrokeForm::kStraight, "gash"},
+    {{OperationKind::kPrimaryEnd, "end_primary"}, "primary flank of the end", StrokeForm::kStraight, "end", "primary"},
+    {{OperationKind::kSecondaryEnd, "end_secondary"},
+     "secondary flank of the end",
+     StrokeForm::kStraight,
+     "end",
+     "secondary"},
+    {{OperationKind::kChamfer, "chamfer"}, "chamfer", StrokeForm::kStraight, "chamfer"},
 };
 constexpr auto& rowsOf(OperationKind) noexcept { return kOperationKinds; }
-constexpr bool isRelief(OperationKind kind) noexcept { return kind != OperationKind::kFlute; }
+constexpr bool isRelief(OperationKind kind) noexcept { return rowOf(kind).form == StrokeForm::kRelief; }
+constexpr bool isStraight(OperationKind kind) noexcept { return rowOf(kind).form == StrokeForm::kStraight; }
 
 /// How the flutes, or a relief behind the edge of every tooth, are ground. For a relief, `depth`, `depth_end`, the
 /// overtravels, `setup_x_shift` and the law of Z follow from the other members, and are 0 here.
@@ -77,6 +91,9 @@ struct GrindProcess {
   double setup_swivel = 0;  ///< angle of the wheel's plane to the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< height of the wheel's centre above the cutter's axis at Z = 0 [m]
   double behind = 0;        ///< distance of a primary relief behind the edge at the small end [m]
+  double stock = 0;         ///< by which the blank is longer than the tool, for an operation on its end [m]
+  double gash_angle = 0;    ///< angle of a gash's bottom to the axis [rad]
+  double gash_past = 0;     ///< distance of a gash's bottom past the axis at the end; negative before it [m]
   double setup_x_shift =
       0;  ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
   std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty

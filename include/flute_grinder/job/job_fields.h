@@ -20,9 +20,18 @@ struct JobField {
   /// the key is required.
   const char* omitted = nullptr;
   /// The operations that have the field; it is 0 in the others.
-  enum class Of { kAll, kFlute, kRelief } of = Of::kAll;
+  enum class Of { kAll, kFlute, kRelief, kStraight, kGash } of = Of::kAll;
 
-  bool isOf(OperationKind kind) const { return of == Of::kAll || (of == Of::kRelief) == isRelief(kind); }
+  bool isOf(OperationKind kind) const {
+    switch (of) {
+      case Of::kAll: return true;
+      case Of::kFlute: return kind == OperationKind::kFlute;
+      case Of::kRelief: return isRelief(kind);
+      case Of::kStraight: return isStraight(kind);
+      case Of::kGash: return kind == OperationKind::kGash;
+    }
+    return false;
+  }
   Quantity low() const { return {min * shopScale(unit), unit}; }
   Quantity high() const { return {max * shopScale(unit), unit}; }
 };
@@ -73,6 +82,28 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return j.cutter.land; });
   visit(F{"cutter.second_clearance", "cutter.second_clearance_deg", deg, 0, 60, "radial clearance of the secondary relief where it begins", "0, without a secondary relief"},
         [](auto& j) -> auto& { return j.cutter.second_clearance; });
+  visit(F{"cutter.end_clearance", "cutter.end.clearance_deg", deg, 0, 45, "axial clearance of the end teeth at their edges; more than 0 with end teeth", "0, without end teeth"},
+        [](auto& j) -> auto& { return j.cutter.end_clearance; });
+  visit(F{"cutter.end_second_clearance", "cutter.end.second_clearance_deg", deg, 0, 60, "axial clearance of the secondary flanks of the end where they begin", "0, without secondary flanks"},
+        [](auto& j) -> auto& { return j.cutter.end_second_clearance; });
+  visit(F{"cutter.end_land", "cutter.end.land_mm", mm, 0, 50, "width of the primary flanks of the end, seen along the axis; more than 0 with secondary flanks, which begin there", "0, up to the heel"},
+        [](auto& j) -> auto& { return j.cutter.end_land; });
+  visit(F{"cutter.end_dish", "cutter.end.dish_deg", deg, 0, 20, "angle by which the end is hollow toward the axis", "0, a flat end"},
+        [](auto& j) -> auto& { return j.cutter.end_dish; });
+  visit(F{"cutter.end_rake", "cutter.end.rake_deg", deg, -30, 45, "axial rake of the end teeth, as the gashes give it", "0"},
+        [](auto& j) -> auto& { return j.cutter.end_rake; });
+  visit(F{"cutter.end_clearance_tolerance", "cutter.end.clearance_tolerance_deg", deg, 0, 45, "maximum difference of the ground clearances of the end from the asked ones; a plan refuses more", "0, without end teeth"},
+        [](auto& j) -> auto& { return j.cutter.end_clearance_tolerance; });
+  visit(F{"cutter.end_rake_tolerance", "cutter.end.rake_tolerance_deg", deg, 0, 45, "maximum difference of the ground rake of the gashes from `cutter.end.rake_deg`; a plan refuses more", "0, without gashes"},
+        [](auto& j) -> auto& { return j.cutter.end_rake_tolerance; });
+  visit(F{"cutter.end_uncut_diameter", "cutter.end.uncut_diameter_mm", mm, 0, 100, "diameter about the axis in which edges of end teeth may be missing", "0"},
+        [](auto& j) -> auto& { return j.cutter.end_uncut_diameter; });
+  visit(F{"cutter.chamfer_width", "cutter.chamfer.width_mm", mm, 0, 50, "width of the chamfer at the corner, seen along the axis", "0, without a chamfer"},
+        [](auto& j) -> auto& { return j.cutter.chamfer_width; });
+  visit(F{"cutter.chamfer_angle", "cutter.chamfer.angle_deg", deg, 0, 89, "angle between the chamfer and the axis", "0, without a chamfer"},
+        [](auto& j) -> auto& { return j.cutter.chamfer_angle; });
+  visit(F{"cutter.chamfer_clearance", "cutter.chamfer.clearance_deg", deg, 0, 45, "clearance of the chamfer, normal to its edge", "0, without a chamfer"},
+        [](auto& j) -> auto& { return j.cutter.chamfer_clearance; });
   visit(F{"process.feed", "process.feed_mm_min", mm_min, min_feed, 10000, "along the cutting edge; also of the infeed"},
         [](auto& j) -> auto& { return processOf(j).feed; });
   visit(F{"process.depth", "process.depth_mm", mm, 0.001, 50, "radial depth of the flute at the small end; less than the cutter's radius there", nullptr, F::Of::kFlute},
@@ -111,6 +142,12 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).setup_x_shift; });
   visit(F{"process.behind", "process.behind_mm", mm, 0, 50, "of a primary relief: width of the round margin between edge and relief, at the small end, along the circle", "0", F::Of::kRelief},
         [](auto& j) -> auto& { return processOf(j).behind; });
+  visit(F{"process.stock", "process.stock_mm", mm, 0, 50, "of an operation on the end: by which the blank is longer than the tool", "0", F::Of::kStraight},
+        [](auto& j) -> auto& { return processOf(j).stock; });
+  visit(F{"process.gash_angle", "process.angle_deg", deg, 5, 85, "of a gash: angle of its bottom to the axis", nullptr, F::Of::kGash},
+        [](auto& j) -> auto& { return processOf(j).gash_angle; });
+  visit(F{"process.gash_past", "process.past_mm", mm, -50, 50, "of a gash: distance of its bottom past the axis at the end; negative before it", nullptr, F::Of::kGash},
+        [](auto& j) -> auto& { return processOf(j).gash_past; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000, "maximum deviation at the cutter's surface; the feed is reduced to keep it"},
         [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000, "weight of A in the step length; 1 in the paper"},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/curve/face_stroke.h"
 #include "flute_grinder/curve/relief_path.h"
 #include "flute_grinder/job/grind_job.h"
 
@@ -50,6 +51,15 @@ struct EdgeHelix {
   /// along the flute [rad].
   double ahead = 0;
 };
+
+/// How a job grinds the end of a tooth: the outward normal of the plane, and a place on it.
+struct EndPlane {
+  OnTooth normal, through;
+};
+EndPlane endPlaneOf(const GrindJob& job);
+
+/// The tooth of an operation on the end.
+EndTooth endToothOf(const GrindJob& job, int tooth);
 
 /// A pass of a job.
 struct JobPass {
@@ -102,6 +112,12 @@ class ValidJob {
   /// @throw std::invalid_argument for another number.
   ValidJob withZCorrections(std::vector<ZCorrection> corrections) const;
 
+  /// Whether the strokes are straight, at constant A, and so have a faceStroke() and no laws.
+  bool isStraight() const noexcept { return grinder::isStraight(content_->job.process().kind); }
+  /// The stroke of a pass of an operation on the end, with A of the tooth.
+  /// @param depth, wear as for depthLaw() [m].
+  FaceStroke faceStroke(int tooth, double depth, double wear) const noexcept;
+
   /// The path of a relief; null for flutes.
   const ReliefPath* relief(int tooth) const noexcept;
   /// The job of a relief together with the flutes under it, so that the reliefs follow the ground edges.
@@ -131,6 +147,8 @@ class ValidJob {
   /// Computes the reliefs behind the edges, and their depths.
   /// @param edges cutters with the spiral angles of the edges.
   static void takeReliefs(Content& content, const std::vector<CutterGeometry>& edges);
+  /// Divides the depth into passes.
+  static void takePasses(Content& content);
 
   std::shared_ptr<const Content> content_;
 };

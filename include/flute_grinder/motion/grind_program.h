@@ -65,7 +65,9 @@ class GrindProgram {
   const ValidJob& job() const noexcept { return job_; }
   const Machine& machine() const noexcept { return machine_; }
   const RunStart& run() const noexcept { return run_; }
-  /// The cutter with the spiral angle of a tooth; all teeth have the same cone.
+  /// Whether the strokes are straight, at constant A; there are then no helices and no schedules.
+  bool isStraight() const noexcept { return helices_.empty(); }
+  /// The cutter with the spiral angle of a tooth; all teeth have the same cone. Not of a program of straight strokes.
   const ConicalCutter& cutter(int tooth = 0) const noexcept { return helix(tooth).edge.cutter; }
   double swivel() const noexcept;                                ///< swivel of the job's set-up [rad]
   Axes start() const noexcept { return run_.at - run_.offset; }  ///< start position in work coordinates [m], A [rad]
@@ -90,6 +92,7 @@ class GrindProgram {
  private:
   void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
   void appendPass(const JobPass& pass, Axes& at);
+  void appendStraightPass(const JobPass& pass, Axes& at);
 
   ValidJob job_;
   Machine machine_;

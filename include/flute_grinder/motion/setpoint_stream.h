@@ -6,6 +6,7 @@
 #include "flute_grinder/motion/setpoint.h"
 
 #include <memory>
+#include <optional>
 
 namespace grinder {
 
@@ -107,6 +108,8 @@ class SetpointStream {
   /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.
   enum class Leg : std::uint8_t { kPath, kLift, kBack, kPlunge };
 
+  const Helix* helixOf(const Move& move) const noexcept;
+  const Axes& strokeBegin() const noexcept;
   bool beginPair() noexcept;
   void beginNext() noexcept;
   void beginMove(const Move& move) noexcept;
@@ -114,6 +117,8 @@ class SetpointStream {
   void beginReturn() noexcept;
   void beginStraight(MoveKind kind, const Axes& to) noexcept;
   void beginStroke(double s) noexcept;
+  /// Whether the current move is a stroke along a helix.
+  bool onHelix() const noexcept { return current_.move == MoveKind::kStroke && helix_ != nullptr; }
   void beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept;
   double targetSpeed() const noexcept;
   double strokeParameter() const noexcept;
@@ -123,7 +128,7 @@ class SetpointStream {
   void strokePoint(const CurvePoint& point, StepKind step) noexcept;
 
   std::shared_ptr<const GrindProgram> program_;
-  const Helix* helix_;  ///< path of the current tooth in the program
+  const Helix* helix_;  ///< path of the current tooth in the program; null if its strokes are straight
   double period_;
   double override_ = 1;
   double slow_down_ = 1;  ///< factor for the next pair
@@ -146,7 +151,7 @@ class SetpointStream {
   double linear_way_ = 0;
 
   // For a stroke.
-  OddEvenInterpolator interpolator_;
+  std::optional<OddEvenInterpolator> interpolator_;
   CurvePoint even_point_;
   double stroke_from_ = 0;  ///< parameter at which the stroke was started or re-entered
   double y_offset_ = 0, a_offset_ = 0;

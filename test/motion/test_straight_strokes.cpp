@@ -1,0 +1,138 @@
+// The strokes of an operation on a tool's end: straight, in the plane of a face of the wheel.
+
+#include "flute_grinder/motion/job_plan.h"
+
+#include "examples.h"
+#include "flute_grinder/base/units.h"
+#include "stream_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace grinder {
+namespace test_straight_strokes {
+
+using namespace test_support;
+using units::kDegree;
+
+constexpr OperationKind kKinds[] = {OperationKind::kGash, OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd,
+                                    OperationKind::kChamfer};
+
+/// A cylindrical end mill of four teeth, of which only the end is ground, with the swivels of the trade.
+GrindJob endJob(OperationKind kind) {
+  GrindJob job = paperJob();
+  CutterGeometry& c = job.cutter;
+  c.end_diameter = 10e-3;
+  c.cone_angle = 0;
+  c.spiral_angle = 0;
+  c.end_clearance = 8 * kDegree;
+  c.end_second_clearance = 18 * kDegree;
+  c.end_land = 0.4e-3;
+  c.end_dish = 2 * kDegree;
+  c.end_rake = 3 * kDegree;
+  c.end_clearance_tolerance = c.end_rake_tolerance = 0.5 * kDegree;
+  c.chamfer_width = 0.2e-3;
+  c.chamfer_angle = 45 * kDegree;
+  c.chamfer_clearance = 10 * kDegree;
+  job.tooth_angles = {0, 90 * kDegree, 180 * kDegree, 270 * kDegree};
+  GrindProcess& p = job.process();
+  p.kind = kind;
+  p.depth = p.overtravel_end = p.overtravel_shank = 0;
+  p.infeed = 0.2e-3;
+  p.finish_infeed = 0.03e-3;
+  p.spark_out = 1;
+  p.clearance = 1e-3;
+  if (kind == OperationKind::kGash) p.gash_angle = 45 * kDegree, p.gash_past = -0.15e-3, p.infeed = 2e-3;
+  const double swivels[] = {3.000, 81.76003, 71.90308, 44.13603};
+  p.setup_swivel = swivels[static_cast<int>(kind) - static_cast<int>(OperationKind::kGash)] * kDegree;
+  return job;
+}
+
+TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
+  for (const OperationKind kind : kKinds) {
+    SCOPED_TRACE(toString(kind));
+    const ValidJob job(endJob(kind));
+    ASSERT_GT(job.depths().size(), 2u);
+    const double sin = std::sin(job->process().setup_swivel), cos = std::cos(job->process().setup_swivel);
+    std::vector<Setpoint> setpoints;
+    const JobPlan plan =
+        planJob(job, plainMachine(), plainMachine().park, [&](const Setpoint& p) { setpoints.push_back(p); });
+    ASSERT_TRUE(plan.good()) << text(plan.reasons);
+    EXPECT_EQ(beyondLimits(setpoints, plainMachine()), "");
+    std::vector<double> planes(job.depths().size(), 0);
+    for (std::size_t i = 1; i < setpoints.size(); ++i) {
+      const Setpoint &p = setpoints[i], &before = setpoints[i - 1];
+      if (p.move != MoveKind::kStroke) continue;
+      EXPECT_LE(p.feed, job->process().feed * (1 + 1e-12));
+      EXPECT_EQ(p.position[kA], before.position[kA]);
+      const auto plane = [&](const Setpoint& at) { return -sin * at.position[kX] + cos * at.position[kZ]; };
+      EXPECT_NEAR(plane(p), plane(before), 1e-12);
+      planes[p.pass] = plane(p);
+    }
+    // Each pass takes its infeed: of a gash along Y, else across the plane, which the setup's rounded swivel blurs.
+    for (std::size_t i = 1; i < planes.size(); ++i) {
+      const double infeed = kind == OperationKind::kGash ? 0 : job.depths()[i] - job.depths()[i - 1];
+      EXPECT_NEAR(planes[i - 1] - planes[i], infeed, 1e-8);
+    }
+  }
+}
+
+TEST(StraightStrokes, ArePlannedByTheirShapesAsOneByOne) {
+  for (const OperationKind kind : kKinds) {
+    const ValidJob job(endJob(kind));
+    const JobPlan whole = planJob(job, plainMachine(), plainMachine().park, [](const Setpoint&) {});
+    const JobPlan by_shapes = planJob(job, plainMachine(), plainMachine().park);
+    EXPECT_EQ(whole.statistics.setpoints, by_shapes.statistics.setpoints);
+    EXPECT_EQ(whole.move_ends, by_shapes.move_ends);
+  }
+}
+
+/// After a retract the wheel begins the stroke anew, and so leaves nothing standing.
+TEST(StraightStrokes, BeginAnewAfterARetract) {
+  for (const OperationKind kind : kKinds) {
+    SCOPED_TRACE(toString(kind));
+    const ValidJob job(endJob(kind));
+    SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
+    Setpoint p;
+    while (stream.next(p) && !(p.move == MoveKind::kStroke && p.tooth == 1 && p.move_fraction > 0.6)) continue;
+    ASSERT_EQ(p.move, MoveKind::kStroke);
+    stream.hold();
+    all(stream, p);
+    const Setpoint left = p;
+    stream.retract();
+    const std::vector<Setpoint> off = all(stream, p);
+    ASSERT_EQ(stream.rest(), Rest::kLifted);
+    for (const Setpoint& at : off) {
+      EXPECT_EQ(at.position[kX], left.position[kX]);
+      EXPECT_EQ(at.position[kZ], left.position[kZ]);
+      EXPECT_EQ(at.position[kA], left.position[kA]);
+    }
+    EXPECT_GE(p.position[kY], 1e-3);
+    stream.resume();
+    const FaceStroke stroke = job.faceStroke(left.tooth, job.depths()[left.pass], 0);
+    while (stream.next(p) && p.move != MoveKind::kStroke) {
+      EXPECT_GE(p.position[kY], stroke.from[kY] - 1e-15);
+    }
+    EXPECT_LT(p.move_fraction, 0.01);
+    EXPECT_EQ(p.move_index, left.move_index);
+    while (stream.next(p) && p.move == MoveKind::kStroke && p.move_fraction < 1) continue;
+    EXPECT_TRUE((p.position == stroke.to).all());
+    all(stream, p);
+    EXPECT_EQ(stream.rest(), Rest::kEnd);
+  }
+}
+
+TEST(StraightStrokes, NeedTheSwivelOfTheirPlane) {
+  GrindJob job = endJob(OperationKind::kPrimaryEnd);
+  job.process().setup_swivel = 81.7 * kDegree;
+  try {
+    ValidJob{job};
+    FAIL();
+  } catch (const InvalidJob& error) {
+    EXPECT_STREQ(error.what(), "");
+  }
+}
+
+}  // namespace test_straight_strokes
+}  // namespace grinder

@@ -52,16 +52,14 @@ double lastWhere(double holds, double fails, const Condition& condition) {
 }  // namespace
 
 FaceSweep::FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProfile profile, double end_radius,
-                     double tooth_angle, double stock)
+                     double tooth_angle)
     : profile_(std::move(profile)),
       inner_radius_(wheel.inner_radius),
       a_(stroke.to[kA] + tooth_angle),
       spindle_(-std::sin(stroke.swivel), 0, std::cos(stroke.swivel)),
       across_(std::cos(stroke.swivel), 0, std::sin(stroke.swivel)) {
-  const Axes shift = stock * stroke.per_stock;
   const auto centre = [&](const Axes& at) {
-    return Vector3d(at[kX] + shift[kX], end_radius + wheel.nominal_radius + at[kY] + shift[kY],
-                    wheel.height + at[kZ] + shift[kZ]);
+    return Vector3d(at[kX], end_radius + wheel.nominal_radius + at[kY], wheel.height + at[kZ]);
   };
   end_ = centre(stroke.to);
   const Vector3d way = centre(stroke.from) - end_;

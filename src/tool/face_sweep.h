@@ -7,16 +7,16 @@
 
 namespace grinder {
 
-/// The volume that a wheel removes in a FaceStroke, as ranges of X on rays parallel to the cutter's axis. Found on the
-/// continuous stroke, and on the way out of it along Y.
+/// The volume that a wheel removes in a FaceStroke, as ranges of X on rays parallel to the cutter's axis, found on the
+/// continuous stroke. A wheel that comes in its face's plane goes out along Y, and one that is fed along X goes back;
+/// the rim of such a cup is taken as sharp.
 class FaceSweep {
  public:
   /// @param profile the wheel with its present wear, convex; its faces are at the ends of FaceWheel::width.
   /// @param end_radius radius of the tool at its end [m].
   /// @param tooth_angle added to A of the stroke [rad].
-  /// @param stock left by the stroke, see FaceStroke [m].
   FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProfile profile, double end_radius,
-            double tooth_angle, double stock = 0);
+            double tooth_angle);
 
   /// Adds the ranges of X that the wheel passes through on a ray. They may overlap.
   /// @param r,angle the ray: distance from the axis [m], angle in the sense of A [rad].

@@ -12,7 +12,7 @@ import threading
 import rospy
 import yaml
 from actionlib_msgs.msg import GoalStatus
-from flute_grinder.msg import GrinderState, GrindResult, ProbeGoal
+from flute_grinder.msg import GrinderState, GrindResult
 from flute_grinder.srv import JogStep
 
 import grinder_client as gc
@@ -62,6 +62,14 @@ class ProbeTest(gc.OwnNode):
     def cycle(self, *arguments):
         """Runs `grind probe`; what it printed, by its names."""
         return dict(re.split(r'  +', line, maxsplit=1) for line in self.said('probe', *arguments).splitlines())
+
+    def command(self, *arguments):
+        process = subprocess.Popen([gc.program('grind'), '--node', self.client.name, 'probe', *arguments],
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        return process
 
     def offset(self, axis):
         return self.json('offsets')['axes']['xyza'[axis]]
@@ -170,13 +178,12 @@ class TestCycles(ProbeTest):
         setting = threading.Thread(target=self.client.set_offset, args=(X, x + 1 * MM))
         setting.start()
         gc.poll(lambda: os.path.exists(self.node.folder + '/offsets.new'), 'the disk being written')
-        with self.client.probing(1.5, ProbeGoal.TOOTH, set_offset=True, job=gc.goal_of(gc.job_from_file(path))) as cycle:
-            self.client.wait_for(lambda: cycle.touches, 'the search')
-            self.disk.release()
-            setting.join()
-            self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
-            self.assertEqual(cycle.get_result().message,
-                             'probing ended: the work offset of X was changed meanwhile; probe again')
+        probe = self.command('tooth', '--job', path)
+        self.client.wait_state(GrinderState.JOGGING)
+        self.disk.release()
+        setting.join()
+        self.assertEqual(probe.communicate(timeout=gc.PATIENCE)[1],
+                         'probing ended: the work offset of X was changed meanwhile; probe again\n')
         self.assertIsNone(self.offset(A)['set_by'])
         self.assertTrue(self.client.set_offset(X, x).success)
 
@@ -194,14 +201,6 @@ class TestStop(ProbeTest):
         self.assertTrue(cycle.wait_for_result(rospy.Duration(gc.PATIENCE)))
         self.assertEqual((cycle.get_state(), cycle.get_result().message), (state, 'probing ended: stopped'))
         self.assertLess(self.client.wait_rest()[X], 0)
-
-    def command(self, *arguments):
-        process = subprocess.Popen([gc.program('grind'), '--node', self.client.name, 'probe', *arguments],
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, universal_newlines=True)
-        self.addCleanup(process.stderr.close)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
 
     def test_stops_and_the_end_of_its_client_and_of_the_node(self):
         self.start()

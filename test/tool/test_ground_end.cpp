@@ -47,9 +47,9 @@ bool isInWheel(const FaceStroke& stroke, const FaceWheel& wheel, const WheelProf
     const double w = from_centre.dot(spindle), q = (from_centre - w * spindle).norm();
     return std::abs(w) <= wheel.width / 2 && q <= profile.radius(w) && q >= wheel.inner_radius;
   };
-  for (int i = 0; i <= 1000; ++i) {
-    Axes on_stroke = stroke.from + i / 1000.0 * (stroke.to - stroke.from), off = stroke.to;
-    off[kY] += i / 1000.0 * 4 * radius;
+  for (int i = 0; i <= 250; ++i) {
+    Axes on_stroke = stroke.from + i / 250.0 * (stroke.to - stroke.from), off = stroke.to;
+    off[kY] += i / 250.0 * 4 * radius;
     if (covers(on_stroke)) return true;
     if (std::abs(stroke.per_stock[kX]) > 0 && stroke.from[kX] != stroke.to[kX]) continue;  // out along X
     if (covers(off)) return true;

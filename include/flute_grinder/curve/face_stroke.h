@@ -36,11 +36,11 @@ OnTooth endNormal(double clearance, double dish) noexcept;
 OnTooth gashNormal(double rake, double dish) noexcept;
 
 /// The pose in which the wheel's lower face grinds a plane that faces the end. A left-hand tooth stands on the far side
-/// of the axis, as the mirror image in Y: in that in Z, the spindle would be on the side of the work.
+/// of the axis, in the mirror image in Y; in the mirror image in Z, the spindle would be on the side of the work.
 /// @param normal outward, of unit length.
 FacePose flankPose(const OnTooth& normal, CutDirection cut) noexcept;
 
-/// The pose in which the wheel's upper face grinds a rake face. A left-hand one is ground by the lower face, as the
+/// The pose in which the wheel's upper face grinds a rake face. A left-hand one is ground by the lower face, in the
 /// mirror image in Z.
 /// @param normal outward, of unit length.
 FacePose gashPose(const OnTooth& normal, CutDirection cut) noexcept;
@@ -65,7 +65,7 @@ struct EndTooth {
 /// A straight stroke at constant A, during which the wheel's face stays in one plane.
 struct FaceStroke {
   double swivel = 0;              ///< [rad]
-  Axes from = Axes::Zero();       ///< begin, clear of a blank that ends at X = 0; A for a tooth at angle 0 [m, rad]
+  Axes from = Axes::Zero();       ///< beginning, clear of a blank that ends at X = 0; A for a tooth at angle 0 [m, rad]
   Axes to = Axes::Zero();         ///< end [m], A [rad]
   Axes per_stock = Axes::Zero();  ///< shift of the whole stroke for each metre of stock that it leaves
 };
@@ -76,7 +76,7 @@ struct FaceStroke {
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
 /// @param gap least distance of the rim from the next tooth; negative to pass it, for a tooth to the centre [m].
-/// @param clear distance of the wheel from the blank at the begin [m].
+/// @param clear distance of the wheel from the blank at the beginning [m].
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept;
 

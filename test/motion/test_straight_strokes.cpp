@@ -130,7 +130,8 @@ TEST(StraightStrokes, NeedTheSwivelOfTheirPlane) {
     ValidJob{job};
     FAIL();
   } catch (const InvalidJob& error) {
-    EXPECT_STREQ(error.what(), "");
+    EXPECT_STREQ(error.what(),
+                 "process.setup.swivel_deg = 81.7 deg; allowed: that of the plane that is ground, 81.76003283 deg");
   }
 }
 

@@ -1,5 +1,7 @@
 #include "tool/face_sweep.h"
 
+#include "tool/change.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kNothing{kInfinity, -kInfinity};
-constexpr int kHalvings = 50;
+constexpr int kGoldenSteps = 50;
 constexpr double kGolden = 0.6180339887498949;
 constexpr double kParallel = 1e-9;  ///< change along the spindle for each metre of a ray, below which there is none
 
@@ -37,16 +39,6 @@ Range chord(const Vector2d& centre, double radius, double along) {
   const double off = along - centre[1], square = radius * radius - off * off;
   if (!(square >= 0)) return kNothing;
   return {centre[0] - std::sqrt(square), centre[0] + std::sqrt(square)};
-}
-
-/// The last place, from one where a condition holds to one where it does not.
-template <typename Condition>
-double lastWhere(double holds, double fails, const Condition& condition) {
-  for (int i = 0; i < kHalvings; ++i) {
-    const double middle = (holds + fails) / 2;
-    (condition(middle) ? holds : fails) = middle;
-  }
-  return holds;
 }
 
 }  // namespace
@@ -124,16 +116,19 @@ Range FaceSweep::removed(const Ray& ray, const Leg& leg) const {
   double inside = (cylinder.from + cylinder.to) / 2;
   if (isEmpty(cylinder)) {
     double from = reach.from, to = reach.to;
-    for (int i = 0; i < kHalvings; ++i) {
+    for (int i = 0; i < kGoldenSteps; ++i) {
       const double low = to - kGolden * (to - from), high = from + kGolden * (to - from);
-      (depth(ray, leg, low) > depth(ray, leg, high) ? to : from) =
-          depth(ray, leg, low) > depth(ray, leg, high) ? high : low;
+      if (depth(ray, leg, low) > depth(ray, leg, high)) {
+        to = high;
+      } else {
+        from = low;
+      }
     }
     inside = (from + to) / 2;
   }
   if (!in_wheel(inside)) return kNothing;
-  return {in_wheel(reach.from) ? reach.from : lastWhere(inside, reach.from, in_wheel),
-          in_wheel(reach.to) ? reach.to : lastWhere(inside, reach.to, in_wheel)};
+  return {in_wheel(reach.from) ? reach.from : changeBetween(reach.from, inside, in_wheel),
+          in_wheel(reach.to) ? reach.to : changeBetween(reach.to, inside, in_wheel)};
 }
 
 /// Fed along the ray, the wheel removes all up to where its rim is at last.

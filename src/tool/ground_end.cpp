@@ -1,6 +1,7 @@
 #include "tool/ground_end.h"
 
 #include "flute_grinder/base/units.h"
+#include "tool/change.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,22 +11,11 @@ namespace grinder {
 
 namespace {
 
-constexpr int kEdgeHalvings = 45;
 constexpr double kStep = 0.02;       ///< step of the search for an edge and for the end of a land, per radius
 constexpr double kFarthest = 0.6;    ///< how far behind the radius an edge is searched, per radius
 constexpr double kNearby = 1e-5;     ///< distance between the rays of a slope, per radius
 constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake face is found, per radius
 constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
-
-/// Between a place where a condition does not hold and one where it does.
-template <typename Condition>
-double change(double fails, double holds, const Condition& condition) {
-  for (int i = 0; i < kEdgeHalvings; ++i) {
-    const double middle = (fails + holds) / 2;
-    (condition(middle) ? holds : fails) = middle;
-  }
-  return holds;
-}
 
 bool isOf(const EndCut* cut, std::size_t tooth, EndFace face) {
   return cut != nullptr && cut->tooth == tooth && cut->face == face;
@@ -41,9 +31,12 @@ GroundEnd::GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_
       cuts_(std::move(cuts)),
       blank_x_(blank_x) {}
 
+GroundEnd::Ray GroundEnd::rayAt(std::size_t tooth, double r, double behind) const {
+  return {std::hypot(r, behind), tooth_angles_[tooth] + hand_ * std::atan2(behind, r)};
+}
+
 GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind) const {
-  const double from_axis = std::hypot(r, behind);
-  const double angle = tooth_angles_[tooth] + hand_ * std::atan2(behind, r);
+  const Ray ray = rayAt(tooth, r, behind);
   struct Piece {
     Range range;
     const EndCut* cut;
@@ -52,7 +45,7 @@ GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind
   std::vector<Range> ranges;
   for (const EndCut& cut : cuts_) {
     ranges.clear();
-    cut.sweep.addRemoved(from_axis, angle, ranges);
+    cut.sweep.addRemoved(ray.r, ray.angle, ranges);
     for (const Range& range : ranges) pieces.push_back({range, &cut});
   }
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.range.from < b.range.from; });
@@ -65,12 +58,11 @@ GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind
 }
 
 bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, By by) const {
-  const double from_axis = std::hypot(r, behind);
-  const double angle = tooth_angles_[tooth] + hand_ * std::atan2(behind, r);
+  const Ray ray = rayAt(tooth, r, behind);
   std::vector<Range> ranges;
   for (const EndCut& cut : cuts_) {
     if (by == By::kOwnGash && !isOf(&cut, tooth, EndFace::kGash)) continue;
-    cut.sweep.addRemoved(from_axis, angle, ranges);
+    cut.sweep.addRemoved(ray.r, ray.angle, ranges);
   }
   return std::any_of(ranges.begin(), ranges.end(),
                      [x](const Range& range) { return x >= range.from && x <= range.to; });
@@ -87,7 +79,7 @@ std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r)
   if (is_flank(before)) return std::nullopt;
   for (double behind = kNearby * radius_; behind < kFarthest * radius_; behind += step) {
     if (is_flank(behind)) {
-      const double edge = change(before, behind, is_flank);
+      const double edge = changeBetween(before, behind, is_flank);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
       const bool gashed = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnGash);
       return gashed ? std::optional(edge) : std::nullopt;
@@ -123,7 +115,7 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
     behind += step;
     if (behind > 2 * radius_) return;
   }
-  const double end = change(behind - step, behind, is_other);
+  const double end = changeBetween(behind - step, behind, is_other);
   if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, EndFace::kSecondary)) return;
   section.land = end - section.behind;
   section.second_clearance = std::atan(slope(tooth, section.r, end));
@@ -135,7 +127,7 @@ void GroundEnd::measureRake(std::size_t tooth, EndSection& section) const {
   const auto is_tooth = [&](double behind) { return !isRemoved(tooth, section.r, behind, x, By::kAny); };
   const double behind = section.behind + depth, before = section.behind - depth;
   if (!is_tooth(behind) || is_tooth(before)) return;
-  const double face = change(before, behind, is_tooth);
+  const double face = changeBetween(before, behind, is_tooth);
   if (!isRemoved(tooth, section.r, face - kNearby * depth, x, By::kOwnGash)) return;
   section.rake = std::atan((face - section.behind) / depth);
 }
@@ -148,7 +140,7 @@ std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
   if (!is_whole(corner)) return std::nullopt;
   for (double r = corner; r > innermost;) {
     const double inner = std::max(innermost, r - kStep * radius_);
-    if (!is_whole(inner)) return change(inner, r, is_whole);
+    if (!is_whole(inner)) return changeBetween(inner, r, is_whole);
     r = inner;
   }
   return 0;
@@ -160,7 +152,7 @@ std::optional<ChamferFigures> GroundEnd::chamfer(std::size_t tooth) const {
   if (!at(corner)) return std::nullopt;
   double r = corner - step;
   while (r > 0 && at(r)) r -= step;
-  const double inner = change(std::max(r, 0.0), r + step, [&](double r_here) { return at(r_here).has_value(); });
+  const double inner = changeBetween(std::max(r, 0.0), r + step, [&](double r_here) { return at(r_here).has_value(); });
   // Along the edge, and across it: X of the flank over radius and distance behind it.
   const double middle = (inner + corner) / 2, nearby = kNearby * radius_;
   const double from = *at(middle), to = *at(middle + nearby);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "flute_grinder/base/enum_table.h"
 #include "tool/face_sweep.h"
 
 #include <cstdint>
@@ -57,6 +56,11 @@ class GroundEnd {
   std::optional<ChamferFigures> chamfer(std::size_t tooth) const;
 
  private:
+  /// A ray by its distance from the axis [m] and its angle in the sense of A [rad].
+  struct Ray {
+    double r, angle;
+  };
+  Ray rayAt(std::size_t tooth, double r, double behind) const;
   /// The surface that is left on a ray: its X, and the cut that formed it, or none.
   struct Surface {
     double x;

@@ -1,21 +1,14 @@
 #pragma once
 
 #include "flute_grinder/check/solid.h"
+#include "random_cases.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 namespace grinder {
-
-/// Numbers between two ends, always the same ones.
-inline auto numbers(unsigned seed) {
-  return [random = std::mt19937(seed)](double low, double high) mutable {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-}
 
 /// The minimum value of a convex function between two ends, by golden section.
 /// @param within of the place where it is least.

@@ -56,7 +56,7 @@ TEST(CollisionCheck, ReportsATenthOfAMillimetreFromTheClearanceAndFromAHit) {
 
 /// The wheel stands at (X, D1/2 + Dw/2 + Y, h + Z) of the cutter's frame, its axis along (-sin s, 0, cos s).
 TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
-  auto between = numbers(5);
+  auto between = test_support::numbers(5);
   Shape collet;
   collet.pose = Translation3d(0.0735, 0, 0) * AngleAxisd(90 * kDegree, Vector3d::UnitY());
   collet.radius = 0.021;
@@ -80,7 +80,7 @@ TEST(CollisionCheck, AgreesWithBruteForceAlongAnyStroke) {
 
 /// Many legs, all pairs of the shipped machine, angled wheels: the closest of close positions all along the path.
 TEST(CollisionCheck, AgreesWithManyPositionsOfAPath) {
-  auto between = numbers(9);
+  auto between = test_support::numbers(9);
   const MachineShapes machine = shippedShapes();
   int apart = 0;
   for (int i = 0; i < 6; ++i) {

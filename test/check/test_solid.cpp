@@ -26,7 +26,7 @@ TEST(Solid, BodiesThatTouchHaveNoGap) {
 
 /// Of everything from a hair's breadth to half a metre apart, and of slender bodies as well as flat ones.
 TEST(Solid, RandomPairsAgreeWithBruteForce) {
-  auto between = numbers(11);
+  auto between = test_support::numbers(11);
   const auto shape = [&] {
     Shape s;
     s.is_box = between(0, 1) < 0.4;

@@ -1,13 +1,13 @@
 #include "flute_grinder/curve/face_stroke.h"
 
 #include "flute_grinder/base/units.h"
+#include "random_cases.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 namespace grinder {
@@ -21,14 +21,6 @@ using units::kPi;
 constexpr double kGap = 0.05 * kMillimetre;  ///< of the rim from the next tooth's edge
 constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
 
-class Random {
- public:
-  double between(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
-
- private:
-  std::mt19937 engine_{7};
-};
-
 /// A tooth's direction in the machine, by a rotation about X; behind a left-hand edge is against it.
 Vector3d turned(OnTooth direction, double tooth, CutDirection cut) {
   if (cut == CutDirection::kLeftHand) direction[2] *= -1;
@@ -38,10 +30,10 @@ Vector3d turned(OnTooth direction, double tooth, CutDirection cut) {
 Vector3d upperFaceNormal(double swivel) { return {-std::sin(swivel), 0, std::cos(swivel)}; }
 
 TEST(FaceStroke, LaysAnyFlankOnTheLowerFace) {
-  Random random;
+  auto between = test_support::numbers(7);
   for (int i = 0; i < 10000; ++i) {
-    const double colatitude = random.between(-10, 90) * kDegree, clearance = random.between(0.1, 45) * kDegree;
-    const double spiral = random.between(-60, 60) * kDegree;
+    const double colatitude = between(-10, 90) * kDegree, clearance = between(0.1, 45) * kDegree;
+    const double spiral = between(-60, 60) * kDegree;
     const OnTooth normal = flankNormal(colatitude, clearance, spiral);
     // The edge lies in the flank, which falls by the clearance at right angles to it.
     const OnTooth surface(-std::cos(colatitude), std::sin(colatitude), 0);
@@ -59,10 +51,10 @@ TEST(FaceStroke, LaysAnyFlankOnTheLowerFace) {
 }
 
 TEST(FaceStroke, LaysAnyEndToothOnTheWheel) {
-  Random random;
+  auto between = test_support::numbers(7);
   for (int i = 0; i < 10000; ++i) {
-    const double clearance = random.between(0.1, 45) * kDegree, dish = random.between(0, 10) * kDegree;
-    const double rake = random.between(-20, 30) * kDegree;
+    const double clearance = between(0.1, 45) * kDegree, dish = between(0, 10) * kDegree;
+    const double rake = between(-20, 30) * kDegree;
     const OnTooth edge(-std::tan(dish), 1, 0);
     const OnTooth flank = endNormal(clearance, dish), face = gashNormal(rake, dish);
     EXPECT_NEAR(flank.dot(edge), 0, 1e-12);
@@ -219,10 +211,10 @@ TEST(FaceStroke, GrindsEndsAsBruteForceFindsThem) {
 }
 
 TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
-  Random random;
+  auto between = test_support::numbers(7);
   for (int i = 0; i < 200; ++i) {
-    End end{2 + i % 5, random.between(5, 20), random.between(0.5, 3), kHands[i / 5 % 2]};
-    end.diameter = random.between(6, 16);
+    End end{2 + i % 5, between(5, 20), between(0.5, 3), kHands[i / 5 % 2]};
+    end.diameter = between(6, 16);
     SCOPED_TRACE(testing::Message() << end.teeth << " teeth, D " << end.diameter << ", clearance " << end.clearance
                                     << ", dish " << end.dish << ", hand " << i / 5 % 2);
     const MeasuredEnd found = measured(end);
@@ -234,19 +226,19 @@ TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
 
 /// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
 TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
-  Random random;
+  auto between = test_support::numbers(7);
   for (int i = 0; i < 20; ++i) {
     const CutDirection cut = kHands[i % 2];
     const double hand = i % 2 ? -1 : 1;
-    const double rake = random.between(-8, 12) * kDegree, dish = random.between(0, 3) * kDegree;
-    const double angle = random.between(25, 60) * kDegree, past = random.between(-0.3, 0.1) * kMillimetre;
+    const double rake = between(-8, 12) * kDegree, dish = between(0, 3) * kDegree;
+    const double angle = between(25, 60) * kDegree, past = between(-0.3, 0.1) * kMillimetre;
     FaceWheel wheel;
     wheel.nominal_radius = 40 * kMillimetre;
     wheel.radius = 39.8 * kMillimetre;
     wheel.width = 2 * kMillimetre;
     wheel.height = -4 * kMillimetre;
     wheel.face_wear = 0.3 * kMillimetre;
-    const EndTooth tooth{random.between(3, 8) * kMillimetre, kPi / 2, cut};
+    const EndTooth tooth{between(3, 8) * kMillimetre, kPi / 2, cut};
     const FaceStroke stroke = gashStroke(tooth, gashNormal(rake, dish), angle, past, wheel, 1 * kMillimetre);
     SCOPED_TRACE(testing::Message() << "rake " << rake / kDegree << ", dish " << dish / kDegree << ", hand " << hand);
     EXPECT_NEAR(stroke.to[kY] + wheel.nominal_radius, -past - tooth.radius + wheel.radius * std::cos(angle),
@@ -255,7 +247,7 @@ TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
     BruteForce tool(wheel, tooth.radius, cut == CutDirection::kLeftHand);
     tool.grind(stroke, 0, 500);
     for (int k = 0; k < 200; ++k) {
-      const double x = random.between(0.02, 3) * kMillimetre, r = random.between(0.05, 1) * tooth.radius;
+      const double x = between(0.02, 3) * kMillimetre, r = between(0.05, 1) * tooth.radius;
       double face = 0;
       for (int step = 0; step < 20; ++step) {
         const double from_edge = x - (tooth.radius - r * std::cos(face)) * std::tan(dish);

@@ -1,11 +1,14 @@
 #include "tool/ground_end.h"
 
 #include "flute_grinder/base/units.h"
+#include "random_cases.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <random>
+#include <optional>
+#include <ostream>
+#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -17,14 +20,6 @@ using units::kMillimetre;
 using units::kPi;
 
 constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
-
-class Random {
- public:
-  double between(double from, double to) { return std::uniform_real_distribution<double>(from, to)(engine_); }
-
- private:
-  std::mt19937 engine_{11};
-};
 
 FaceWheel wheelOf(double diameter, double width) {
   FaceWheel wheel;
@@ -51,36 +46,35 @@ bool isInWheel(const FaceStroke& stroke, const FaceWheel& wheel, const WheelProf
     Axes on_stroke = stroke.from + i / 250.0 * (stroke.to - stroke.from), off = stroke.to;
     off[kY] += i / 250.0 * 4 * radius;
     if (covers(on_stroke)) return true;
-    if (std::abs(stroke.per_stock[kX]) > 0 && stroke.from[kX] != stroke.to[kX]) continue;  // out along X
-    if (covers(off)) return true;
+    const bool is_cup = wheel.inner_radius > 0;  // it goes out as it came, along X
+    if (!is_cup && covers(off)) return true;
   }
   return false;
 }
 
 TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
-  Random random;
+  auto between = test_support::numbers(11);
   int removed_places = 0, left_places = 0;
   for (int i = 0; i < 12; ++i) {
     const CutDirection cut = kHands[i / 3 % 2];
-    const EndTooth tooth{random.between(3, 8) * kMillimetre, kPi / 2, cut};
-    FaceWheel wheel = wheelOf(random.between(50, 100), random.between(3, 8));
-    const double corner = i % 3 == 0 ? 0 : random.between(0.1, 1) * kMillimetre;
+    const EndTooth tooth{between(3, 8) * kMillimetre, kPi / 2, cut};
+    FaceWheel wheel = wheelOf(between(50, 100), between(3, 8));
+    const double corner = i % 3 == 0 ? 0 : between(0.1, 1) * kMillimetre;
     const bool gash = i % 3 < 2;
     if (!gash && cut == CutDirection::kLeftHand) wheel.inner_radius = wheel.radius - 1.2 * tooth.radius;
     const bool plunges = wheel.inner_radius > 0;
     const WheelProfile profile =
         i % 3 == 1 ? WheelProfile::angled(2 * wheel.radius, wheel.width, 20 * kDegree, {corner, 0})
                    : WheelProfile::straight(2 * wheel.radius, wheel.width, {plunges ? 0 : corner, corner / 2});
-    const double dish = random.between(0, 3) * kDegree;
-    const FaceStroke stroke =
-        gash ? gashStroke(tooth, gashNormal(random.between(-8, 12) * kDegree, dish), random.between(25, 60) * kDegree,
-                          -0.1 * kMillimetre, wheel, 1 * kMillimetre)
-             : endStroke(tooth, endNormal(random.between(5, 20) * kDegree, dish), {0, tooth.radius, 0}, wheel,
-                         0.2 * kMillimetre, 1 * kMillimetre);
+    const double dish = between(0, 3) * kDegree;
+    const FaceStroke stroke = gash ? gashStroke(tooth, gashNormal(between(-8, 12) * kDegree, dish),
+                                                between(25, 60) * kDegree, -0.1 * kMillimetre, wheel, 1 * kMillimetre)
+                                   : endStroke(tooth, endNormal(between(5, 20) * kDegree, dish), {0, tooth.radius, 0},
+                                               wheel, 0.2 * kMillimetre, 1 * kMillimetre);
     const FaceSweep sweep(stroke, wheel, profile, tooth.radius, 0);
     for (int k = 0; k < 300; ++k) {
-      const double r = tooth.radius * random.between(0.01, 1), angle = random.between(0, 2 * kPi);
-      const double x = tooth.radius * random.between(-0.2, 1);
+      const double r = tooth.radius * between(0.01, 1), angle = between(0, 2 * kPi);
+      const double x = tooth.radius * between(-0.2, 1);
       std::vector<Range> ranges;
       sweep.addRemoved(r, angle, ranges);
       bool removed = false, near = false;
@@ -115,102 +109,151 @@ TEST(FaceSweep, HasAStraightBottomInAGash) {
   }
 }
 
-TEST(GroundEnd, FindsTheFiguresOfAnyEnd) {
-  Random random;
-  for (int i = 0; i < 24; ++i) {
-    const CutDirection cut = kHands[i % 2];
-    const bool right = i % 2 == 0;
-    const int teeth = 2 + i % 3;
-    const EndTooth tooth{random.between(3, 8) * kMillimetre, 2 * kPi / teeth, cut};
-    const double clearance = random.between(5, 10) * kDegree, second = random.between(14, 22) * kDegree;
-    const double dish = random.between(0.5, 3) * kDegree, rake = random.between(0, 10) * kDegree;
-    const double land = random.between(0.04, 0.1) * tooth.radius;
-    const double past = -random.between(0.02, 0.05) * tooth.radius;
-    const double turn = i % 4 < 2 ? 0 : 0.01;  // of the gashes, behind the radius
-    SCOPED_TRACE(testing::Message() << teeth << " teeth, hand " << i % 2 << ", R " << tooth.radius << ", clearances "
-                                    << clearance / kDegree << ' ' << second / kDegree << ", dish " << dish / kDegree
-                                    << ", rake " << rake / kDegree);
-    FaceWheel wheel = wheelOf(100, 10), thin = wheelOf(100, 0.3 * tooth.radius / kMillimetre);
+/// A random end with all its strokes, the gashes turned behind the radius.
+struct WholeEnd {
+  template <typename Between>
+  WholeEnd(int teeth, CutDirection cut, double turn, Between& between)
+      : right(cut == CutDirection::kRightHand),
+        tooth{between(3, 8) * kMillimetre, 2 * kPi / teeth, cut},
+        clearance(between(5, 10) * kDegree),
+        second(between(14, 22) * kDegree),
+        dish(between(0.5, 3) * kDegree),
+        rake(between(0, 10) * kDegree),
+        land(between(0.04, 0.1) * tooth.radius),
+        width(between(0.02, 0.05) * tooth.radius),
+        angle(between(30, 60) * kDegree),
+        chamfer_clearance(between(6, 14) * kDegree) {
+    const FaceWheel thin = wheelOf(100, 0.3 * tooth.radius / kMillimetre);
+    FaceWheel wheel = plain;
     if (!right) wheel.inner_radius = wheel.radius - 1.2 * tooth.radius;
-    const auto strokeOf = [&](const OnTooth& normal, const OnTooth& through) {
-      return endStroke(tooth, normal, through, wheel, 0.05 * kMillimetre, 1 * kMillimetre);
+    const double past = -between(0.02, 0.05) * tooth.radius;
+    const auto flank = [&](const OnTooth& normal, const OnTooth& through) {
+      return endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre);
     };
-    const FaceStroke gash = gashStroke(tooth, gashNormal(rake, dish), 45 * kDegree, past, thin, 1 * kMillimetre);
-    const FaceStroke primary = strokeOf(endNormal(clearance, dish), {0, tooth.radius, 0});
-    const FaceStroke secondary = strokeOf(endNormal(second, dish), {land * std::tan(clearance), tooth.radius, land});
-    const double width = random.between(0.02, 0.05) * tooth.radius, angle = random.between(30, 60) * kDegree;
-    const double chamfer_clearance = random.between(6, 14) * kDegree;
-    const double corner_x = width * (1 / std::tan(angle) + std::tan(dish));
-    const FaceWheel plain = wheelOf(100, 10);
-    const FaceStroke chamfer =
-        chamferStroke(tooth, chamferNormal(angle, chamfer_clearance, dish, std::tan(rake)),
-                      {corner_x, tooth.radius, corner_x * std::tan(rake)}, plain, 0.05 * kMillimetre, 1 * kMillimetre);
-    if (!right) {
-      // A left-hand tool's edge is the lowest place of the flank.
-      const double at = -chamfer.to[kA], edge = tooth.radius * std::cos(at) + corner_x * std::tan(rake) * std::sin(at);
-      const double rim = tooth.radius + plain.nominal_radius + chamfer.to[kY] - plain.radius;
-      EXPECT_NEAR(rim, edge - 0.05 * kMillimetre, 1e-12);
-    }
-    const WheelProfile profile = WheelProfile::straight(2 * wheel.radius, wheel.width);
-    const WheelProfile gasher = WheelProfile::straight(2 * thin.radius, thin.width);
-    std::vector<double> angles;
+    const OnTooth land_end(land * std::tan(clearance), tooth.radius, land);
+    add(EndFace::kPrimary, flank(endNormal(clearance, dish), {0, tooth.radius, 0}), wheel);
+    add(EndFace::kSecondary, flank(endNormal(second, dish), land_end), wheel);
+    const OnTooth normal = chamferNormal(angle, chamfer_clearance, dish, std::tan(rake));
+    add(EndFace::kChamfer, chamferStroke(tooth, normal, corner(), plain, kGap, 1 * kMillimetre), plain);
+    add(EndFace::kGash, gashStroke(tooth, gashNormal(rake, dish), 45 * kDegree, past, thin, 1 * kMillimetre), thin);
+    strokes.back().stroke.to[kA] += right ? turn : -turn;
+    strokes.back().stroke.from[kA] = strokes.back().stroke.to[kA];
+    for (int k = 0; k < teeth; ++k) angles.push_back(k * tooth.pitch);
+  }
+
+  /// Where the chamfer's edge ends on the periphery.
+  OnTooth corner() const {
+    const double x = width * (1 / std::tan(angle) + std::tan(dish));
+    return {x, tooth.radius, x * std::tan(rake)};
+  }
+
+  GroundEnd ground() const {
     std::vector<EndCut> cuts;
-    for (int k = 0; k < teeth; ++k) {
-      const double tooth_angle = k * tooth.pitch;
-      const auto number = static_cast<std::size_t>(k);
-      angles.push_back(tooth_angle);
-      cuts.push_back({number, EndFace::kPrimary, {primary, wheel, profile, tooth.radius, tooth_angle}});
-      cuts.push_back({number, EndFace::kSecondary, {secondary, wheel, profile, tooth.radius, tooth_angle}});
-      cuts.push_back({number, EndFace::kChamfer, {chamfer, plain, profile, tooth.radius, tooth_angle}});
-      cuts.push_back(
-          {number, EndFace::kGash, {gash, thin, gasher, tooth.radius, tooth_angle + (right ? turn : -turn)}});
-    }
-    const GroundEnd end(tooth.radius, cut, angles, cuts, 0);
     for (std::size_t k = 0; k < angles.size(); ++k) {
-      const std::optional<double> whole_from = end.wholeFrom(k);
-      ASSERT_TRUE(whole_from);
-      EXPECT_LT(*whole_from, 0.35 * tooth.radius);
-      // Whole is where the edge is at its place: all before it and above the flank is removed, and nothing under it.
-      const auto is_removed = [&](double r, double behind, double below) {
-        const double x = (tooth.radius - r) * std::tan(dish) + std::max(0.0, behind) * std::tan(clearance) + below;
-        const double from_axis = std::hypot(r, behind), angle = angles[k] + (right ? 1 : -1) * std::atan2(behind, r);
-        for (const double other : angles) {
-          const Vector3d place(x, from_axis * std::cos(angle - other), from_axis * std::sin(angle - other));
-          if (isInWheel(gash, thin, gasher, tooth.radius, place)) return true;
-          if (isInWheel(primary, wheel, profile, tooth.radius, place)) return true;
-          if (isInWheel(secondary, wheel, profile, tooth.radius, place)) return true;
-          if (isInWheel(chamfer, plain, profile, tooth.radius, place)) return true;
-        }
-        return false;
-      };
-      const auto is_whole = [&](double r) {
-        const double tip = 1e-4 * tooth.radius, little = 1e-6 * tooth.radius;
-        return !is_removed(r, tip, little) && is_removed(r, tip, -little) && is_removed(r, -tip, little);
-      };
-      if (turn == 0) {
-        EXPECT_TRUE(is_whole(*whole_from + 0.01 * tooth.radius));
-        EXPECT_FALSE(is_whole(*whole_from - 0.01 * tooth.radius)) << *whole_from;
+      for (const Ground& one : strokes) {
+        cuts.push_back({k, one.face, {one.stroke, one.wheel, one.profile, tooth.radius, angles[k]}});
       }
-      if (turn == 0) {
-        const std::optional<ChamferFigures> found = end.chamfer(k);
-        ASSERT_TRUE(found);
-        EXPECT_NEAR(found->width, width, 1e-7);
-        EXPECT_NEAR(found->angle, angle, 1e-4);
-        EXPECT_NEAR(found->clearance, chamfer_clearance, 1e-4);
+    }
+    return {tooth.radius, tooth.cut, angles, std::move(cuts), 0};
+  }
+
+  /// Whether any stroke removes a place, a distance behind a tooth's radius, and below the flank that begins there.
+  bool isRemoved(std::size_t k, double r, double behind, double below) const {
+    const double x = (tooth.radius - r) * std::tan(dish) + std::max(0.0, behind) * std::tan(clearance) + below;
+    const double from_axis = std::hypot(r, behind), at = angles[k] + (right ? 1 : -1) * std::atan2(behind, r);
+    for (const double other : angles) {
+      const Vector3d place(x, from_axis * std::cos(at - other), from_axis * std::sin(at - other));
+      for (const Ground& one : strokes) {
+        if (isInWheel(one.stroke, one.wheel, one.profile, tooth.radius, place)) return true;
       }
+    }
+    return false;
+  }
+
+  /// Whether an edge is at its place: all before it and above the flank is removed, and nothing under it.
+  bool isWhole(std::size_t k, double r) const {
+    const double tip = 1e-4 * tooth.radius, little = 1e-6 * tooth.radius;
+    return !isRemoved(k, r, tip, little) && isRemoved(k, r, tip, -little) && isRemoved(k, r, -tip, little);
+  }
+
+  struct Ground {
+    EndFace face;
+    FaceStroke stroke;
+    FaceWheel wheel;
+    WheelProfile profile;
+  };
+  void add(EndFace face, const FaceStroke& stroke, const FaceWheel& wheel) {
+    strokes.push_back({face, stroke, wheel, WheelProfile::straight(2 * wheel.radius, wheel.width)});
+  }
+
+  static constexpr double kGap = 0.05 * kMillimetre;
+  bool right;
+  FaceWheel plain = wheelOf(100, 10);
+  EndTooth tooth;
+  double clearance, second, dish, rake, land, width, angle, chamfer_clearance;
+  std::vector<Ground> strokes;
+  std::vector<double> angles;
+};
+
+std::ostream& operator<<(std::ostream& out, const WholeEnd& end) {
+  return out << end.angles.size() << " teeth, " << (end.right ? "right" : "left") << ", R " << end.tooth.radius
+             << ", clearances " << end.clearance / kDegree << ' ' << end.second / kDegree << ", dish "
+             << end.dish / kDegree << ", rake " << end.rake / kDegree;
+}
+
+TEST(GroundEnd, FindsTheFlanksAndTheRakeOfAnyEnd) {
+  auto between = test_support::numbers(11);
+  for (int i = 0; i < 24; ++i) {
+    const double turn = i % 4 < 2 ? 0 : 0.01;
+    const WholeEnd end(2 + i % 3, kHands[i % 2], turn, between);
+    SCOPED_TRACE(testing::Message() << end);
+    const GroundEnd ground = end.ground();
+    for (std::size_t k = 0; k < end.angles.size(); ++k) {
       for (const double part : {0.4, 0.65, 0.85}) {
-        const double r = part * tooth.radius;
-        const EndSection section = end.section(k, r);
+        const double r = part * end.tooth.radius;
+        const EndSection section = ground.section(k, r);
         ASSERT_TRUE(section.edge) << part;
         EXPECT_NEAR(section.behind, r * std::tan(turn), turn == 0 ? 1e-9 : 0.05 * r * turn);
-        EXPECT_NEAR(*section.edge, (tooth.radius - r) * std::tan(dish) + section.behind * std::tan(clearance), 1e-9);
-        EXPECT_NEAR(section.clearance.value_or(-1), clearance, 1e-6);
-        EXPECT_NEAR(section.second_clearance.value_or(-1), second, 1e-6);
-        EXPECT_NEAR(section.land.value_or(-1), land - section.behind, 1e-9);
-        EXPECT_NEAR(section.rake.value_or(-1), rake, turn == 0 ? 1e-6 : 0.1 * turn);
+        const double x = (end.tooth.radius - r) * std::tan(end.dish) + section.behind * std::tan(end.clearance);
+        EXPECT_NEAR(*section.edge, x, 1e-9);
+        EXPECT_NEAR(section.clearance.value_or(-1), end.clearance, 1e-6);
+        EXPECT_NEAR(section.second_clearance.value_or(-1), end.second, 1e-6);
+        EXPECT_NEAR(section.land.value_or(-1), end.land - section.behind, 1e-9);
+        EXPECT_NEAR(section.rake.value_or(-1), end.rake, turn == 0 ? 1e-6 : 0.1 * turn);
       }
     }
   }
+}
+
+TEST(GroundEnd, FindsFromWhereEdgesAreWholeAndTheChamfer) {
+  auto between = test_support::numbers(11);
+  for (int i = 0; i < 12; ++i) {
+    const WholeEnd end(2 + i % 3, kHands[i % 2], 0, between);
+    SCOPED_TRACE(testing::Message() << end);
+    const double radius = end.tooth.radius;
+    const GroundEnd ground = end.ground();
+    for (std::size_t k = 0; k < end.angles.size(); ++k) {
+      const std::optional<double> whole_from = ground.wholeFrom(k);
+      ASSERT_TRUE(whole_from);
+      EXPECT_LT(*whole_from, 0.35 * radius);
+      EXPECT_TRUE(end.isWhole(k, *whole_from + 0.01 * radius));
+      EXPECT_FALSE(end.isWhole(k, *whole_from - 0.01 * radius)) << *whole_from;
+      const std::optional<ChamferFigures> chamfer = ground.chamfer(k);
+      ASSERT_TRUE(chamfer);
+      EXPECT_NEAR(chamfer->width, end.width, 1e-7);
+      EXPECT_NEAR(chamfer->angle, end.angle, 1e-4);
+      EXPECT_NEAR(chamfer->clearance, end.chamfer_clearance, 1e-4);
+    }
+  }
+}
+
+/// A left-hand tool's edge is the lowest place of the chamfer's flank.
+TEST(FaceStroke, PassesTheEdgeOfALeftHandChamferByTheGap) {
+  auto between = test_support::numbers(11);
+  const WholeEnd end(4, CutDirection::kLeftHand, 0, between);
+  const Axes& to = end.strokes[2].stroke.to;
+  const double edge = end.tooth.radius * std::cos(-to[kA]) + end.corner()[2] * std::sin(-to[kA]);
+  EXPECT_NEAR(end.tooth.radius + end.plain.nominal_radius + to[kY] - end.plain.radius, edge - WholeEnd::kGap, 1e-12);
 }
 
 }  // namespace test_ground_end

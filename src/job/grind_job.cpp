@@ -143,8 +143,8 @@ bool has(const GrindJob& job, OperationKind kind) {
   return std::any_of(job.operations.begin(), job.operations.end(), is_it);
 }
 
-/// Checks the order of the operations, and that the cutter has the dimensions that they need. Flutes and reliefs begin
-/// with the flutes; what is ground on the end may do without.
+/// Checks the order of the operations, and that the cutter has the dimensions that they need. The first are the flutes:
+/// the edges of all others follow them.
 void checkOperations(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
   const auto ask = [&](const char* path, double value, Unit unit, const char* what) {
@@ -154,7 +154,7 @@ void checkOperations(Checker& checker, const GrindJob& job) {
   for (std::size_t i = 0; i < job.operations.size() && checker.good(); ++i) {
     const OperationKind kind = job.operations[i].kind;
     const int number = static_cast<int>(kind), at = static_cast<int>(i);
-    checker.whole("process.kind", number, isStraight(kind) ? countOf<OperationKind>() - 1 : at, least);
+    checker.whole("process.kind", number, i > 0 && isStraight(kind) ? countOf<OperationKind>() - 1 : at, least);
     least = number + 1;
   }
   if (!checker.good()) return;

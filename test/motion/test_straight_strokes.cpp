@@ -36,6 +36,8 @@ GrindJob endJob(OperationKind kind) {
   c.chamfer_angle = 45 * kDegree;
   c.chamfer_clearance = 10 * kDegree;
   job.tooth_angles = {0, 90 * kDegree, 180 * kDegree, 270 * kDegree};
+  job.operations.push_back(job.process());
+  job.operation = 1;
   GrindProcess& p = job.process();
   p.kind = kind;
   p.depth = p.overtravel_end = p.overtravel_shank = 0;

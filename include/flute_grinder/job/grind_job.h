@@ -123,7 +123,7 @@ struct GrindJob {
   /// Spiral angle of every tooth, the first as in `cutter`; empty if all teeth have the cutter's [rad].
   std::vector<double> spiral_angles;
   GrindInterpolation interpolation;
-  /// All operations on the cutter, in order: flutes, primary relief, secondary relief.
+  /// All operations on the cutter, in the order of their kinds, of which only the flutes are required.
   std::vector<GrindProcess> operations{GrindProcess{}};
   int operation = 0;  ///< index of this job's operation, from 0
 

@@ -57,6 +57,29 @@ std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& pat
   return outside;
 }
 
+/// Adds the legs of a stroke before the last one.
+void addBend(std::vector<Axes>& points, const Move& stroke, const Helix& helix) {
+  const Axes from = points.back(), way = stroke.to - from;
+  const double bend = helix.z_correction.bounds().second;
+  const double legs = std::max(1.0, std::ceil(std::abs(way[kX]) * std::sqrt(bend / (8 * kBow))));
+  for (double leg = 1; leg < legs; ++leg) {
+    Axes at = from + way * (leg / legs);
+    at[kZ] = helix.z(at[kX]);
+    points.push_back(at);
+  }
+}
+
+/// X where the shank begins for the wheel: behind a neck; for strokes on the end, behind the flutes; otherwise where
+/// the wheel leaves the work.
+std::optional<double> shankFrom(const GrindProgram& program) {
+  const CutterGeometry& c = program.job()->cutter;
+  if (c.neck_length > 0 || program.isStraight()) return c.flute_length + c.neck_length;
+  return std::nullopt;
+}
+
+/// The set-up; no laws of the flutes are in it, since only the wheel's place counts.
+WheelSetup wheelSetupOf(const GrindJob& job) { return {job.process().setup_swivel, job.process().setup_height, 0}; }
+
 /// See CollisionJob::work_clearance.
 double workClearance(const GrindProgram& program) {
   return std::min(program.machine().collision_clearance, kWorkPart * program.job()->process().clearance);
@@ -94,16 +117,7 @@ ProgramPath pathOf(const GrindProgram& program) {
   ProgramPath path{{program.start()}, {}};
   for (std::size_t i = 0; i < program.moves().size(); ++i) {
     const Move& move = program.moves()[i];
-    const Helix& helix = program.helix(move.tooth);
-    const Axes from = path.points.back();
-    const Axes way = move.to - from;
-    const double bend = move.kind == MoveKind::kStroke ? helix.z_correction.bounds().second : 0;
-    const double legs = std::max(1.0, std::ceil(std::abs(way[kX]) * std::sqrt(bend / (8 * kBow))));
-    for (double leg = 1; leg < legs; ++leg) {
-      Axes at = from + way * (leg / legs);
-      at[kZ] = helix.z(at[kX]);
-      path.points.push_back(at);
-    }
+    if (move.kind == MoveKind::kStroke && !program.isStraight()) addBend(path.points, move, program.helix(move.tooth));
     path.points.push_back(move.to);
     path.moves.resize(path.points.size() - 1, i);
   }
@@ -112,13 +126,12 @@ ProgramPath pathOf(const GrindProgram& program) {
 
 CollisionJob collisionJobOf(const GrindProgram& program) {
   const GrindJob& job = *program.job();
-  const bool has_neck = job.cutter.neck_length > 0;
   return {wheelOf(job).worn(job.process().wheel_wear),
           job.process().wheel_diameter / 2,
-          setupOf(program.job(), 0),
+          wheelSetupOf(job),
           job.cutter,
           job.cutter.shank_diameter,
-          has_neck ? std::optional<double>(job.cutter.flute_length + job.cutter.neck_length) : std::nullopt,
+          shankFrom(program),
           strokeEndOf(program),
           program.machine().collision_clearance,
           program.run().offset[kX],

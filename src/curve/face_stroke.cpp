@@ -175,6 +175,20 @@ FaceStroke chamferStroke(const EndTooth& tooth, const OnTooth& normal, const OnT
   return stroke;
 }
 
+namespace {
+
+/// The way along a gash's bottom, from the end outward, at which the wheel is clear of the blank and its corner.
+/// @param height of the blank's corner above the bottom's end [m].
+double wayClearOfBlank(double height, double angle, double wheel_radius, double clear) noexcept {
+  const double sin = std::sin(angle), cos = std::cos(angle);
+  const double across = wheel_radius - height * cos;  // from the corner to the way of the wheel's centre
+  const double off_corner = height * sin + std::sqrt(std::pow(wheel_radius + clear, 2) - across * across);
+  const bool before_end = off_corner * cos <= wheel_radius * sin;  // else the blank below the centre is nearest
+  return before_end ? off_corner : (height + clear + wheel_radius * (1 - cos)) / sin;
+}
+
+}  // namespace
+
 FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle, double past, const FaceWheel& wheel,
                       double clear) noexcept {
   const FacePose pose = gashPose(normal, tooth.cut);
@@ -192,7 +206,7 @@ FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle
   };
   FaceStroke stroke;
   stroke.swivel = pose.swivel;
-  stroke.from = axes((tooth.radius + clear + past) / std::sin(angle));
+  stroke.from = axes(wayClearOfBlank(tooth.radius + past, angle, wheel.radius, clear));
   stroke.to = axes(0);
   stroke.per_stock[kY] = 1;
   return stroke;

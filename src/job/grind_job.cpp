@@ -182,6 +182,7 @@ void checkOperations(Checker& checker, const GrindJob& job) {
     ask("cutter.chamfer_width", c.chamfer_width, Unit::kMetre, "more than 0 with a chamfer");
     ask("cutter.chamfer_angle", c.chamfer_angle, Unit::kRadian, "more than 0 with a chamfer");
     ask("cutter.chamfer_clearance", c.chamfer_clearance, Unit::kRadian, "more than 0 with a chamfer");
+    ask("cutter.end_clearance_tolerance", c.end_clearance_tolerance, Unit::kRadian, "more than 0 with a chamfer");
   }
 }
 
@@ -201,6 +202,12 @@ void checkEnd(Checker& checker, const GrindJob& job) {
   if (p.kind == OperationKind::kGash && !(p.gash_past > -radius)) {
     checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
                    "more than the cutter's radius at the end,", -radius);
+  }
+  const bool is_flank = p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd;
+  if (is_flank && c.cut == CutDirection::kLeftHand) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.cut", {static_cast<double>(c.cut), Unit::kNone},
+                   "0, right_hand, for flanks of the end: those of a left-hand cutter take a cup wheel, which is not "
+                   "lifted along Y");
   }
   if (p.kind == OperationKind::kChamfer) {
     checker.below("cutter.chamfer_width", c.chamfer_width, radius, "the cutter's radius at the end");

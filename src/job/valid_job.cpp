@@ -34,17 +34,23 @@ Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
 }
 
+constexpr const char* kNoEdges = "the edges that the operation follows are not computed; see withLaws()";
 constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
+
+FaceWheel faceWheelOf(const GrindProcess& p, double wear) noexcept {
+  return {p.wheel_diameter / 2, p.wheel_diameter / 2 - wear, p.wheel_width, 0, p.setup_height, 0};
+}
 
 /// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
 /// @param wear wear of the wheel's radius [m].
 FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
   const GrindProcess& p = job.process();
-  const FaceWheel wheel{p.wheel_diameter / 2, p.wheel_diameter / 2 - wear, p.wheel_width, 0, p.setup_height, 0};
+  const FaceWheel wheel = faceWheelOf(p, wear);
   const EndPlane plane = endPlaneOf(job);
   const EndTooth end = endToothOf(job, tooth);
   switch (p.kind) {
-    case OperationKind::kGash: return gashStroke(end, plane.normal, p.gash_angle, p.gash_past, wheel, p.clearance);
+    case OperationKind::kGash:
+      return gashStroke(end, plane.normal, p.gash_angle, p.gash_past, wheel, p.clearance + p.stock);
     case OperationKind::kChamfer: return chamferStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
     default: return endStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
   }
@@ -222,10 +228,23 @@ void ValidJob::takePasses(Content& content) {
   content.passes = passesOf(content.job, content.depths);
 }
 
-FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const noexcept {
+std::vector<double> ValidJob::wearOfTeeth() const {
+  const auto deepest = std::max_element(depths().begin(), depths().end()) - depths().begin();
+  std::vector<double> wear(content_->cutters.size());
+  for (const JobPass& pass : passes()) {
+    if (pass.place.pass == deepest) wear[static_cast<std::size_t>(pass.place.tooth)] = pass.wear;
+  }
+  return wear;
+}
+
+FaceWheel ValidJob::faceWheel(double wear) const noexcept { return faceWheelOf(content_->job.process(), wear); }
+
+FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const {
+  if (content_->edges.empty()) throw std::invalid_argument(kNoEdges);
+  const auto i = static_cast<std::size_t>(tooth);
   FaceStroke stroke = lastFaceStroke(content_->job, tooth, wear);
   const Axes shift = (content_->deepest - depth) * stroke.per_stock;
-  const double angle = content_->job.tooth_angles[static_cast<std::size_t>(tooth)];
+  const double angle = content_->job.tooth_angles[i] + content_->edges[i].at_end;
   for (Axes* at : {&stroke.from, &stroke.to}) {
     *at += shift;
     (*at)[kA] += angle;
@@ -235,7 +254,7 @@ FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const noex
 
 const StrokeLaw& ValidJob::strokeLaw(int tooth) const {
   if (content_->laws.empty()) {
-    throw std::invalid_argument("the edges that the relief follows are not computed; see withLaws()");
+    throw std::invalid_argument(kNoEdges);
   }
   return content_->laws.at(static_cast<std::size_t>(tooth));
 }
@@ -267,8 +286,10 @@ ValidJob ValidJob::withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edge
   Content content = *content_;
   std::vector<CutterGeometry> as_ground = content.cutters;
   for (std::size_t i = 0; i < edges.size(); ++i) as_ground[i].spiral_angle = edges[i].spiral_angle;
-  takeReliefs(content, as_ground);
-  content.laws = lawsOf(content.job, content.cutters, content.reliefs, edges);
+  if (!isStraight()) {
+    takeReliefs(content, as_ground);
+    content.laws = lawsOf(content.job, content.cutters, content.reliefs, edges);
+  }
   content.flutes = std::make_shared<const ValidJob>(flutes);
   content.edges = std::move(edges);
   job.content_ = std::make_shared<const Content>(std::move(content));

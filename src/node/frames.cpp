@@ -82,6 +82,7 @@ void Frames::publishSetUp(const ros::Time& stamp) {
 
 void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
   // A faulty drive may report NaN. tf warns of a repeated stamp, which a stalled loop gives.
+  if (edges_.empty()) return;
   const GroundEdge& edge = edges_[static_cast<std::size_t>(tooth)];
   if (!std::isfinite(x) || stamp == contact_stamp_ || edge.empty()) return;
   contact_stamp_ = stamp;

@@ -29,6 +29,7 @@ double strokeX(const Setpoint& p, const GrindProgram& program) {
 double strokeFraction(const Setpoint& p, const GrindProgram& program) {
   const MoveKind move = program.moves()[p.move_index].kind;
   if (move != MoveKind::kStroke) return phaseOf(move) == PassPhase::kAfter ? 1 : 0;
+  if (program.isStraight()) return std::clamp(p.move_fraction, 0.0, 1.0);
   return fraction(strokeX(p, program) - program.strokeFrom(), program.strokeTo() - program.strokeFrom());
 }
 

@@ -73,12 +73,11 @@ CutterSection cutterSection(const ValidJob& job, double x) {
 }
 
 QString figuresText(const CutterSection& section) {
-  const bool of_relief = isRelief(section.job->process().kind);
   QStringList lines;
   for (const QString& fault : faults(section)) lines << line(fault, false);
   for (const GroundFigure& figure : figuresOf(section.job, {section.ground})) {
     // Only the figures of this operation: there is no room for all.
-    if (rowOf(figure.figure).of_relief == of_relief) lines << figureLine(section, figure);
+    if (rowOf(figure.figure).of == rowOf(section.job->process().kind).form) lines << figureLine(section, figure);
   }
   return lines.join("<br>");
 }

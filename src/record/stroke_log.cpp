@@ -23,7 +23,7 @@ Json followingJson(const Axes& error) {
 }  // namespace
 
 StrokeLog::StrokeLog(const ValidJob& job) {
-  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+  for (int tooth = 0; tooth < job.teeth() && !job.isStraight(); ++tooth) {
     edges_.push_back({ConicalCutter(job.strokeLaw(tooth).cutter), job.strokeLaw(tooth).x_shift});
     starts_.push_back(job.relief(tooth) == nullptr ? 0 : job.strokeLaw(tooth).x_shift);
   }

@@ -92,7 +92,8 @@ Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tole
 }
 
 bool isJudged(const ToolFigureRow& row, const FigurePlace& p) {
-  if (row.of_relief && p.job->process().kind == OperationKind::kFlute) return false;
+  if (row.of == StrokeForm::kStraight) return false;
+  if (row.of == StrokeForm::kRelief && p.job->process().kind == OperationKind::kFlute) return false;
   return row.value == ToolFigure::kLand || asked(row.value, p).has_value();
 }
 
@@ -229,6 +230,29 @@ void take(const Json& json, T& value) {
   json.get_to(value);
 }
 
+/// The criteria of an end: each figure's value that is farther from the asked one.
+std::vector<Criterion> criteriaOfEnd(const ValidJob& job, const GroundTool* tool) {
+  std::vector<Criterion> criteria;
+  for (const GroundFigure& asks : askedOfEnd(job)) {
+    const ToolFigureRow& row = rowOf(asks.figure);
+    const double scale = shopScale(row.unit);
+    const char* unit = row.unit == Unit::kRadian ? "deg" : "mm";
+    Criterion& criterion = criteria.emplace_back(
+        Criterion{row.words, unit, true, 3, asks.asked->from / scale, asks.tolerance / scale, {}, false, "", ""});
+    if (tool == nullptr || !tool->allTeethGround()) continue;
+    const GroundFigure* found = find(tool->check.figures, asks.figure);
+    if (found == nullptr) {
+      add(criterion, std::nullopt, "");
+      continue;
+    }
+    for (const GroundFigure::At& at : {found->least, found->largest}) {
+      add(criterion, at.value / scale, format("tooth %d, %.3f mm from the axis", at.tooth + 1, at.x / kMillimetre));
+    }
+  }
+  criteria.push_back(gougeOf(job, tool));
+  return criteria;
+}
+
 }  // namespace
 
 const char* Criterion::result() const {
@@ -252,6 +276,7 @@ Tolerances readTolerances(const std::string& path) {
 }
 
 std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* tool, const Tolerances& tolerances) {
+  if (job.isStraight()) return criteriaOfEnd(job, tool);
   GroundSection small_end;
   small_end.radius = job->cutter.end_diameter / 2;
   small_end.teeth.resize(1);
@@ -261,7 +286,8 @@ std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* too
     if (!isJudged(row, first)) continue;
     Criterion& criterion = criteria.emplace_back(criterionOf(row, first, tolerances));
     // Flutes taken from the plan were not measured.
-    const bool is_measured = tool != nullptr && tool->allTeethGround() && !(tool->on_planned && !row.of_relief);
+    const bool is_measured =
+        tool != nullptr && tool->allTeethGround() && !(tool->on_planned && row.of == StrokeForm::kFlute);
     if (is_measured) addFigure(criterion, row, *tool, tolerances);
   }
   criteria.push_back(gougeOf(job, tool));
@@ -269,7 +295,11 @@ std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* too
 }
 
 std::vector<Criterion> criteriaOfRun(const RunFacts& run, const Tolerances& tolerances) {
-  std::vector<Criterion> criteria{deviationOf(run), followingErrorOf(run), feedOf(run), lateCyclesOf(run)};
+  std::vector<Criterion> criteria;
+  if (!run.job.isStraight()) criteria.push_back(deviationOf(run));  // straight strokes have no deviation
+  for (Criterion& criterion : std::vector{followingErrorOf(run), feedOf(run), lateCyclesOf(run)}) {
+    criteria.push_back(std::move(criterion));
+  }
   judgeAgain(criteria, tolerances);
   return criteria;
 }

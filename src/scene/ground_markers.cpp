@@ -244,6 +244,7 @@ void appendSolid(MarkerArray& array, const CutterSolid& solid, const Deviations&
 }  // namespace
 
 GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
+  if (job.isStraight()) return groundCutterOf(job);
   const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
   std::optional<GroundCutter> before;
   if (job.relief(0) != nullptr) before = groundBefore(job);

@@ -49,6 +49,12 @@ double pathStep(const GrindProgram& program) {
   return std::clamp(std::sqrt(8 * kPathTolerance / std::max(turning, 1e-9)), 1e-5, 1e-3);
 }
 
+/// The edge that the strokes of all teeth form, by its cone; of straight strokes the cutter's.
+FormedEdge formedEdgeOf(const ValidJob& job) {
+  if (job.isStraight()) return {ConicalCutter(job->cutter), 0};
+  return {ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).x_shift};
+}
+
 /// Whether a place is on an edge; beyond the edge's ends the overtravel forms none.
 bool isOn(const GroundEdge& edge, double x) { return x >= edge.from() && x <= edge.to(); }
 
@@ -62,12 +68,12 @@ double roundDown(double value) {
 }  // namespace
 
 ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges)
-    : formed_(program.helix(0).edge),
+    : formed_(formedEdgeOf(program.job())),
       tolerance_(program.job()->interpolation.tolerance),
       steps_(std::min(kMostSteps,
                       static_cast<std::size_t>(std::ceil(program.job()->cutter.flute_length / pathStep(program))))),
       measured_(steps_ + 1, -1) {
-  for (std::size_t i = 0; i < edges.size(); ++i) {
+  for (std::size_t i = 0; i < edges.size() && !program.isStraight(); ++i) {
     const int tooth = static_cast<int>(i);
     flutes_.push_back({program.job().strokeLaw(tooth).a, program.helix(tooth).curve, edges[i], {}});
   }
@@ -78,6 +84,7 @@ double ToolPath::x(const GroundEdge& edge, std::size_t i) const {
 }
 
 bool ToolPath::add(const Setpoint& p, const Axes& actual) {
+  if (flutes_.empty()) return false;
   const std::optional<std::size_t> before = active_;
   const PassPhase phase = phaseOf(p.move);
   if (phase == PassPhase::kBefore || phase == PassPhase::kStroke) active_ = p.tooth;
@@ -143,12 +150,12 @@ MarkerArray ToolPath::markers() const {
 }
 
 ExecutedPath::ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges)
-    : cutter_(program.cutter()), edges_(std::move(edges)) {
+    : cutter_(program.job()->cutter), edges_(std::move(edges)) {
   for (const Move& move : program.moves()) wear_of_move_.push_back(move.wear);
 }
 
 void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
-  if (p.move != MoveKind::kStroke || edges_[p.tooth].empty()) return;
+  if (p.move != MoveKind::kStroke || edges_.empty() || edges_[p.tooth].empty()) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();
@@ -177,9 +184,7 @@ void ExecutedPath::append(MarkerArray& array) const {
 }
 
 PathErrorMarkers::PathErrorMarkers(const ValidJob& job, std::vector<GroundEdge> edges)
-    : formed_{ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).x_shift},
-      edges_(std::move(edges)),
-      tolerance_(job->interpolation.tolerance) {}
+    : formed_(formedEdgeOf(job)), edges_(std::move(edges)), tolerance_(job->interpolation.tolerance) {}
 
 void PathErrorMarkers::add(const Setpoint& p) {
   if (p.step == StepKind::kNone || edges_[p.tooth].empty()) return;

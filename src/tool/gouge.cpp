@@ -98,10 +98,31 @@ struct Asked {
   }
 };
 
+/// How far a position off a straight stroke is within the tool: through the plane, or the bottom of a gash [m].
+double beyondPlane(const GrindJob& job, const PathDeviation& off) {
+  const double sin = std::sin(job.process().setup_swivel), cos = std::cos(job.process().setup_swivel);
+  const double along_spindle = -sin * off.x + cos * off.z;
+  if (job.process().kind != OperationKind::kGash) return -along_spindle;
+  return std::max(job.cutter.cut == CutDirection::kRightHand ? along_spindle : -along_spindle, -off.y);
+}
+
+std::vector<Gouge> gougesOnEnd(const RunStrokes& strokes, double min) {
+  std::vector<Gouge> gouges;
+  for (const RunStroke& stroke : strokes.strokes()) {
+    Gouge worst{stroke.place, stroke.move, 0, 0};
+    for (const PathDeviation& off : stroke.deviations) {
+      worst.depth = std::max(worst.depth, beyondPlane(*strokes.job(), off));
+    }
+    if (worst.depth > min) gouges.push_back(worst);
+  }
+  return gouges;
+}
+
 }  // namespace
 
 std::vector<Gouge> gougesOf(const RunStrokes& strokes, double min) {
   const ValidJob& job = strokes.job();
+  if (job.isStraight()) return gougesOnEnd(strokes, min);
   const GroundCutter asked = groundCutterOf(job);
   const Range blank{0, job->cutter.flute_length + job->process().overtravel_shank};
   std::vector<Gouge> gouges;

@@ -17,6 +17,11 @@ constexpr double kNearby = 1e-5;     ///< distance between the rays of a slope, 
 constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake face is found, per radius
 constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
 
+bool holds(const std::vector<Range>& ranges, double x) {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [x](const Range& range) { return x >= range.from && x <= range.to; });
+}
+
 bool isOf(const EndCut* cut, std::size_t tooth, EndFace face) {
   return cut != nullptr && cut->tooth == tooth && cut->face == face;
 }
@@ -24,12 +29,13 @@ bool isOf(const EndCut* cut, std::size_t tooth, EndFace face) {
 }  // namespace
 
 GroundEnd::GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_angles, std::vector<EndCut> cuts,
-                     double blank_x)
+                     double blank_x, EndFlutes flutes)
     : radius_(radius),
       hand_(cut == CutDirection::kRightHand ? 1 : -1),
       tooth_angles_(std::move(tooth_angles)),
       cuts_(std::move(cuts)),
-      blank_x_(blank_x) {}
+      blank_x_(blank_x),
+      flutes_(std::move(flutes)) {}
 
 GroundEnd::Ray GroundEnd::rayAt(std::size_t tooth, double r, double behind) const {
   return {std::hypot(r, behind), tooth_angles_[tooth] + hand_ * std::atan2(behind, r)};
@@ -48,6 +54,9 @@ GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind
     cut.sweep.addRemoved(ray.r, ray.angle, ranges);
     for (const Range& range : ranges) pieces.push_back({range, &cut});
   }
+  ranges.clear();
+  for (std::size_t i = 0; i < flutes_.teeth(); ++i) flutes_.addRemoved(i, ray.r, ray.angle, ranges);
+  for (const Range& range : ranges) pieces.push_back({range, nullptr});
   std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.range.from < b.range.from; });
   Surface left{blank_x_, nullptr};
   for (const Piece& piece : pieces) {
@@ -61,11 +70,18 @@ bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, 
   const Ray ray = rayAt(tooth, r, behind);
   std::vector<Range> ranges;
   for (const EndCut& cut : cuts_) {
-    if (by == By::kOwnGash && !isOf(&cut, tooth, EndFace::kGash)) continue;
-    cut.sweep.addRemoved(ray.r, ray.angle, ranges);
+    if (by == By::kAny || isOf(&cut, tooth, EndFace::kGash)) cut.sweep.addRemoved(ray.r, ray.angle, ranges);
   }
-  return std::any_of(ranges.begin(), ranges.end(),
-                     [x](const Range& range) { return x >= range.from && x <= range.to; });
+  for (std::size_t i = 0; i < flutes_.teeth() && by != By::kOwnGash; ++i) {
+    if (by == By::kAny || i == tooth) flutes_.addRemoved(i, ray.r, ray.angle, ranges);
+  }
+  return holds(ranges, x);
+}
+
+bool GroundEnd::isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const {
+  std::vector<Range> ranges;
+  for (const EndCut& cut : cuts_) cut.sweep.addRemoved(r, tooth_angles_[tooth] + turn, ranges);
+  return holds(ranges, x);
 }
 
 bool GroundEnd::isFlank(std::size_t tooth, EndFace face, double r, double behind) const {
@@ -81,8 +97,8 @@ std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r)
     if (is_flank(behind)) {
       const double edge = changeBetween(before, behind, is_flank);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
-      const bool gashed = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnGash);
-      return gashed ? std::optional(edge) : std::nullopt;
+      const bool faced = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnFace);
+      return faced ? std::optional(edge) : std::nullopt;
     }
     before = behind;
   }
@@ -102,34 +118,36 @@ EndSection GroundEnd::section(std::size_t tooth, double r) const {
   section.behind = *behind;
   section.edge = surface(tooth, r, *behind).x;
   measureFlanks(tooth, section);
-  measureRake(tooth, section);
+  section.rake = rake(tooth, r, *section.edge, *behind);
   return section;
 }
 
 void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
   section.clearance = std::atan(slope(tooth, section.r, section.behind));
+  const double step = kNearby * radius_, inside = section.behind + step;
+  const double fall = surface(tooth, section.r - step, inside).x - surface(tooth, section.r, inside).x;
+  section.dish = std::atan(fall / step);
   const auto is_other = [&](double behind) { return !isFlank(tooth, EndFace::kPrimary, section.r, behind); };
-  const double step = kStep * radius_;
-  double behind = section.behind + step;
+  const double stride = kStep * radius_;
+  double behind = section.behind + stride;
   while (!is_other(behind)) {
-    behind += step;
+    behind += stride;
     if (behind > 2 * radius_) return;
   }
-  const double end = changeBetween(behind - step, behind, is_other);
+  const double end = changeBetween(behind - stride, behind, is_other);
   if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, EndFace::kSecondary)) return;
   section.land = end - section.behind;
   section.second_clearance = std::atan(slope(tooth, section.r, end));
 }
 
 /// A little below the edge, the rake face is between what the gash removed and the tooth.
-void GroundEnd::measureRake(std::size_t tooth, EndSection& section) const {
-  const double depth = kRakeDepth * radius_, x = *section.edge + depth;
-  const auto is_tooth = [&](double behind) { return !isRemoved(tooth, section.r, behind, x, By::kAny); };
-  const double behind = section.behind + depth, before = section.behind - depth;
-  if (!is_tooth(behind) || is_tooth(before)) return;
-  const double face = changeBetween(before, behind, is_tooth);
-  if (!isRemoved(tooth, section.r, face - kNearby * depth, x, By::kOwnGash)) return;
-  section.rake = std::atan((face - section.behind) / depth);
+std::optional<double> GroundEnd::rake(std::size_t tooth, double r, double x, double behind) const {
+  const double depth = kRakeDepth * radius_;
+  const auto is_tooth = [&](double at) { return !isRemoved(tooth, r, at, x + depth, By::kAny); };
+  if (!is_tooth(behind + depth) || is_tooth(behind - depth)) return std::nullopt;
+  const double face = changeBetween(behind - depth, behind + depth, is_tooth);
+  if (!isRemoved(tooth, r, face - kNearby * depth, x + depth, By::kOwnGash)) return std::nullopt;
+  return std::atan((face - behind) / depth);
 }
 
 std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "tool/end_flutes.h"
 #include "tool/face_sweep.h"
 
 #include <cstdint>
@@ -19,13 +20,14 @@ struct EndCut {
 };
 
 /// An end tooth at a distance from the axis, on the rays of a line at right angles to the radius through the tooth's
-/// angle. Without an edge that gash and primary flank of the tooth itself form, everything is empty.
+/// angle. Without an edge that the tooth's own flute or gash and its own primary flank form, everything is empty.
 struct EndSection {
   double r = 0;                            ///< distance of the line from the axis [m]
   std::optional<double> edge;              ///< X of the edge [m]
   double behind = 0;                       ///< distance of the edge from the radius, against the cut [m]
   std::optional<double> rake;              ///< axial rake at the edge, of the face that the gash leaves [rad]
   std::optional<double> clearance;         ///< axial clearance at the edge [rad]
+  std::optional<double> dish;              ///< by which the primary flank is hollow toward the axis [rad]
   std::optional<double> land;              ///< width of the primary flank, seen along the axis, to the secondary [m]
   std::optional<double> second_clearance;  ///< axial clearance at the beginning of the secondary flank [rad]
 };
@@ -42,8 +44,9 @@ class GroundEnd {
  public:
   /// @param radius of the tool at its end [m].
   /// @param blank_x X of the blank's flat end, 0 or less [m].
-  GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_angles, std::vector<EndCut> cuts,
-            double blank_x);
+  /// @param flutes flutes that were ground before; none: the gashes form all edges.
+  GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_angles, std::vector<EndCut> cuts, double blank_x,
+            EndFlutes flutes = {});
 
   /// @param r distance from the axis, positive [m].
   EndSection section(std::size_t tooth, double r) const;
@@ -51,6 +54,16 @@ class GroundEnd {
   /// The smallest radius outside which a tooth's edge is whole, up to the corner; nothing if it is not whole even there
   /// [m].
   std::optional<double> wholeFrom(std::size_t tooth) const;
+
+  /// The axial rake of the face that a tooth's gash leaves; nothing where the flute has taken it away [rad].
+  /// @param r distance from the axis [m].
+  /// @param x,behind a place on the edge, or where it is to be [m].
+  std::optional<double> rake(std::size_t tooth, double r, double x, double behind) const;
+
+  /// Whether strokes on the end, rather than flutes, remove a place.
+  /// @param r,turn,x the place: distance from the axis [m], angle from the tooth's in the sense of A [rad], along the
+  ///        axis [m].
+  bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
   /// Nothing if the corner has no chamfer.
   std::optional<ChamferFigures> chamfer(std::size_t tooth) const;
@@ -67,20 +80,20 @@ class GroundEnd {
     const EndCut* cut;
   };
   Surface surface(std::size_t tooth, double r, double behind) const;
-  enum class By { kAny, kOwnGash };
+  enum class By { kAny, kOwnGash, kOwnFace };
   bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;
   bool isFlank(std::size_t tooth, EndFace face, double r, double behind) const;
-  /// How far behind the radius the tooth has an edge that its gash and this flank form.
+  /// How far behind the radius the tooth has an edge that its flute or gash and this flank form.
   std::optional<double> edge(std::size_t tooth, EndFace face, double r) const;
   double slope(std::size_t tooth, double r, double behind) const;
   void measureFlanks(std::size_t tooth, EndSection& section) const;
-  void measureRake(std::size_t tooth, EndSection& section) const;
 
   double radius_;
   double hand_;
   std::vector<double> tooth_angles_;
   std::vector<EndCut> cuts_;
   double blank_x_;
+  EndFlutes flutes_;
 };
 
 }  // namespace grinder

@@ -4,6 +4,7 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/z_law.h"
+#include "tool/end_check.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,17 +22,6 @@ constexpr double kSameWear = 20e-6;  ///< difference of wear that changes a chec
 
 std::array<double, 2> cornerRadii(const GrindProcess& p) {
   return {p.wheel_corner_radius_lower, p.wheel_corner_radius_upper};
-}
-
-/// The wheel's wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
-std::vector<double> wearOfTeeth(const ValidJob& job) {
-  const std::vector<double>& depths = job.depths();
-  const auto deepest = std::max_element(depths.begin(), depths.end()) - depths.begin();
-  std::vector<double> wear(job->tooth_angles.size());
-  for (const JobPass& pass : job.passes()) {
-    if (pass.place.pass == deepest) wear[static_cast<std::size_t>(pass.place.tooth)] = pass.wear;
-  }
-  return wear;
 }
 
 /// See WheelSweep::overcutStart(), for the first of some circles of a section.
@@ -129,7 +119,7 @@ class Checker {
   void checkFigures(const FigurePlace& place) {
     for (const ToolFigureRow& row : kToolFigures) {
       const ToolFigure figure = row.value;
-      if (row.reason == ReasonKind::kNone || row.of_relief != (job_.relief(0) != nullptr)) continue;
+      if (row.reason == ReasonKind::kNone || row.of != rowOf(job_->process().kind).form) continue;
       if (row.of_complete && !place.tooth().complete) continue;
       if (isAsAsked(figure, place) || (figure == ToolFigure::kSpiral && !place.tooth().spiral)) continue;
       add(row.reason, place.section.x, static_cast<int>(place.number), row.unit,
@@ -209,7 +199,7 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, i
   for (int i = 1; i <= last; ++i) {
     const ValidJob relief =
         i == job->operation ? job : ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
-    const std::vector<double> wear = wearOfTeeth(relief);
+    const std::vector<double> wear = relief.wearOfTeeth();
     for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
       if (own.size() >= static_cast<std::size_t>(i)) continue;  // a tooth that shares the flute has added it
@@ -220,10 +210,19 @@ GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, i
   return GroundCutter(flutes.cutter(), flutes.flutes(), flutes.teeth(), std::move(reliefs), flutes.chordalRakeDepth());
 }
 
+/// The number of the last relief up to a job's operation; 0 if there is none.
+int lastReliefOf(const GrindJob& job) {
+  int last = job.operation;
+  while (last > 0 && !isRelief(job.operations[static_cast<std::size_t>(last)].kind)) --last;
+  return last;
+}
+
 /// @param same_wear maximum difference of the wheel's wear for teeth to share a flute [m].
 GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
-  if (job.relief(0) != nullptr) return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), job->operation);
-  const std::vector<double> wear = wearOfTeeth(job);
+  if (job->process().kind != OperationKind::kFlute) {
+    return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), lastReliefOf(*job));
+  }
+  const std::vector<double> wear = job.wearOfTeeth();
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   const auto spiral = [&](std::size_t i) { return job.cutterOf(static_cast<int>(i)).spiral_angle; };
@@ -284,6 +283,7 @@ GroundCutter groundBefore(const ValidJob& job) {
 }
 
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
+  if (job.isStraight()) return checkGroundEnd(job);
   const double length = job->cutter.flute_length;
   Checker checker(job);
   std::vector<GroundSection> sections;
@@ -306,6 +306,7 @@ CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
 
 CutterCheck checkGroundCutter(const ValidJob& job) {
   try {
+    if (job.isStraight()) return checkGroundEnd(job);
     return checkGroundCutter(job, groundCutterOf(job, kSameWear));
   } catch (const std::invalid_argument& error) {
     return {std::nullopt, {otherReason(error.what())}, {}, {}};

@@ -3,6 +3,8 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
+#include "tool/end_check.h"
+
 #include <algorithm>
 #include <optional>
 #include <set>
@@ -58,6 +60,7 @@ GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter 
 
 GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
   GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
+  if (strokes.job().isStraight()) tool.check = checkGroundEnd(strokes);
   tool.of_run = true;
   tool.on_planned = strokes.isOnPlanned();
   tool.strokes = strokes.strokes();

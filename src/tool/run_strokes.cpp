@@ -28,6 +28,11 @@ bool holds(const Range& range, double x) {
   return x >= range.from - RunStrokes::kSame && x <= range.to + RunStrokes::kSame;
 }
 
+/// Direction of a straight stroke in X, Y and Z.
+Eigen::Vector3d directionOf(const FaceStroke& stroke) {
+  return (stroke.to - stroke.from).head<3>().matrix().normalized();
+}
+
 double maxRadius(const ValidJob& job) {
   const ConicalCutter cutter(job->cutter);
   return std::max(cutter.radius(0), cutter.radius(job->cutter.flute_length + job->process().overtravel_shank));
@@ -83,11 +88,11 @@ void RunStrokes::take(const Part& part, const Axes& actual) {
   const bool same = reading_ && reading_->place == part.place && reading_->move == part.move;
   if (!same) endStroke();
   if (part.move == MoveKind::kStroke) {
-    if (!same) beginStroke(part.place, actual[kX]);
+    if (!same) beginStroke(part.place, actual);
     in_blank_ = false;
     if (!same && fedInBefore(part, actual)) sample(read_);
     sample(actual);
-  } else {
+  } else if (!job_.isStraight()) {  // the other moves on the end are in the strokes' planes
     addPose(part, actual);
   }
   reading_ = part;
@@ -105,7 +110,7 @@ bool RunStrokes::fedInBefore(const Part& part, const Axes& actual) const {
          kApart;
 }
 
-void RunStrokes::beginStroke(const ToothPass& place, double x) {
+void RunStrokes::beginStroke(const ToothPass& place, const Axes& actual) {
   const bool goes_on = !strokes_.empty() && strokes_.back().place == place;
   path_.emplace(pathOf(place));
   if (!goes_on) {
@@ -113,14 +118,15 @@ void RunStrokes::beginStroke(const ToothPass& place, double x) {
     return;
   }
   // After a lift, the stroke counts up to the lift, and once more with the new positions in place of the repeated ones.
-  const bool rises = path_->stroke.from < path_->stroke.to;
+  const double x = path_->placeOf(actual);
+  const bool rises = path_->rises();
   const auto repeated = samples_.lower_bound(std::lround(x / kCell));
   samples_.erase(rises ? repeated : samples_.begin(), rises ? samples_.end() : repeated);
   (rises ? range_.to : range_.from) = x;
 }
 
 void RunStrokes::sample(const Axes& actual) {
-  const double x = actual[kX];
+  const double x = path_->placeOf(actual);
   const PathDeviation off = path_->deviation(x, actual);
   range_ = samples_.empty() ? Range{x, x} : Range{std::min(range_.from, x), std::max(range_.to, x)};
   Sample& cell = samples_[std::lround(x / kCell)];
@@ -150,14 +156,52 @@ void RunStrokes::endStroke() {
 }
 
 RunStrokes::Path::Path(const ValidJob& job, int tooth, double wear)
-    : cutter(job.strokeLaw(tooth).cutter),
-      curve(cutter, job.strokeLaw(tooth).x_shift),
-      stroke(grinder::strokeOf(job, tooth, job.deepest(), wear)),
-      angle(job.strokeLaw(tooth).a) {}
+    : cutter_(job.isStraight() ? job->cutter : job.strokeLaw(tooth).cutter),
+      curve_(cutter_, job.isStraight() ? 0 : job.strokeLaw(tooth).x_shift) {
+  if (job.isStraight()) {
+    straight_ = job.faceStroke(tooth, job.deepest(), wear);
+  } else {
+    stroke_ = grinder::strokeOf(job, tooth, job.deepest(), wear);
+    angle_ = job.strokeLaw(tooth).a;
+  }
+}
 
-PathDeviation RunStrokes::Path::deviation(double x, const Axes& at) const {
-  return {at[kY] - (stroke.y + cutter.y(x) + x * stroke.y_per_x), at[kZ] - (cutter.z(x) + stroke.z_correction.at(x).z),
-          at[kA] - angle - curve.a(x)};
+double RunStrokes::Path::placeOf(const Axes& at) const {
+  if (!straight_) return at[kX];
+  return (at - straight_->from).head<3>().matrix().dot(directionOf(*straight_));
+}
+
+PathDeviation RunStrokes::Path::deviation(double place, const Axes& at) const {
+  if (straight_) {
+    const Eigen::Vector3d off = (at - straight_->from).head<3>().matrix() - place * directionOf(*straight_);
+    return {off.y(), off.z(), at[kA] - straight_->from[kA], off.x()};
+  }
+  return {at[kY] - (stroke_.y + cutter_.y(place) + place * stroke_.y_per_x),
+          at[kZ] - (cutter_.z(place) + stroke_.z_correction.at(place).z), at[kA] - angle_ - curve_.a(place)};
+}
+
+std::multimap<int, FaceStroke> RunStrokes::straightStrokes() const {
+  std::multimap<int, FaceStroke> ground;
+  for (const RunStroke& run : strokes_) {
+    if (depthOf(run) < job_.deepest()) continue;
+    PathDeviation mean;
+    double count = 0;
+    for (const PathDeviation& off : run.deviations) mean = between(mean, off, 1 / ++count);
+    FaceStroke stroke = job_.faceStroke(run.place.tooth, job_.deepest(), wearOf(run.place));
+    const Eigen::Vector3d direction = directionOf(stroke);
+    Axes off;
+    off << mean.x, mean.y, mean.z, mean.a;
+    const auto at = [&](double way) {
+      Axes place = stroke.from + off;
+      place.head<3>() += (way * direction).array();
+      return place;
+    };
+    const Axes from = at(run.range.from), to = at(run.range.to);
+    stroke.from = from;
+    stroke.to = to;
+    ground.emplace(run.place.tooth, stroke);
+  }
+  return ground;
 }
 
 void RunStrokes::addPose(const Part& part, const Axes& actual) {
@@ -265,6 +309,7 @@ GroundCutter RunStrokes::relieved(const std::vector<const RunStroke*>& kept) con
 }
 
 GroundCutter RunStrokes::cutter() const {
+  if (job_.isStraight()) return before_ ? *before_ : groundCutterOf(job_);
   std::vector<const RunStroke*> deepest_first;
   for (const RunStroke& stroke : strokes_) deepest_first.push_back(&stroke);
   std::stable_sort(deepest_first.begin(), deepest_first.end(),

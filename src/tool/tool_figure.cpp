@@ -89,13 +89,15 @@ constexpr Measurement kMeasurements[]{
      [](const Place& p) { return ifSecondary(p, cutterOf(p).second_clearance); },
      [](const Place& p) { return cutterOf(p).clearance_tolerance; }},
     {ToolFigure::kPrimary, [](const Place& p) { return ofRelief(p, &ReliefSection::land); }, askedPrimary,
-     [](const Place& p) { return std::max(kLandPart * askedPrimary(p).value_or(0), kLeastLandOff); }},
+     [](const Place& p) { return widthTolerance(askedPrimary(p).value_or(0)); }},
     {ToolFigure::kEdgeDiameter,
      [](const Place& p) { return p.tooth().relief ? FigureValue(2 * p.tooth().relief->edge_radius) : std::nullopt; },
      [](const Place& p) -> FigureValue { return 2 * p.section.radius; },
      [](const Place&) { return 2 * kMostUndercut; }},
 };
-static_assert(isInOrder(kMeasurements) && std::size(kMeasurements) == std::size(kToolFigures));
+/// Of the figures before those of the end, see figuresOf() of a GroundEnd.
+static_assert(isInOrder(kMeasurements) &&
+              std::size(kMeasurements) == static_cast<std::size_t>(ToolFigure::kEndClearance));
 
 const Measurement& of(ToolFigure figure) { return kMeasurements[static_cast<std::size_t>(figure)]; }
 
@@ -124,6 +126,7 @@ void add(GroundFigure& figure, double value, const Place& p) {
 
 FigureValue measured(ToolFigure figure, const FigurePlace& place) { return of(figure).measured(place); }
 FigureValue asked(ToolFigure figure, const FigurePlace& place) { return of(figure).asked(place); }
+double widthTolerance(double width) noexcept { return std::max(kLandPart * width, kLeastLandOff); }
 double tolerance(ToolFigure figure, const FigurePlace& place) { return of(figure).tolerance(place); }
 
 bool isAsAsked(ToolFigure figure, const FigurePlace& place) {
@@ -134,6 +137,7 @@ bool isAsAsked(ToolFigure figure, const FigurePlace& place) {
 CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& sections) {
   CutterFigures figures;
   for (const ToolFigureRow& row : kToolFigures) {
+    if (row.of == StrokeForm::kStraight) continue;
     std::optional<GroundFigure> figure;
     for (const GroundSection& section : sections) {
       for (std::size_t tooth = 0; tooth < section.teeth.size(); ++tooth) {

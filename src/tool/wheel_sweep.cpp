@@ -35,7 +35,7 @@ void requireFinite(const char* name, double value) { require(std::isfinite(value
 }  // namespace
 
 PathDeviation between(const PathDeviation& a, const PathDeviation& b, double part) noexcept {
-  return {a.y + part * (b.y - a.y), a.z + part * (b.z - a.z), a.a + part * (b.a - a.a)};
+  return {a.y + part * (b.y - a.y), a.z + part * (b.z - a.z), a.a + part * (b.a - a.a), a.x + part * (b.x - a.x)};
 }
 
 PathDeviation deviationAt(const std::vector<PathDeviation>& all, const Range& range, double x) noexcept {

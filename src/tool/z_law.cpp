@@ -60,8 +60,9 @@ std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
     for (std::size_t tooth = 0; tooth < angles.size(); ++tooth) {
       const auto& edge = section.teeth[tooth].edge;
       if (!edge) {
-        throw ReasonError(otherReason("tooth " + std::to_string(tooth + 1) + " has no edge at X = " +
-                                      text(Quantity{section.x, Unit::kMetre}) + ": a relief has nothing to follow"));
+        throw ReasonError(otherReason("tooth " + std::to_string(tooth + 1) +
+                                      " has no edge at X = " + text(Quantity{section.x, Unit::kMetre}) +
+                                      ": other operations have nothing to follow"));
       }
       angles[tooth][i] = *edge - cutter.teeth()[tooth].angle;
     }
@@ -76,13 +77,13 @@ std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
       place->second = meanSpiral(ConicalCutter(own), 0, own.flute_length, turn);
     }
     own.spiral_angle = place->second;
-    edges.push_back({own.spiral_angle, aheadOf(ConicalCutter(own), flutes, angles[tooth])});
+    edges.push_back({own.spiral_angle, angles[tooth].front(), aheadOf(ConicalCutter(own), flutes, angles[tooth])});
   }
   return edges;
 }
 
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
-  if (job.relief(0) != nullptr) {
+  if (job->process().kind != OperationKind::kFlute) {
     const ValidJob flutes = withLaws(ValidJob(job->ofOperation(0)), watch);
     return job.withEdges(flutes, edgesOf(flutes));
   }

@@ -64,6 +64,7 @@ enum class ReasonKind : std::uint8_t {
   kSlow,      ///< the control loop's cycles take `value` on average, allowed `limit`
   kSecondClearance,  ///< like kClearance, for the secondary relief where it begins
   kPrimaryLand,      ///< the primary relief is `value` wide, the asked one `limit`, within `low`; at `x` of `tooth`
+  kEnd,              ///< `detail` of `tooth` is `value`, the asked one `limit`, within `low`; at `x` from the axis
 };
 
 /// Each kind's name is the message constant in lower case.
@@ -139,6 +140,8 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kPrimaryLand, "primary_land"},
      "{cutter.land} = {limit} there: the primary relief of tooth {tooth} is left {value} wide at X = {x}; allowed: "
      "within {low} of it; change the set-up of the secondary relief"},
+    {{ReasonKind::kEnd, "end"},
+     "the {detail} of tooth {tooth} is {value}, {x} from the axis; allowed: within {low} of {limit}"},
 };
 constexpr auto& rowsOf(ReasonKind) noexcept { return kReasonKinds; }
 constexpr int kReasonKindCount = countOf<ReasonKind>();
@@ -157,7 +160,7 @@ struct Reason {
   MoveKind move = MoveKind::kLift;
   int tooth = 0;            ///< from 0
   int pass = 0;             ///< from 0
-  double x = 0;             ///< along the cutter [m]
+  double x = 0;             ///< along the cutter; for kEnd, distance from its axis [m]
   std::uint64_t cycle = 0;  ///< cycle of the setpoint, for limits and kTolerance; of the last one, for kUnderrun
   std::uint64_t count = 0;  ///< number of violating setpoints, of which this is the worst; passes, for kTooLong
 };

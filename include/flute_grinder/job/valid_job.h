@@ -47,6 +47,7 @@ struct StrokeLaw {
 /// The helix through the ends of a tooth's ground edge.
 struct EdgeHelix {
   double spiral_angle = 0;  ///< [rad]
+  double at_end = 0;        ///< angle of the edge at the small end, less the tooth's angle [rad]
   /// The angle by which the edge is ahead of the helix that begins at the tooth's angle: the middle of its extremes
   /// along the flute [rad].
   double ahead = 0;
@@ -91,6 +92,8 @@ class ValidJob {
   /// The passes of all teeth, in grinding order.
   const std::vector<JobPass>& passes() const noexcept { return content_->passes; }
   double deepest() const noexcept { return content_->deepest; }  ///< maximum of depths() [m]
+  /// The wheel's wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
+  std::vector<double> wearOfTeeth() const;
 
   /// The strokes of a tooth.
   /// @throw std::invalid_argument if the job is a relief, and withEdges() has not been called.
@@ -114,18 +117,22 @@ class ValidJob {
 
   /// Whether the strokes are straight, at constant A, and so have a faceStroke() and no laws.
   bool isStraight() const noexcept { return grinder::isStraight(content_->job.process().kind); }
-  /// The stroke of a pass of an operation on the end, with A of the tooth.
+  /// The stroke of a pass of an operation on the end, with A of the tooth's edge.
   /// @param depth, wear as for depthLaw() [m].
-  FaceStroke faceStroke(int tooth, double depth, double wear) const noexcept;
+  /// @throw std::invalid_argument if withEdges() has not been called.
+  FaceStroke faceStroke(int tooth, double depth, double wear) const;
+  /// The wheel in that stroke. @param wear wear of its radius [m].
+  FaceWheel faceWheel(double wear) const noexcept;
 
   /// The path of a relief; null for flutes.
   const ReliefPath* relief(int tooth) const noexcept;
-  /// The job of a relief together with the flutes under it, so that the reliefs follow the ground edges.
+  /// The job of a relief or of an operation on the end together with the flutes under it, so that it follows the
+  /// ground edges.
   /// @param flutes the job of the flutes, with their law of Z.
   /// @param edges the edges of all teeth.
   /// @throw InvalidJob if no relief can be ground behind these edges.
   ValidJob withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edges) const;
-  /// The flutes and the edges under a relief, after withEdges().
+  /// The flutes and the edges under another operation, after withEdges().
   const ValidJob& flutes() const { return *content_->flutes; }
   const std::vector<EdgeHelix>& edges() const { return content_->edges; }
 
@@ -140,8 +147,8 @@ class ValidJob {
     double deepest = 0;
     std::vector<ReliefPath> reliefs;         ///< reliefs of the teeth; empty for flutes
     std::vector<StrokeLaw> laws;             ///< laws of the teeth; empty until a relief's edges are computed
-    std::shared_ptr<const ValidJob> flutes;  ///< job of the flutes under a relief
-    std::vector<EdgeHelix> edges;            ///< edges of the teeth, for a relief
+    std::shared_ptr<const ValidJob> flutes;  ///< job of the flutes under another operation
+    std::vector<EdgeHelix> edges;            ///< edges of the teeth, for another operation
   };
 
   /// Computes the reliefs behind the edges, and their depths.

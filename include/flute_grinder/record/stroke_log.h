@@ -28,6 +28,7 @@ class StrokeLog {
  public:
   /// Makes a log for an unknown job: without depth and deviation, and with the overtravel counted as flute.
   StrokeLog() = default;
+  /// The straight strokes of an operation on the end have no deviation.
   explicit StrokeLog(const ValidJob& job);
 
   /// Adds a setpoint of a stroke. @param time time since the start [s].

@@ -10,7 +10,7 @@ namespace grinder {
 struct Gouge {
   ToothPass place;
   MoveKind move = MoveKind::kStroke;
-  double x = 0;      ///< X of the section in which the gouge is deepest [m]
+  double x = 0;      ///< X of the section in which the gouge is deepest; 0 on the end [m]
   double depth = 0;  ///< depth normal to the asked flute [m]
 };
 

@@ -36,7 +36,7 @@ GrindStroke strokeOf(const ValidJob& job, int tooth, double depth, double wear);
 WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStroke& stroke);
 
 /// The cutter that a job grinds: each tooth's deepest pass with the wheel's wear at that time. The passes before it
-/// remove nothing more.
+/// remove nothing more. An operation on the end leaves flutes and reliefs as they are.
 /// @throw like wheelOf() and ValidJob::zCorrectionOf().
 GroundCutter groundCutterOf(const ValidJob& job);
 
@@ -56,7 +56,8 @@ struct CutterCheck {
 /// core is whole, rake, chordal rake, spiral angle and core are within the job's tolerances, and the flutes are
 /// complete over their length unless the job allows otherwise. The spiral tolerance applies to the edge's angle in each
 /// section and to its turn from each section to the next, so the edge leaves the asked helix by no more than a helix at
-/// the tolerance would. The asked core is linear between the diameters at the ends. Takes some milliseconds.
+/// the tolerance would. The asked core is linear between the diameters at the ends. For an operation on the end, the
+/// end is measured instead, see checkGroundEnd(). Takes some milliseconds.
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter);
 
 /// Checks the cutter that a job grinds; teeth share a flute if the difference of the wheel's wear between them does not

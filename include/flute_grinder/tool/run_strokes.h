@@ -19,7 +19,7 @@ namespace grinder {
 struct RunStroke {
   ToothPass place;
   MoveKind move = MoveKind::kStroke;
-  Range range;                            ///< range of X [m]
+  Range range;                            ///< range of X; of a straight stroke, of the way from its beginning [m]
   std::vector<PathDeviation> deviations;  ///< deviations, see GrindStroke
 };
 
@@ -60,8 +60,11 @@ class RunStrokes {
   /// The volume that the wheel removed in a stroke, as if the tooth were at angle 0.
   WheelSweep sweep(const RunStroke& stroke) const;
 
+  /// The deepest strokes of a run on the end, as the mean of their positions has them, by the number of the tooth.
+  std::multimap<int, FaceStroke> straightStrokes() const;
+
   /// The ground cutter; a tooth without a stroke removes nothing. Strokes that another one covers are left out, since
-  /// they cost time and remove nothing more.
+  /// they cost time and remove nothing more. Strokes on the end leave it as it was before.
   GroundCutter cutter() const;
 
  private:
@@ -84,14 +87,21 @@ class RunStrokes {
     std::vector<Axes> at;
   };
   /// The job's deepest path for a tooth.
-  struct Path {
+  class Path {
+   public:
     Path(const ValidJob& job, int tooth, double wear);
-    PathDeviation deviation(double x, const Axes& at) const;
+    /// The place on the path of a position: its X, or the way along a straight stroke [m].
+    double placeOf(const Axes& at) const;
+    PathDeviation deviation(double place, const Axes& at) const;
+    /// Whether the stroke begins at the least place.
+    bool rises() const { return straight_ || stroke_.from < stroke_.to; }
 
-    ConicalCutter cutter;
-    LogCurve curve;
-    GrindStroke stroke;
-    double angle;
+   private:
+    ConicalCutter cutter_;
+    LogCurve curve_;
+    GrindStroke stroke_;
+    double angle_ = 0;
+    std::optional<FaceStroke> straight_;
   };
 
   /// The cutter with the strokes of a relief, on top of the preceding operations.
@@ -101,7 +111,7 @@ class RunStrokes {
   void requirePlace(const ToothPass& place, const std::string& what) const;
   double depthOf(const RunStroke& s) const { return job_.depths()[static_cast<std::size_t>(s.place.pass)]; }
   void take(const Part& part, const Axes& actual);
-  void beginStroke(const ToothPass& place, double x);
+  void beginStroke(const ToothPass& place, const Axes& actual);
   /// Whether a stroke begins at the last position: at the end of its infeed, which is the end of its path.
   bool fedInBefore(const Part& part, const Axes& actual) const;
   void sample(const Axes& actual);

@@ -26,6 +26,16 @@ enum class ToolFigure : std::uint8_t {
   kSecondClearance,
   kPrimary,
   kEdgeDiameter,
+  kEndClearance,
+  kEndDish,
+  kEndSecondClearance,
+  kEndLand,
+  kEndRake,
+  kUncutDiameter,
+  kPeripheryFrom,
+  kChamferWidth,
+  kChamferAngle,
+  kChamferClearance,
 };
 
 /// A figure with its name in files, which is the message constant in lower case.
@@ -33,25 +43,76 @@ struct ToolFigureRow : EnumRow<ToolFigure> {
   const char* words = "";  ///< name in texts
   Unit unit = Unit::kNone;
   ReasonKind reason = ReasonKind::kNone;  ///< reason for refusing a plan; none if another check covers it
-  bool of_relief = false;                 ///< whether it is judged for reliefs, rather than for flutes
+  StrokeForm of = StrokeForm::kFlute;     ///< the operations for which it is judged
   bool of_complete = false;               ///< whether it counts only where the flute is complete
 };
 
 inline constexpr ToolFigureRow kToolFigures[]{
-    {{ToolFigure::kRake, "rake"}, "rake", Unit::kRadian, ReasonKind::kRake, false, true},
-    {{ToolFigure::kChordalRake, "chordal_rake"}, "chordal rake", Unit::kRadian, ReasonKind::kChordalRake, false, true},
-    {{ToolFigure::kSpiral, "spiral"}, "spiral angle", Unit::kRadian, ReasonKind::kSpiral, false, true},
-    {{ToolFigure::kOffHelix, "off_helix"}, "off the helix", Unit::kRadian, ReasonKind::kNone, false, true},
+    {{ToolFigure::kRake, "rake"}, "rake", Unit::kRadian, ReasonKind::kRake, StrokeForm::kFlute, true},
+    {{ToolFigure::kChordalRake, "chordal_rake"},
+     "chordal rake",
+     Unit::kRadian,
+     ReasonKind::kChordalRake,
+     StrokeForm::kFlute,
+     true},
+    {{ToolFigure::kSpiral, "spiral"}, "spiral angle", Unit::kRadian, ReasonKind::kSpiral, StrokeForm::kFlute, true},
+    {{ToolFigure::kOffHelix, "off_helix"}, "off the helix", Unit::kRadian, ReasonKind::kNone, StrokeForm::kFlute, true},
     {{ToolFigure::kCoreDiameter, "core_diameter"}, "core diameter", Unit::kMetre},
     {{ToolFigure::kLand, "land"}, "land", Unit::kMetre},
-    {{ToolFigure::kClearance, "clearance"}, "clearance", Unit::kRadian, ReasonKind::kClearance, true},
+    {{ToolFigure::kClearance, "clearance"}, "clearance", Unit::kRadian, ReasonKind::kClearance, StrokeForm::kRelief},
     {{ToolFigure::kSecondClearance, "second_clearance"},
      "second clearance",
      Unit::kRadian,
      ReasonKind::kSecondClearance,
-     true},
-    {{ToolFigure::kPrimary, "primary"}, "primary relief", Unit::kMetre, ReasonKind::kPrimaryLand, true},
-    {{ToolFigure::kEdgeDiameter, "edge_diameter"}, "edge diameter", Unit::kMetre, ReasonKind::kUndercut, true},
+     StrokeForm::kRelief},
+    {{ToolFigure::kPrimary, "primary"}, "primary relief", Unit::kMetre, ReasonKind::kPrimaryLand, StrokeForm::kRelief},
+    {{ToolFigure::kEdgeDiameter, "edge_diameter"},
+     "edge diameter",
+     Unit::kMetre,
+     ReasonKind::kUndercut,
+     StrokeForm::kRelief},
+    {{ToolFigure::kEndClearance, "end_clearance"},
+     "clearance of the end",
+     Unit::kRadian,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kEndDish, "end_dish"}, "dish of the end", Unit::kRadian, ReasonKind::kEnd, StrokeForm::kStraight},
+    {{ToolFigure::kEndSecondClearance, "end_second_clearance"},
+     "second clearance of the end",
+     Unit::kRadian,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kEndLand, "end_land"},
+     "primary flank of the end",
+     Unit::kMetre,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kEndRake, "end_rake"}, "rake of the gash", Unit::kRadian, ReasonKind::kEnd, StrokeForm::kStraight},
+    {{ToolFigure::kUncutDiameter, "uncut_diameter"},
+     "uncut diameter",
+     Unit::kMetre,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kPeripheryFrom, "periphery_from"},
+     "edge that the end takes off the periphery",
+     Unit::kMetre,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kChamferWidth, "chamfer_width"},
+     "width of the chamfer",
+     Unit::kMetre,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kChamferAngle, "chamfer_angle"},
+     "angle of the chamfer",
+     Unit::kRadian,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
+    {{ToolFigure::kChamferClearance, "chamfer_clearance"},
+     "clearance of the chamfer",
+     Unit::kRadian,
+     ReasonKind::kEnd,
+     StrokeForm::kStraight},
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 
@@ -78,6 +139,9 @@ FigureValue asked(ToolFigure figure, const FigurePlace& place);
 /// Tolerance of the asked value, to either side.
 double tolerance(ToolFigure figure, const FigurePlace& place);
 
+/// Tolerance of a land's or a chamfer's width [m].
+double widthTolerance(double width) noexcept;
+
 /// Whether a figure is measured there, and is within its tolerance or not asked.
 bool isAsAsked(ToolFigure figure, const FigurePlace& place);
 
@@ -85,7 +149,7 @@ bool isAsAsked(ToolFigure figure, const FigurePlace& place);
 struct GroundFigure {
   struct At {
     double value = 0;
-    double x = 0;   ///< along the cutter's axis [m]
+    double x = 0;   ///< along the cutter's axis; of a figure of the end, the distance from it [m]
     int tooth = 0;  ///< from 0
   };
 
@@ -98,6 +162,10 @@ struct GroundFigure {
 /// The figures of a tool that have values, in the order of the table.
 using CutterFigures = std::vector<GroundFigure>;
 CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& sections);
+
+/// The figures that a job of an operation on the end asks for, without values.
+/// @param job from withLaws().
+CutterFigures askedOfEnd(const ValidJob& job);
 
 /// The figure in a list; null if it is not there.
 const GroundFigure* find(const CutterFigures& figures, ToolFigure figure);

@@ -17,9 +17,10 @@ struct WheelSetup {
   double x_shift = 0;  ///< shift of A's curve along X, see LogCurve [m]
 };
 
-/// Deviations of the axes from the job's path at an X.
+/// Deviations of the axes from the job's path at an X, or at a place of a straight stroke.
 struct PathDeviation {
   double y = 0, z = 0, a = 0;  ///< [m], A [rad]
+  double x = 0;                ///< only of a straight stroke [m]
 };
 
 /// Interpolates linearly.

@@ -5,7 +5,14 @@ import math
 
 def process_of(file):
     """The operation of a job's file that was ground."""
-    return next(each for each in file['operations'] if each.get('relief', each['kind']) == file['operation'])
+    return next(each for each in file['operations'] if name_of(each) == file['operation'])
+
+
+def name_of(operation):
+    """The name of an operation on the command line."""
+    if operation['kind'] == 'end':
+        return 'end_' + operation['relief']
+    return operation.get('relief', operation['kind'])
 
 
 def spiral_angles(cutter):

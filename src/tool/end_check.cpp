@@ -1,0 +1,284 @@
+#include "tool/end_check.h"
+
+#include "flute_grinder/curve/log_curve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
+constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
+constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
+constexpr double kTouched = 5e-6;    ///< length of the periphery's edge that counts as untouched [m]
+constexpr double kInside = 1e-6;     ///< part of the radius by which the periphery's edge is looked for within it
+constexpr double kAlike = 1e-9;      ///< difference of pitch and wear between teeth that are alike [m], [rad]
+
+/// What is measured of an end tooth, at one of its distances from the axis.
+struct EndPlace {
+  const CutterGeometry& cutter;
+  EndSection at;
+  double uncut = 0;      ///< diameter outside which the edge is whole [m]
+  double periphery = 0;  ///< see ToolFigure::kPeripheryFrom [m]
+  std::optional<ChamferFigures> chamfer;
+};
+
+/// A figure of the end, with the operation from which on it is asked.
+struct EndMeasurement {
+  ToolFigure figure;
+  OperationKind since;
+  FigureValue (*measured)(const EndPlace&);
+  double (*asked)(const CutterGeometry&);
+  double (*tolerance)(const CutterGeometry&);
+};
+
+double clearanceTolerance(const CutterGeometry& c) { return c.end_clearance_tolerance; }
+
+constexpr EndMeasurement kEndMeasurements[]{
+    {ToolFigure::kEndClearance, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.at.clearance; },
+     [](const CutterGeometry& c) { return c.end_clearance; }, clearanceTolerance},
+    {ToolFigure::kEndDish, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.at.dish; },
+     [](const CutterGeometry& c) { return c.end_dish; }, clearanceTolerance},
+    {ToolFigure::kEndSecondClearance, OperationKind::kSecondaryEnd,
+     [](const EndPlace& p) { return p.at.second_clearance; },
+     [](const CutterGeometry& c) { return c.end_second_clearance; }, clearanceTolerance},
+    {ToolFigure::kEndLand, OperationKind::kSecondaryEnd, [](const EndPlace& p) { return p.at.land; },
+     [](const CutterGeometry& c) { return c.end_land; },
+     [](const CutterGeometry& c) { return widthTolerance(c.end_land); }},
+    {ToolFigure::kEndRake, OperationKind::kGash, [](const EndPlace& p) { return p.at.rake; },
+     [](const CutterGeometry& c) { return c.end_rake; }, [](const CutterGeometry& c) { return c.end_rake_tolerance; }},
+    {ToolFigure::kUncutDiameter, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.uncut); },
+     [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
+    {ToolFigure::kPeripheryFrom, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
+     [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
+    {ToolFigure::kChamferWidth, OperationKind::kChamfer,
+     [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
+     [](const CutterGeometry& c) { return c.chamfer_width; },
+     [](const CutterGeometry& c) { return widthTolerance(c.chamfer_width); }},
+    {ToolFigure::kChamferAngle, OperationKind::kChamfer,
+     [](const EndPlace& p) { return p.chamfer ? FigureValue(p.chamfer->angle) : std::nullopt; },
+     [](const CutterGeometry& c) { return c.chamfer_angle; }, clearanceTolerance},
+    {ToolFigure::kChamferClearance, OperationKind::kChamfer,
+     [](const EndPlace& p) { return p.chamfer ? FigureValue(p.chamfer->clearance) : std::nullopt; },
+     [](const CutterGeometry& c) { return c.chamfer_clearance; }, clearanceTolerance},
+};
+
+EndFace faceOf(OperationKind kind) {
+  switch (kind) {
+    case OperationKind::kPrimaryEnd: return EndFace::kPrimary;
+    case OperationKind::kSecondaryEnd: return EndFace::kSecondary;
+    case OperationKind::kChamfer: return EndFace::kChamfer;
+    default: return EndFace::kGash;
+  }
+}
+
+using EndStrokes = std::multimap<int, FaceStroke>;
+
+/// The deepest strokes of a job, by the number of the tooth.
+EndStrokes strokesOf(const ValidJob& job) {
+  const std::vector<double> wear = job.wearOfTeeth();
+  EndStrokes strokes;
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+    strokes.emplace(tooth, job.faceStroke(tooth, job.deepest(), wear[static_cast<std::size_t>(tooth)]));
+  }
+  return strokes;
+}
+
+void addCuts(const ValidJob& job, const EndStrokes& strokes, std::vector<EndCut>& cuts) {
+  const std::vector<double> wear = job.wearOfTeeth();
+  for (const auto& [tooth, stroke] : strokes) {
+    const auto i = static_cast<std::size_t>(tooth);
+    cuts.push_back(
+        {i, faceOf(job->process().kind),
+         FaceSweep(stroke, job.faceWheel(wear[i]), wheelOf(*job).worn(wear[i]), job->cutter.end_diameter / 2, 0)});
+  }
+}
+
+/// The job of the primary flank after a gash; nothing if there is none that can be ground yet.
+std::optional<ValidJob> flankAfter(const ValidJob& job) {
+  const auto next = static_cast<std::size_t>(job->operation) + 1;
+  const bool follows = job->process().kind == OperationKind::kGash && next < job->operations.size() &&
+                       job->operations[next].kind == OperationKind::kPrimaryEnd;
+  if (!follows) return std::nullopt;
+  try {
+    return ValidJob(job->ofOperation(job->operation + 1)).withEdges(job.flutes(), job.edges());
+  } catch (const InvalidJob&) {  // it is not set up yet, and says so when it is planned
+    return std::nullopt;
+  }
+}
+
+GroundEnd groundEndOf(const ValidJob& job, const EndStrokes& own, const std::optional<ValidJob>& next) {
+  std::vector<EndCut> cuts;
+  double stock = 0;
+  for (int i = 1; i <= job->operation; ++i) {
+    const GrindProcess& process = job->operations[static_cast<std::size_t>(i)];
+    if (!isStraight(process.kind)) continue;
+    stock = std::max(stock, process.stock);
+    if (i == job->operation) {
+      addCuts(job, own, cuts);
+      continue;
+    }
+    const ValidJob before = ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
+    addCuts(before, strokesOf(before), cuts);
+  }
+  if (next) addCuts(*next, strokesOf(*next), cuts);
+  std::vector<double> angles = job->tooth_angles;
+  for (std::size_t i = 0; i < angles.size(); ++i) angles[i] += job.edges()[i].at_end;
+  return {job->cutter.end_diameter / 2,           job->cutter.cut, std::move(angles), std::move(cuts), -stock,
+          EndFlutes(groundCutterOf(job.flutes()))};
+}
+
+/// Whether an operation is the job's or before it in the list.
+bool isDone(const ValidJob& job, OperationKind kind) {
+  const auto last = job->operations.begin() + job->operation + 1;
+  return std::any_of(job->operations.begin(), last, [kind](const GrindProcess& p) { return p.kind == kind; });
+}
+
+/// Whether edges of end teeth are measured: they are there, or a primary flank will make them.
+bool hasEdges(const ValidJob& job, const std::optional<ValidJob>& next) {
+  return next || isDone(job, OperationKind::kPrimaryEnd);
+}
+
+/// A figure is asked once its operation is done.
+bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
+  if (m.figure == ToolFigure::kPeripheryFrom) return true;
+  return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : isDone(job, m.since);
+}
+
+GroundFigure askedFigure(const EndMeasurement& m, const CutterGeometry& cutter) {
+  const double asked = m.asked(cutter);
+  return {m.figure, {}, {}, Range{asked, asked}, m.tolerance(cutter)};
+}
+
+/// Measures a tooth, and keeps its figures and the faults.
+class EndCheck {
+ public:
+  EndCheck(const ValidJob& job, const EndStrokes& strokes)
+      : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
+
+  void measure(std::size_t tooth) {
+    EndPlace place{cutter_, {}, 0, periphery(tooth), {}};
+    const double radius = cutter_.end_diameter / 2;
+    const bool has_edge = hasEdges(job_, next_);
+    const double whole = has_edge ? end_.wholeFrom(tooth).value_or(radius) : 0;
+    place.uncut = 2 * whole;
+    if (isDone(job_, OperationKind::kChamfer)) place.chamfer = end_.chamfer(tooth);
+    const double inner = std::max(whole, cutter_.end_uncut_diameter / 2) + kBeyond;
+    const double outer = kOutermost * (radius - (place.chamfer ? place.chamfer->width : 0));
+    for (int i = 0; i < kEndSections && inner < outer; ++i) {
+      const double r = inner + (outer - inner) * i / (kEndSections - 1);
+      place.at = has_edge ? end_.section(tooth, r) : EndSection{};
+      place.at.r = r;
+      if (!has_edge) place.at.rake = end_.rake(tooth, r, (radius - r) * std::tan(cutter_.end_dish), 0);
+      take(place, tooth);
+    }
+    if (!(inner < outer)) take(place, tooth);
+  }
+
+  CutterCheck result() {
+    for (const EndMeasurement& m : kEndMeasurements) {
+      if (!isAsked(m, job_, next_) || find(figures_, m.figure) != nullptr) continue;
+      reasons_.push_back(
+          otherReason(std::string("the ") + rowOf(m.figure).words + " cannot be measured: nothing is left of it"));
+    }
+    return {std::nullopt, std::move(reasons_), std::move(figures_), {}};
+  }
+
+ private:
+  /// The length of the periphery's edge, behind the chamfer, that is taken away.
+  double periphery(std::size_t tooth) const {
+    CutterGeometry own = cutter_;
+    own.spiral_angle = job_.edges()[tooth].spiral_angle;
+    const ConicalCutter cutter(own);
+    const LogCurve helix(cutter);
+    const double behind = (cutter_.cut == CutDirection::kRightHand ? kTouched : -kTouched) / cutter.radius(0);
+    const double chamfer =
+        isDone(job_, OperationKind::kChamfer) ? cutter_.chamfer_width / std::tan(cutter_.chamfer_angle) : 0;
+    const double begin = chamfer + widthTolerance(chamfer), end = begin + cutter.radius(0);
+    double taken = 0;
+    for (double x = begin; x < end; x += kTouched) {
+      if (end_.isRemovedOnEnd(tooth, cutter.radius(x) * (1 - kInside), helix.a(x) + behind, x)) taken = x - begin;
+    }
+    return taken;
+  }
+
+  void take(const EndPlace& place, std::size_t tooth) {
+    for (const EndMeasurement& m : kEndMeasurements) {
+      if (!isAsked(m, job_, next_)) continue;
+      const FigureValue value = m.measured(place);
+      if (value) add(m, *value, place.at.r, static_cast<int>(tooth));
+    }
+  }
+
+  void add(const EndMeasurement& m, double value, double r, int tooth) {
+    const GroundFigure::At at{value, r, tooth};
+    const auto known = std::find_if(figures_.begin(), figures_.end(),
+                                    [&](const GroundFigure& figure) { return figure.figure == m.figure; });
+    if (known == figures_.end()) {
+      GroundFigure& figure = figures_.emplace_back(askedFigure(m, cutter_));
+      figure.least = figure.largest = at;
+    } else {
+      if (value < known->least.value) known->least = at;
+      if (value > known->largest.value) known->largest = at;
+    }
+    const double asked = m.asked(cutter_), tolerance = m.tolerance(cutter_);
+    const auto is_same = [&](const Reason& reason) { return reason.detail == rowOf(m.figure).words; };
+    if (std::abs(value - asked) <= tolerance || std::any_of(reasons_.begin(), reasons_.end(), is_same)) return;
+    Reason& reason = reasons_.emplace_back(
+        Reason{ReasonKind::kEnd, 0, "", rowOf(m.figure).words, rowOf(m.figure).unit, value, tolerance, asked});
+    reason.x = r;
+    reason.tooth = tooth;
+  }
+
+  const ValidJob& job_;
+  const std::optional<ValidJob> next_;
+  const GroundEnd end_;
+  const CutterGeometry& cutter_;
+  std::vector<Reason> reasons_;
+  CutterFigures figures_;
+};
+
+/// Whether all teeth have the pitch, the wear and the place on their flutes of the first.
+bool areAlike(const ValidJob& job) {
+  const std::vector<double> wear = job.wearOfTeeth();
+  const double pitch = endToothOf(*job, 0).pitch;
+  for (std::size_t i = 1; i < wear.size(); ++i) {
+    const double off = std::max({std::abs(endToothOf(*job, static_cast<int>(i)).pitch - pitch),
+                                 std::abs(wear[i] - wear[0]), std::abs(job.edges()[i].at_end - job.edges()[0].at_end)});
+    if (!(off <= kAlike)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+CutterFigures askedOfEnd(const ValidJob& job) {
+  const std::optional<ValidJob> next = flankAfter(job);
+  CutterFigures figures;
+  for (const EndMeasurement& m : kEndMeasurements) {
+    if (isAsked(m, job, next)) figures.push_back(askedFigure(m, job->cutter));
+  }
+  return figures;
+}
+
+GroundEnd groundEndOf(const ValidJob& job) { return groundEndOf(job, strokesOf(job), std::nullopt); }
+
+CutterCheck checkGroundEnd(const RunStrokes& run) {
+  EndCheck check(run.job(), run.straightStrokes());
+  for (std::size_t tooth = 0; tooth < run.job()->tooth_angles.size(); ++tooth) check.measure(tooth);
+  return check.result();
+}
+
+CutterCheck checkGroundEnd(const ValidJob& job) {
+  EndCheck check(job, strokesOf(job));
+  const std::size_t teeth = areAlike(job) ? 1 : job->tooth_angles.size();
+  for (std::size_t tooth = 0; tooth < teeth; ++tooth) check.measure(tooth);
+  return check.result();
+}
+
+}  // namespace grinder

@@ -106,8 +106,6 @@ std::optional<OffsetMismatch> mismatch(int axis, const WorkOffsets& offsets, con
   return refused(set + "; this job has " + differs);
 }
 
-const char* wordsOf(int operation) { return rowOf(static_cast<OperationKind>(operation)).words; }
-
 /// The mismatch of A with an operation after the flutes, or of an operation that is already ground.
 std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const OffsetBasis& job) {
   const auto refused = [](const std::string& set, const std::string& asked, const std::string& reason) {
@@ -115,21 +113,20 @@ std::optional<OffsetMismatch> mismatchOfTeeth(const WorkOffsets& offsets, const 
   };
   const ClampedTool& tool = offsets.tool;
   const bool same = !job.tool_digest.empty() && tool.digest == job.tool_digest;
-  if (same && tool.isGround(job.operation)) {
-    const std::string ground = std::string("operation ") + wordsOf(job.operation) + " is ground on this tool already";
+  if (same && tool.isGround(job.kind)) {
+    const std::string ground = std::string("operation ") + rowOf(job.kind).words + " is ground on this tool already";
     return refused(ground, "another blank", ground + "; if another blank is clamped, say so: grind reclamped");
   }
-  if (job.operation == 0) return std::nullopt;
+  if (job.kind == OperationKind::kFlute) return std::nullopt;
   if (!same) {
     const std::string is = tool.digest.empty() ? toolText(tool) : "A is as for " + toolText(tool);
     return refused(is, "A as the flutes were ground, or probed on a tooth",
                    "where the teeth of this tool are is not known: " + is + "; probe a tooth: grind probe tooth");
   }
   // After probing a tooth, it is unknown which operations are ground.
-  const int before = job.operation - 1;
   const bool probed = offsets.axes[kA].basis.method == OffsetMethod::kProbe;
-  if (tool.isGround(before) || probed) return std::nullopt;
-  const std::string missing = std::string("operation ") + wordsOf(before) + " is not ground on this tool";
+  if (tool.isGround(job.before) || probed) return std::nullopt;
+  const std::string missing = std::string("operation ") + rowOf(job.before).words + " is not ground on this tool";
   return refused(missing, "ground", missing);
 }
 
@@ -149,8 +146,8 @@ std::string toolText(const ClampedTool& tool) {
   if (tool.digest.empty()) return rowOf(tool.unknown).reason;
   const std::string of = tool.job_name.empty() ? "another tool" : tool.job_name;
   std::string ground;
-  for (int i = 0; i < countOf<OperationKind>(); ++i) {
-    if (tool.isGround(i)) ground += (ground.empty() ? "" : ", ") + std::string(wordsOf(i));
+  for (const OperationRow& row : kOperationKinds) {
+    if (tool.isGround(row.value)) ground += (ground.empty() ? "" : ", ") + std::string(row.words);
   }
   return of + (ground.empty() ? "" : " with " + ground);
 }

@@ -7,6 +7,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 
+#include <algorithm>
 #include <filesystem>
 
 namespace grinder {
@@ -33,6 +34,8 @@ To convertedBasis(const From& from) {
   to.swivel = from.swivel;
   to.height = from.height;
   to.tool_digest = from.tool_digest;
+  to.kind = static_cast<decltype(to.kind)>(from.kind);
+  to.before = static_cast<decltype(to.before)>(from.before);
   return to;
 }
 
@@ -59,7 +62,8 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   basis.wheel_name = goal.wheel_name.empty() ? described(job.process()) : goal.wheel_name;
   basis.wheel_digest = wheelDigest(job);
   basis.tool_digest = toolDigest(job);
-  basis.operation = job.operation;
+  basis.kind = job.process().kind;
+  basis.before = job.operations[static_cast<std::size_t>(std::max(job.operation - 1, 0))].kind;
   basis.end_diameter = goal.cutter.end_diameter;
   basis.wheel_diameter = processOf(goal).wheel_diameter;
   basis.wheel_width = processOf(goal).wheel_width;
@@ -84,14 +88,12 @@ Json toJson(const OffsetBasis& basis) {
 flute_grinder::OffsetBasis toMessage(const OffsetBasis& basis) {
   auto message = convertedBasis<OffsetBasis, flute_grinder::OffsetBasis>(basis);
   message.method = static_cast<std::uint8_t>(basis.method);
-  message.operation = static_cast<std::uint16_t>(basis.operation);
   return message;
 }
 
 OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message) {
   auto basis = convertedBasis<flute_grinder::OffsetBasis, OffsetBasis>(message);
   if (message.method < countOf<OffsetMethod>()) basis.method = static_cast<OffsetMethod>(message.method);
-  basis.operation = message.operation;
   return basis;
 }
 

@@ -147,8 +147,8 @@ std::vector<Need> GoalServer::needsOf(const Goal& goal, const WorkOffsets& offse
   };
   add(tracker_.need(digest, firstOf(asked)));
   add(tracker_.offsetNeed(digest, firstOf(asked), offsets));
-  // A job that is continued needs only the offsets with which it began; a relief also needs edges that are still where
-  // they were.
+  // A job that is continued needs only the offsets with which it began; after the flutes, the teeth must also be
+  // where they were.
   const bool placed = asked.operation == 0 || offsets.tool.unknown != TeethUnknown::kHomed;
   if (!(placed && needs.empty() && tracker_.continues(digest, offsets))) {
     for (Need& need : grinder::needsOf(mismatches(offsets, asked))) needs.push_back(std::move(need));

@@ -35,7 +35,7 @@ void StateForm<Progress>::visit(StateFields& field, Progress& progress) {
   field("mounting", progress.mounting);
   field("clamping", progress.clamping);
   field("tool_digest", progress.tool_digest);
-  field("tool_operation", progress.tool_operation, {0, countOf<OperationKind>() - 1});
+  field("kind", progress.kind);
 }
 
 }  // namespace grinder

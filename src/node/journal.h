@@ -2,6 +2,7 @@
 
 #include "flute_grinder/control/loop_status.h"
 #include "flute_grinder/job/cutter_geometry.h"
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/tooth_pass.h"
 #include "node/state_file.h"
 
@@ -28,7 +29,7 @@ struct Progress {
   std::uint32_t mounting = 0;  ///< mounting of the wheel when the job began, see MountedWheel
   std::uint32_t clamping = 0;  ///< clamping of the tool when the job began, see ClampedTool
   std::string tool_digest;     ///< see OffsetBasis::tool_digest
-  int tool_operation = 0;      ///< see OffsetBasis::operation
+  OperationKind kind{};        ///< see OffsetBasis::kind
 };
 
 template <>

@@ -1,6 +1,7 @@
 #include "node/offset_server.h"
 
 #include "flute_grinder/WorkOffsets.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/reasons.h"
@@ -8,6 +9,7 @@
 
 #include <cmath>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 namespace grinder {
@@ -24,9 +26,10 @@ bool isDigest(const std::string& text) {
 
 /// Why this cannot be the basis of an offset; empty if it can.
 std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
-  if (basis.method >= countOf<OffsetMethod>()) {
-    return "basis.method = " + std::to_string(basis.method) + "; allowed: 0 to " +
-           std::to_string(countOf<OffsetMethod>() - 1);
+  for (const auto& [name, value, last] : {std::tuple("method", basis.method, countOf<OffsetMethod>() - 1),
+                                          std::tuple("kind", basis.kind, countOf<OperationKind>() - 1),
+                                          std::tuple("before", basis.before, countOf<OperationKind>() - 1)}) {
+    if (value > last) return format("basis.%s = %d; allowed: 0 to %d", name, value, last);
   }
   if (!isPlainName(basis.job_name)) return nameRefusal("basis.job_name", basis.job_name);
   if (!isPlainName(basis.wheel_name)) return nameRefusal("basis.wheel_name", basis.wheel_name);
@@ -224,7 +227,7 @@ void OffsetServer::noteHoming() {
 }
 
 void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
-  if (job.operation > 0) return;
+  if (job.kind != OperationKind::kFlute) return;
   note([=](WorkOffsets& offsets) {
     const bool goes_on = !whole && offsets.tool.digest == job.tool_digest;
     // The flutes ground before A was homed may have another reference than the rest.
@@ -236,11 +239,11 @@ void OffsetServer::noteGrinding(const OffsetBasis& job, bool whole) {
 void OffsetServer::noteFinished(const Progress& last) {
   if (!last.finished || last.tool_digest.empty()) return;
   const auto is_it = [=](const ClampedTool& tool) {
-    return tool.digest == last.tool_digest && tool.clamping == last.clamping && !tool.isGround(last.tool_operation);
+    return tool.digest == last.tool_digest && tool.clamping == last.clamping && !tool.isGround(last.kind);
   };
   if (!is_it(store_.offsets().tool)) return;
   note([=](WorkOffsets& offsets) {
-    if (is_it(offsets.tool)) offsets.tool.ground |= 1U << last.tool_operation;
+    if (is_it(offsets.tool)) offsets.tool.ground |= ClampedTool::bitOf(last.kind);
   });
 }
 

@@ -30,7 +30,8 @@ void StateForm<WorkOffsets>::visit(StateFields& field, WorkOffsets& offsets) {
     field(joint + "_swivel_rad", offset.basis.swivel);
     field(joint + "_height_m", offset.basis.height);
     field(joint + "_tool_digest", offset.basis.tool_digest);
-    field(joint + "_operation", offset.basis.operation);
+    field(joint + "_kind", offset.basis.kind);
+    field(joint + "_before", offset.basis.before);
   }
   field("wheel", offsets.wheel.name);
   field("wheel_digest", offsets.wheel.digest);

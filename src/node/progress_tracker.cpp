@@ -118,7 +118,7 @@ void ProgressTracker::begin(const GrindProgram& program, const std::string& dige
   progress_.mounting = offsets.wheel.mounting;
   progress_.clamping = offsets.tool.clamping;
   progress_.tool_digest = job.tool_digest;
-  progress_.tool_operation = job.operation;
+  progress_.kind = job.kind;
   write();
 }
 

@@ -5,6 +5,8 @@
 #include <QHBoxLayout>
 #include <QLabel>
 
+#include <utility>
+
 namespace grinder {
 
 OperationChoice::OperationChoice(QWidget* parent) : QWidget(parent), box_(new QComboBox) {
@@ -19,15 +21,14 @@ OperationChoice::OperationChoice(QWidget* parent) : QWidget(parent), box_(new QC
 }
 
 void OperationChoice::offer(const std::vector<GrindProcess>& operations) {
-  const bool several = operations.size() > 1;
-  const int items = several ? static_cast<int>(operations.size()) + 1 : 0;
-  // The order of operations is fixed, so an equal number means the same operations.
-  if (items == box_->count()) return;
+  std::vector<OperationKind> kinds;
+  for (const GrindProcess& operation : operations) kinds.push_back(operation.kind);
+  if (std::exchange(kinds_, kinds) == kinds) return;
+  const bool several = kinds.size() > 1;
   box_->clear();
   if (several) box_->addItem("choose");
-  for (int i = 0; i + 1 < items; ++i) {
-    const OperationKind kind = operations[static_cast<std::size_t>(i)].kind;
-    box_->addItem(QString::fromStdString(operationEntry(kind)), toString(kind));
+  for (std::size_t i = 0; several && i < kinds.size(); ++i) {
+    box_->addItem(QString::fromStdString(operationEntry(static_cast<int>(i), kinds[i])), toString(kinds[i]));
   }
   setVisible(several);
 }

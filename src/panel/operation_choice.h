@@ -36,6 +36,7 @@ class OperationChoice : public QWidget {
 
  private:
   QComboBox* box_;
+  std::vector<OperationKind> kinds_;  ///< kinds of the operations offered
 };
 
 }  // namespace grinder

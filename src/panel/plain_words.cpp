@@ -92,13 +92,11 @@ std::string done(MachineEvent event) {
   }
 }
 
-std::string operationEntry(OperationKind kind) {
-  return format("%d %s", static_cast<int>(kind) + 1, rowOf(kind).words);
-}
+std::string operationEntry(int index, OperationKind kind) { return format("%d %s", index + 1, rowOf(kind).words); }
 
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal) {
-  if (goal.operations.size() < 2 || goal.operation >= countOf<OperationKind>()) return std::nullopt;
-  return static_cast<OperationKind>(goal.operation);
+  if (goal.operations.size() < 2 || goal.operation >= goal.operations.size()) return std::nullopt;
+  return static_cast<OperationKind>(processOf(goal).kind);
 }
 
 std::string describe(const flute_grinder::GrindGoal& goal) {

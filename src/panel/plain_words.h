@@ -23,8 +23,8 @@ std::string swivelText(const flute_grinder::GrinderState& state);
 /// The success message of a request. @param event a request.
 std::string done(MachineEvent event);
 
-/// An operation by its number and name, e.g. "2 primary relief".
-std::string operationEntry(OperationKind kind);
+/// An operation by its place in the job's list and its name, e.g. "2 primary relief". @param index from 0.
+std::string operationEntry(int index, OperationKind kind);
 
 /// The operation of a goal; nothing if its file has only one.
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal);

@@ -180,7 +180,7 @@ void ProgressBox::showPlace(const GrinderView& view, const flute_grinder::GrindF
   QString hint = name;
   if (operation) {
     rest = toString(*operation) + (", " + rest);
-    hint += ", " + QString::fromStdString(operationEntry(*operation));
+    hint += ", " + QString::fromStdString(operationEntry(view.job->goal.operation, *operation));
   }
   if (name.isEmpty()) rest[0] = rest[0].toUpper();
   showName(*place_, name, name.isEmpty() ? rest : ", " + rest);

@@ -299,13 +299,13 @@ void BagRun::selectStates() {
   }
 }
 
-std::vector<int> BagRun::partsOf(int operation, int number) const {
+std::vector<int> BagRun::partsOf(OperationKind kind, int number) const {
   const Json cutter = toJson(**job_)["cutter"];
   std::vector<int> parts;
   while (--number > 0) {
     const std::string& goal = goals_[static_cast<std::size_t>(number - 1)];
     const auto job = jobs_.find(goal);
-    if (job == jobs_.end() || job->second.operation != operation || toJson(job->second)["cutter"] != cutter) continue;
+    if (job == jobs_.end() || job->second.process().kind != kind || toJson(job->second)["cutter"] != cutter) continue;
     parts.insert(parts.begin(), number);
     if (continued_.count(goal) == 0) return parts;
   }
@@ -313,8 +313,8 @@ std::vector<int> BagRun::partsOf(int operation, int number) const {
 }
 
 void BagRun::findBefore(int number) {
-  for (int operation = 0; job_ && operation < (*job_)->operation; ++operation) {
-    before_.push_back(partsOf(operation, number));
+  for (int i = 0; job_ && i < (*job_)->operation; ++i) {
+    before_.push_back(partsOf((*job_)->operations[static_cast<std::size_t>(i)].kind, number));
     if (!before_.back().empty()) continue;
     before_.clear();
     return;

@@ -144,10 +144,12 @@ class Checker {
     if (!(relief.next_edge > 0)) {
       add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
     }
-    const bool last = static_cast<std::size_t>(job_->operation) + 1 == job_->operations.size();
+    const bool secondary = job_->process().kind == OperationKind::kSecondaryRelief;
+    const auto next = static_cast<std::size_t>(job_->operation) + 1;
+    const bool last = next == job_->operations.size() || !isRelief(job_->operations[next].kind);
     const bool is_wide =
         last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, job_->cutter.land).radius > 0;
-    if (!is_wide || (job_->operation > 1 && !relief.land)) {
+    if (!is_wide || (secondary && !relief.land)) {
       add(ReasonKind::kHeel, section.x, number, Unit::kMetre, 0, 0);
     }
   }

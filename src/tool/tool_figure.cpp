@@ -23,7 +23,7 @@ FigureValue ifComplete(const Place& p, FigureValue value) { return p.tooth().com
 
 /// A value that only a secondary relief has.
 FigureValue ifSecondary(const Place& p, double asked) {
-  return p.job->operation > 1 ? FigureValue(asked) : std::nullopt;
+  return p.job->process().kind == OperationKind::kSecondaryRelief ? FigureValue(asked) : std::nullopt;
 }
 
 FigureValue ofRelief(const Place& p, FigureValue ReliefSection::*member) {

@@ -222,8 +222,8 @@ TEST(OffsetFit, WhatWasSetWithAWheelDoesNotFitOnceAnotherWasOnTheSpindle) {
 
 TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
   OffsetBasis primary = basisOf(), secondary = basisOf();
-  primary.operation = 1;
-  secondary.operation = 2;
+  primary.kind = secondary.before = OperationKind::kPrimaryRelief;
+  secondary.kind = OperationKind::kSecondaryRelief;
   const auto refusalOf = [](const WorkOffsets& offsets, const OffsetBasis& job) {
     const auto found = mismatches(offsets, job);
     EXPECT_LE(found.size(), 1U);
@@ -258,13 +258,30 @@ TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
   EXPECT_EQ(refusalOf(offsets, primary), "A: operation primary relief" + twice);
   EXPECT_EQ(refusalOf(offsets, basisOf()), "A: operation flute" + twice);
   OffsetBasis none = basisOf();
-  none.operation = 65535;
+  none.kind = none.before = static_cast<OperationKind>(255);
   EXPECT_NE(refusalOf(offsets, none), "") << "a message may have one that there is not";
   // A tooth of a tool whose flutes were ground elsewhere.
   is(primary.tool_digest, 0);
   offsets.axes[kA] = offsetFor(basisOf(OffsetMethod::kProbe));
   EXPECT_EQ(refusalOf(offsets, primary), "");
   EXPECT_EQ(refusalOf(offsets, secondary), "");
+}
+
+TEST(OffsetFit, AnOperationFollowsTheOneBeforeItInTheListWhateverKindsAreLeftOut) {
+  OffsetBasis gash = basisOf(), end = basisOf();
+  gash.kind = end.before = OperationKind::kGash;
+  end.kind = OperationKind::kPrimaryEnd;
+  WorkOffsets offsets = offsetsFor(gash);
+  const auto reasons = [&](const OffsetBasis& job) { return reasonsOf(mismatches(offsets, job)); };
+  offsets.tool = {gash.tool_digest, "d6.yaml", 0b1, TeethUnknown::kNeverGround, 0};
+  EXPECT_EQ(reasons(gash), std::vector<std::string>{});
+  EXPECT_EQ(reasons(end), std::vector<std::string>{"A: operation gash is not ground on this tool"});
+  offsets.tool.ground |= ClampedTool::bitOf(gash.kind);
+  EXPECT_EQ(offsets.tool.ground, 0b1001U);
+  EXPECT_EQ(toolText(offsets.tool), "d6.yaml with flute, gash");
+  EXPECT_EQ(reasons(end), std::vector<std::string>{});
+  ASSERT_EQ(reasons(gash).size(), 1U);
+  EXPECT_EQ(reasons(gash)[0].rfind("A: operation gash is ground on this tool already", 0), 0U);
 }
 
 TEST(OffsetFit, ShowsWhatAnOffsetWasSetFor) {

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 
 /// @file
 /// What a goal's zero points depend on.
@@ -112,6 +113,23 @@ TEST(OffsetBasis, SurvivesTheMessageOfTheWorkOffsetsAndAnUnknownMethodIsUnknown)
   EXPECT_EQ(message.basis[kA].tool_digest, toolDigest(readJobFile(kJob)));
   message.basis[kX].method = 200;
   EXPECT_EQ(fromMessage(message).axes[kX].basis.method, OffsetMethod::kUnknown);
+}
+
+TEST(OffsetBasis, HasTheKindsOfTheOperationAndOfTheOneBeforeItNotTheirPlaces) {
+  GrindJob job = readJobFile(kJob);
+  job.operations.resize(3, job.process());
+  job.operations[1].kind = OperationKind::kGash;
+  job.operations[2].kind = OperationKind::kPrimaryEnd;
+  const auto kinds = [&](int operation) {
+    const flute_grinder::OffsetBasis sent =
+        toMessage(basisOf(goalFromJob(job.ofOperation(operation)), OffsetMethod::kProbe));
+    EXPECT_TRUE(toMessage(fromMessage(sent)) == sent);
+    return std::pair<int, int>(sent.kind, sent.before);
+  };
+  using flute_grinder::Process;
+  EXPECT_EQ(kinds(0).first, Process::FLUTE);
+  EXPECT_EQ(kinds(1), (std::pair<int, int>(Process::GASH, Process::FLUTE)));
+  EXPECT_EQ(kinds(2), (std::pair<int, int>(Process::END_PRIMARY, Process::GASH)));
 }
 
 TEST(OffsetBasis, DoesNotEnterTheDigestOfAJob) {

@@ -34,7 +34,7 @@ Progress someProgress() {
   p.mounting = 5;
   p.clamping = 3;
   p.tool_digest = std::string(64, 'e');
-  p.tool_operation = 1;
+  p.kind = OperationKind::kPrimaryRelief;
   return p;
 }
 
@@ -43,7 +43,7 @@ void expectSame(const Progress& a, const Progress& b) {
     return std::tie(p.job_digest, p.job_name, p.operation, p.cutter.end_diameter, p.cutter.cone_angle,
                     p.cutter.spiral_angle, p.cutter.rake_angle, p.cutter.flute_length, p.tooth_angles, p.finished,
                     p.next.tooth, p.next.pass, p.x, p.end, p.feed_override, p.wheel.in_work, p.wheel.clear_y,
-                    p.wheel.lift, p.wheel.y_doubted, p.mounting, p.clamping, p.tool_digest, p.tool_operation);
+                    p.wheel.lift, p.wheel.y_doubted, p.mounting, p.clamping, p.tool_digest, p.kind);
   };
   EXPECT_TRUE(all(a) == all(b));
   EXPECT_TRUE((a.offset == b.offset).all()) << a.offset.transpose() << " and " << b.offset.transpose();
@@ -96,7 +96,7 @@ TEST_F(JournalTest, WrongFiguresAreRefusedUnderARightChecksumToo) {
       {"pass", "pass: [1\n", "error at line"},
       {"tooth", "tooth: 3\n", "tooth = 3; allowed: 0 to 2"},
       {"tooth", "tooth: -1\n", "tooth = -1; allowed: 0 to 2"},
-      {"tool_operation", "tool_operation: 7\n", "tool_operation = 7; allowed: 0 to "},
+      {"kind", "kind: end\n", "kind = end; allowed: flute, primary, "},
       {"feed_override", "feed_override: 1.3\n", "feed_override = 1.3; allowed: 0 to 1.2"},
       {"finished", "finished: perhaps\n", "bad conversion"},
       {"x_m", "x_m: .nan\n", "x_m = nan; allowed: a finite number"},

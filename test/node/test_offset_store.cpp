@@ -21,7 +21,8 @@ const OffsetBasis kBasis{OffsetMethod::kProbe,
                          1.0 / 3,
                          -0.0015,
                          std::string(64, 'e'),
-                         2};
+                         OperationKind::kPrimaryEnd,
+                         OperationKind::kGash};
 const WorkOffset kSome{0.1 + 0.2, "anna@grinder 3 °", 1.7e9 + 1.0 / 3, kBasis};
 const WorkOffset kOther{-1000, "", 0};
 
@@ -76,7 +77,7 @@ TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
   const auto all = [](const WorkOffset& o) {
     const OffsetBasis& b = o.basis;
     return std::tie(o.value, o.set_by, o.set_at, b.method, b.job_name, b.wheel_name, b.wheel_digest, b.end_diameter,
-                    b.wheel_diameter, b.wheel_width, b.swivel, b.height, b.tool_digest, b.operation);
+                    b.wheel_diameter, b.wheel_width, b.swivel, b.height, b.tool_digest, b.kind, b.before);
   };
   EXPECT_TRUE(all(kept.axes[kY]) == all(kSome));
   EXPECT_TRUE(all(kept.axes[kA]) == all(kOther));

@@ -99,7 +99,8 @@ class TestSetting(OffsetsTest):
         self.check_refused(self.client.set_offset(X, 0.3001),
                            'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
         self.check_refused(self.client.touch_off(A, math.nan), ' deg, the travel of the axis')
-        for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'swivel': math.nan}, 'not finite'),
+        for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'kind': 7}, 'basis.kind = 7; allowed: 0 to 6'),
+                            ({'swivel': math.nan}, 'not finite'),
                             ({'wheel_digest': 'A' * 64}, 'allowed: 64 hexadecimal digits'),
                             ({'job_name': '\n'}, 'basis.job_name'), ({'wheel_name': 256 * 'w'}, 'basis.wheel_name')):
             self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)

@@ -45,7 +45,7 @@ class ProgressTrackerTest : public ::testing::Test {
     OffsetBasis basis;
     basis.job_name = job + ".yaml";
     basis.tool_digest = "tool of " + job;
-    basis.operation = 1;
+    basis.kind = OperationKind::kGash;
     return basis;
   }
   void begin(const GrindProgram& program, const std::string& digest) {
@@ -111,7 +111,7 @@ TEST_F(ProgressTrackerTest, EntersEveryPassThatHasEndedHowTheJobDidAndItsFeedOve
   EXPECT_TRUE(onDisk().finished);
   EXPECT_EQ(onDisk().end, "") << "as long as it runs";
   EXPECT_EQ(onDisk().tool_digest, "tool of job");
-  EXPECT_EQ(onDisk().tool_operation, 1);
+  EXPECT_EQ(onDisk().kind, OperationKind::kGash);
   EXPECT_DOUBLE_EQ(onDisk().x, two_.strokeTo());
   tracker_.end(status_, "canceled");
   EXPECT_FALSE(onDisk().wheel.in_work);

@@ -85,6 +85,34 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
   EXPECT_EQ(goals().size(), 0U);
 }
 
+/// The last operation of the reamer becomes a gash, and so the third in its list.
+TEST_F(Operation, IsNumberedByItsPlaceAndChosenAnewWithOtherKinds) {
+  const QTemporaryDir folder;
+  const QString path = changedJob(kReamer, folder.filePath("job.yaml"), {});
+  rviz::Config config;
+  config.mapSetValue("Node", "cell/stage");
+  config.mapSetValue("Job", path);
+  panel.widget().load(config);
+  panel.chooseOperation("3 secondary relief");
+  panel.plan();
+  QFile reamer(kReamer);
+  ASSERT_TRUE(reamer.open(QFile::ReadOnly));
+  QByteArray relief = reamer.readAll();
+  relief = relief.mid(relief.indexOf("  - kind: relief\n    relief: secondary\n"));
+  relief = relief.left(relief.indexOf("interpolation:"));
+  QByteArray gash = relief;
+  gash.replace("kind: relief\n    relief: secondary\n", "kind: gash\n    angle_deg: 30\n    past_mm: 0\n");
+  gash.replace("{file: taper_reamer_d6_t6.setup.yaml}", "{swivel_deg: 0, height_mm: 0}");
+  changedJob(kReamer, path, {{relief, gash}, {"  second_clearance_deg: 22\n", "  end: {rake_tolerance_deg: 1}\n"}});
+  panel.click("start");
+  EXPECT_EQ(panel.text("plan_report"), "Choose the operation first.");
+  EXPECT_EQ(box.currentText(), "choose");
+  EXPECT_EQ(box.itemText(box.count() - 1), "3 gash");
+  panel.chooseOperation("3 gash");
+  panel.plan();
+  EXPECT_EQ(stage.get([&] { return stage.plans.back().goal.operation; }), 2);
+}
+
 TEST_F(Operation, ThatWasLeftIsTakenByAClick) {
   stage.leave(kReamer, "primary");
   auto& go_on = panel.the<QCheckBox>("continue");

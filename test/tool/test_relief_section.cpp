@@ -413,5 +413,18 @@ TEST(ReliefSection, SeesTheNextToothAndALandThatIsNotRelieved) {
   EXPECT_FALSE(deep_section.teeth[0].relief.value().heel);
 }
 
+/// A primary relief without its secondary one must reach the heel, whatever is ground after it.
+TEST(ReliefSection, MustReachTheHeelUnlessASecondaryReliefFollows) {
+  GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "primary");
+  job.cutter.end_rake_tolerance = 1 * kDegree;  // for the gash
+  const auto refused = [&] {
+    const std::vector<Reason> reasons = checkGroundCutter(withLaws(ValidJob(job))).reasons;
+    return std::any_of(reasons.begin(), reasons.end(), [](const Reason& r) { return r.kind == ReasonKind::kHeel; });
+  };
+  EXPECT_FALSE(refused());
+  job.operations[2].kind = OperationKind::kGash;
+  EXPECT_TRUE(refused());
+}
+
 }  // namespace test_relief_section
 }  // namespace grinder

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/base/axes.h"
 #include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/job/grind_job.h"
 
 #include <array>
 #include <cstdint>
@@ -40,7 +41,8 @@ struct OffsetBasis {
   double swivel = 0;          ///< swivel of the job's set-up [rad]
   double height = 0;          ///< height of the job's set-up [m]
   std::string tool_digest;    ///< toolDigest() of the job; empty if the offset was set for no particular job
-  int operation = 0;          ///< the job's GrindJob::operation
+  OperationKind kind{};       ///< kind of the job's operation
+  OperationKind before{};     ///< kind of the operation before it in the job's list; of no meaning for the flutes
 
   bool hasJob() const noexcept { return !wheel_digest.empty(); }
 };
@@ -86,14 +88,15 @@ constexpr auto& rowsOf(TeethUnknown) noexcept { return kTeethUnknown; }
 struct ClampedTool {
   std::string digest;                                 ///< toolDigest(); empty if the position of its teeth is unknown
   std::string job_name;                               ///< name of the job that ground or probed the teeth; may be empty
-  std::uint32_t ground = 0;                           ///< finished operations of the tool, one bit each from the lowest
+  std::uint32_t ground = 0;                           ///< finished operations of the tool, see bitOf()
   TeethUnknown unknown = TeethUnknown::kNeverGround;  ///< cause of an empty digest
   std::uint32_t clamping = 0;  ///< grows with every clamping; an unfinished job continues only in the same one
 
-  /// @param operation any number: a message may name an operation that does not exist.
-  bool isGround(int operation) const noexcept {
-    return operation >= 0 && operation < 32 && ((ground >> operation) & 1U) != 0;
+  /// The bit of an operation in `ground`; 0 for a kind that does not exist, which a message may name.
+  static constexpr std::uint32_t bitOf(OperationKind kind) noexcept {
+    return static_cast<int>(kind) < countOf<OperationKind>() ? 1U << static_cast<unsigned>(kind) : 0;
   }
+  bool isGround(OperationKind kind) const noexcept { return (ground & bitOf(kind)) != 0; }
   /// Records that the position of the teeth is unknown.
   void forget(TeethUnknown why) { *this = {"", "", 0, why, clamping}; }
 };

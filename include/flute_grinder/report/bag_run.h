@@ -114,7 +114,7 @@ class BagRun {
   void selectStates();
   /// @param number number of the job.
   void findBefore(int number);
-  std::vector<int> partsOf(int operation, int number) const;
+  std::vector<int> partsOf(OperationKind kind, int number) const;
   bool isAsked() const { return asked_ == 0 || static_cast<std::size_t>(asked_) == goals_.size(); }
   void visitBatch(const flute_grinder::SetpointBatch& batch, const RowVisitor& visitor) const;
   /// Adds a row to the summary. @throw FileError if its cycle does not follow, or a number is not finite.

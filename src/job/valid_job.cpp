@@ -34,8 +34,6 @@ Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
 }
 
-constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
-
 /// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
 /// @param wear wear of the wheel's radius [m].
 FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
@@ -56,7 +54,7 @@ constexpr double kSameSwivel = 0.01 * units::kDegree;
 /// A plane of the end has one swivel.
 /// @throw InvalidJob if the set-up has another.
 void requireSwivelOfPlane(const GrindJob& job) {
-  const double swivel = job.process().setup_swivel, asked = lastFaceStroke(job, 0, 0).swivel;
+  const double swivel = job.process().setup_swivel, asked = swivelOfPlane(job);
   if (std::abs(swivel - asked) <= kSameSwivel) return;
   throw InvalidJob({{ReasonKind::kNotAllowed, 0, "process.setup_swivel", "that of the plane that is ground,",
                      Unit::kRadian, swivel, 0, asked}});
@@ -163,6 +161,8 @@ EndPlane endPlaneOf(const GrindJob& job) {
     default: return {endNormal(c.end_clearance, c.end_dish), corner};
   }
 }
+
+double swivelOfPlane(const GrindJob& job) { return lastFaceStroke(job, 0, 0).swivel; }
 
 EndTooth endToothOf(const GrindJob& job, int tooth) {
   const std::vector<double>& angles = job.tooth_angles;

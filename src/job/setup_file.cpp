@@ -48,7 +48,7 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
     if (path == of_relief) return isRelief(kind);
   }
   if ((begins(path, "cutter.end_") && path != "cutter.end_diameter") || begins(path, "cutter.chamfer_")) {
-    return isStraight(kind) && path.find("tolerance") == std::string_view::npos;
+    return isStraight(kind) && path.find("tolerance") == std::string_view::npos && path != "cutter.end_uncut_diameter";
   }
   if (begins(path, "process.wheel_")) return path.find("wear") == std::string_view::npos;
   if (path == "process.behind" || begins(path, "process.gash_")) return field.isOf(kind);

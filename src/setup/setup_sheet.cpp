@@ -51,7 +51,8 @@ std::string lawOfFlute(const JobSetup& setup) {
 }
 
 std::string placeText(const Axes& at) {
-  return format("X %.3f, Y %.3f, Z %.3f mm", mm(at[kX]), mm(at[kY]), mm(at[kZ]));
+  const auto shown = [&](Axis axis) { return std::round(at[axis] / kMicrometre) * kMicrometre / kMillimetre + 0.0; };
+  return format("X %.3f, Y %.3f, Z %.3f mm", shown(kX), shown(kY), shown(kZ));
 }
 
 std::string strokesText(const JobSetup::Straight& straight, OperationKind kind) {
@@ -59,7 +60,7 @@ std::string strokesText(const JobSetup::Straight& straight, OperationKind kind) 
          line("last stroke", "from " + placeText(straight.last.from)) +
          line("", "to   " + placeText(straight.last.to)) +
          line("travel", placeText(straight.travel) + format(", A %.3f deg", deg(straight.travel[kA]))) +
-         line("passes", format("%d of each tooth, %.3f mm %s", straight.passes, mm(straight.stock),
+         line("passes", format("%d of each tooth, which remove %.3f mm %s", straight.passes, mm(straight.stock),
                                kind == OperationKind::kGash ? "along Y" : "across the plane"));
 }
 
@@ -80,9 +81,10 @@ std::string whatToSet(const JobSetup& setup, const Range& swivel) {
 std::string whatGrinds(const GrindJob& job) {
   if (job.process().kind == OperationKind::kGash) {
     const bool right = job.cutter.cut == CutDirection::kRightHand;
-    return line("", format("The rim and the %s face grind: Y is the rim's, Z that face's.", right ? "upper" : "lower"));
+    return line("", right ? "The rim and the upper face grind: Z, touched off with the lower one, relies on the width."
+                          : "The rim and the lower face grind.");
   }
-  return line("", "The lower face grinds: X and Z are that face's.") +
+  return line("", "The lower face grinds: X and Z are touched off with it.") +
          line("X", "swivel set, Z = 0, wheel's lower face against the end, at the top of the blank") +
          line("",
               format("reads %.3f mm for D = %g mm, %g mm longer than the tool",

@@ -17,6 +17,24 @@ namespace {
 using units::kDegree;
 using units::kMillimetre;
 
+Json placeOf(const Axes& at) { return {at[kX] / kMillimetre, at[kY] / kMillimetre, at[kZ] / kMillimetre}; }
+
+/// Adds what only an operation on the end has.
+void addStraight(const JobSetup& setup, Json& json) {
+  const JobSetup::Straight& straight = *setup.straight;
+  json["a_deg"] = straight.last.to[kA] / kDegree;
+  json["from_mm"] = placeOf(straight.last.from);
+  json["to_mm"] = placeOf(straight.last.to);
+  json["travel_mm"] = placeOf(straight.travel);
+  json["travel_a_deg"] = straight.travel[kA] / kDegree;
+  json["passes"] = straight.passes;
+  json["stock_mm"] = straight.stock / kMillimetre;
+  json["past_axis_mm"] = straight.past_axis / kMillimetre;
+  if (setup.job.process().kind == OperationKind::kGash) return;
+  json["gap_mm"] = kEndGap / kMillimetre;
+  json["touch_x_mm"] = touchX(setup.job, setup.job.cutter.end_diameter) / kMillimetre;
+}
+
 Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
   const GrindProcess& p = setup.job.process();
   const auto& complete = setup.check.complete;
@@ -38,9 +56,14 @@ Json toJson(const JobSetup& setup, const std::optional<double>& above_swivel) {
             {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
             {"limit", toString(setup.limit)},
             {"margin", setup.margin}};
-  if (!setup.relief) return json;
+  if (!setup.relief && !setup.straight) return json;
   for (const char* key : {"x_shift_mm", "depth_mm", "depth_end_mm", "overtravel_mm", "limit", "margin"})
     json.erase(key);
+  if (setup.straight) {
+    for (const char* key : {"upper_face_mm", "lower_face_mm", "complete_from_mm", "complete_to_mm"}) json.erase(key);
+    addStraight(setup, json);
+    return json;
+  }
   json["rim_mm"] = setup.relief->rim / kMillimetre;
   json["next_edge_deg"] = setup.relief->next_edge / kDegree;
   const auto& end = setup.relief->land_end_clearance;

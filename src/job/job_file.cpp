@@ -144,6 +144,7 @@ std::string figureKeys(OperationKind kind, const ProcessKeys& keys) {
   visitJobFields([&](const JobField& field, auto) {
     if (figureOf(field, kind)) names += (names.empty() ? "" : ", ") + keys(field.file_key);
   });
+  if (names.empty()) return "none";
   return isRelief(kind) ? names : "one of " + names;
 }
 

@@ -35,7 +35,6 @@ Range startOf(const ReliefPath& path, double length) {
 }
 
 constexpr const char* kNoEdges = "the edges that the operation follows are not computed; see withLaws()";
-constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
 
 FaceWheel faceWheelOf(const GrindProcess& p, double wear) noexcept {
   return {p.wheel_diameter / 2, p.wheel_diameter / 2 - wear, p.wheel_width, 0, p.setup_height, 0};
@@ -62,7 +61,7 @@ constexpr double kSameSwivel = 0.01 * units::kDegree;
 /// A plane of the end has one swivel.
 /// @throw InvalidJob if the set-up has another.
 void requireSwivelOfPlane(const GrindJob& job) {
-  const double swivel = job.process().setup_swivel, asked = lastFaceStroke(job, 0, 0).swivel;
+  const double swivel = job.process().setup_swivel, asked = swivelOfPlane(job);
   if (std::abs(swivel - asked) <= kSameSwivel) return;
   throw InvalidJob({{ReasonKind::kNotAllowed, 0, "process.setup_swivel", "that of the plane that is ground,",
                      Unit::kRadian, swivel, 0, asked}});
@@ -169,6 +168,8 @@ EndPlane endPlaneOf(const GrindJob& job) {
     default: return {endNormal(c.end_clearance, c.end_dish), corner};
   }
 }
+
+double swivelOfPlane(const GrindJob& job) { return lastFaceStroke(job, 0, 0).swivel; }
 
 EndTooth endToothOf(const GrindJob& job, int tooth) {
   const std::vector<double>& angles = job.tooth_angles;

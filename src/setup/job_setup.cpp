@@ -59,6 +59,17 @@ std::string textOf(const FluteRemedy& remedy, const GrindProcess& p) {
   return "";
 }
 
+std::string machineText(const Range& swivel) {
+  return "the machine swivels " + text(Quantity{swivel.from, Unit::kRadian}, Quantity{swivel.to, Unit::kRadian}, 5);
+}
+
+/// Refuses a set-up that the machine cannot be swivelled to.
+/// @param path field that the swivel depends on.
+std::string swivelBeyond(double needed, const Range& swivel, const char* path) {
+  return "the set-up takes a swivel of " + text(Quantity{needed, Unit::kRadian}, 5) + "; " + machineText(swivel) +
+         "; change " + fieldName(path);
+}
+
 /// The minimum angle from one tooth to the next.
 double minPitch(const std::vector<double>& angles) {
   double min = angles.front() + units::kTurn - angles.back();
@@ -164,6 +175,68 @@ std::variant<JobSetup, std::string> solveReliefSetup(const GrindJob& job, const 
   return setup;
 }
 
+/// The key of a plane's angle.
+const char* angleOfPlane(OperationKind kind) {
+  switch (kind) {
+    case OperationKind::kGash: return "cutter.end_rake";
+    case OperationKind::kSecondaryEnd: return "cutter.end_second_clearance";
+    case OperationKind::kChamfer: return "cutter.chamfer_angle";
+    default: return "cutter.end_clearance";
+  }
+}
+
+JobSetup::Straight straightOf(const ValidJob& job) {
+  JobSetup::Straight straight;
+  straight.last = job.faceStroke(0, job.deepest(), job->process().wheel_wear);
+  straight.passes = static_cast<int>(job.depths().size());
+  straight.stock = job.deepest();
+  straight.past_axis = -(straight.last.to[kY] + job->cutter.end_diameter / 2 + job->process().wheel_wear);
+  Axes least = straight.last.to, most = least;
+  for (const JobPass& pass : job.passes()) {
+    const FaceStroke stroke = job.faceStroke(pass.place.tooth, pass.depth, pass.wear);
+    least = least.min(stroke.from).min(stroke.to);
+    most = most.max(stroke.from).max(stroke.to);
+  }
+  straight.travel = most - least;
+  return straight;
+}
+
+/// The height at which Z is 0 at the end of the last stroke; the mean over the teeth, or the nearest allowed one [m].
+/// @param job with height 0.
+double heightOfStrokes(const ValidJob& job) {
+  double height = 0;
+  for (int i = 0; i < job.teeth(); ++i) {
+    height += job.faceStroke(i, job.deepest(), job->process().wheel_wear).to[kZ] / job.teeth();
+  }
+  visitJobFields([&](const JobField& field, auto) {
+    if (std::string_view(field.path) == "process.setup_height") {
+      height = std::clamp(height, field.low().si, field.high().si);
+    }
+  });
+  return rounded(height, units::kMillimetre, kLengthDecimals);
+}
+
+std::variant<JobSetup, std::string> solveStraightSetup(const GrindJob& job, const Range& swivel,
+                                                       std::optional<SetupFigure> keep) {
+  const OperationKind kind = job.process().kind;
+  const std::string words = rowOf(kind).words;
+  if (keep) return "the " + std::string(toString(*keep)) + " of a " + words + " is not kept; allowed: none";
+  if (std::vector<Reason> reasons = validate(job); !reasons.empty()) throw InvalidJob(std::move(reasons));
+  JobSetup setup;
+  setup.job = job;
+  GrindProcess& p = setup.job.process();
+  p.setup_swivel = rounded(swivelOfPlane(job), units::kDegree, kAngleDecimals);
+  if (!(p.setup_swivel >= swivel.from && p.setup_swivel <= swivel.to)) {
+    return swivelBeyond(p.setup_swivel, swivel, angleOfPlane(kind));
+  }
+  p.setup_height = 0;
+  p.setup_height = heightOfStrokes(withLaws(ValidJob(setup.job)));
+  const ValidJob solved = withLaws(ValidJob(setup.job));
+  setup.straight = straightOf(solved);
+  setup.check = checkGroundCutter(solved);
+  return setup;
+}
+
 /// The limit that the set-up is nearest to.
 void findLimit(const Range& swivel, JobSetup& setup) {
   const CutterGeometry& c = setup.job.cutter;
@@ -220,19 +293,15 @@ FoundFlute findFlute(const FluteRequest& request, const GrindJob& job) {
 
 std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,
                                                     std::optional<SetupFigure> keep) {
-  const auto machine = [&] {
-    return "the machine swivels " + text(Quantity{swivel.from, Unit::kRadian}, Quantity{swivel.to, Unit::kRadian}, 5);
-  };
   const double kept = job.process().setup_swivel;
   if (keep == SetupFigure::kSwivel && !(kept >= swivel.from && kept <= swivel.to)) {
-    return fieldName("process.setup_swivel") + " = " + text(Quantity{kept, Unit::kRadian}, 5) + "; " + machine() +
-           "; change it";
+    return fieldName("process.setup_swivel") + " = " + text(Quantity{kept, Unit::kRadian}, 5) + "; " +
+           machineText(swivel) + "; change it";
   }
   const FluteRequest request = requestOf(job, ofPeriphery(swivel), keep);
   const FoundFlute found = findFlute(request, job);
   if (found.swivel_beyond) {
-    return "the set-up takes a swivel of " + text(Quantity{handOf(job) * *found.swivel_beyond, Unit::kRadian}, 5) +
-           "; " + machine() + "; change " + fieldName("cutter.spiral_angle");
+    return swivelBeyond(handOf(job) * *found.swivel_beyond, swivel, "cutter.spiral_angle");
   }
   if (!found.best) {
     return "this wheel reaches the cutter in no set-up; change " + fieldName("process.wheel_diameter");
@@ -259,8 +328,10 @@ std::variant<JobSetup, std::string> solveJobSetup(const GrindJob& asked, const R
                                                   std::optional<SetupFigure> keep) {
   const GrindJob job = roundedOff(asked);
   try {
-    auto found =
-        isRelief(job.process().kind) ? solveReliefSetup(job, swivel, keep) : solveFluteSetup(job, swivel, keep);
+    const OperationKind kind = job.process().kind;
+    auto found = isRelief(kind)     ? solveReliefSetup(job, swivel, keep)
+                 : isStraight(kind) ? solveStraightSetup(job, swivel, keep)
+                                    : solveFluteSetup(job, swivel, keep);
     if (auto* setup = std::get_if<JobSetup>(&found)) *setup = inJob(asked, std::move(*setup), keep);
     return found;
   } catch (const InvalidJob& error) {

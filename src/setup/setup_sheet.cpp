@@ -4,6 +4,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/setup/touch_off.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace grinder {
@@ -49,15 +50,45 @@ std::string lawOfFlute(const JobSetup& setup) {
          line("overtravel", overtravelText(setup));
 }
 
+std::string placeText(const Axes& at) {
+  const auto shown = [&](Axis axis) { return std::round(at[axis] / kMicrometre) * kMicrometre / kMillimetre + 0.0; };
+  return format("X %.3f, Y %.3f, Z %.3f mm", shown(kX), shown(kY), shown(kZ));
+}
+
+std::string strokesText(const JobSetup::Straight& straight, OperationKind kind) {
+  return line("first tooth", format("A %.3f deg", deg(straight.last.to[kA]))) +
+         line("last stroke", "from " + placeText(straight.last.from)) +
+         line("", "to   " + placeText(straight.last.to)) +
+         line("travel", placeText(straight.travel) + format(", A %.3f deg", deg(straight.travel[kA]))) +
+         line("passes", format("%d of each tooth, which remove %.3f mm %s", straight.passes, mm(straight.stock),
+                               kind == OperationKind::kGash ? "along Y" : "across the plane"));
+}
+
 std::string whatToSet(const JobSetup& setup, const Range& swivel) {
   const GrindProcess& p = setup.job.process();
   return "set\n" + line("wheel", wheelText(p)) +
          line("swivel", format("%.3f deg; the machine's range is %g to %g deg", deg(p.setup_swivel), deg(swivel.from),
                                deg(swivel.to))) +
          line("height", format("%.3f mm, of the wheel's centre above the cutter's axis at Z = 0", mm(p.setup_height))) +
-         line("", format("upper face %.3f mm, lower face %.3f mm, where they are deepest in the cutter",
-                         mm(upperFaceHeight(setup.job)), mm(lowerFaceHeight(setup.job)))) +
-         (setup.relief ? "" : lawOfFlute(setup));
+         (setup.straight
+              ? strokesText(*setup.straight, p.kind)
+              : line("", format("upper face %.3f mm, lower face %.3f mm, where they are deepest in the cutter",
+                                mm(upperFaceHeight(setup.job)), mm(lowerFaceHeight(setup.job))))) +
+         (setup.relief || setup.straight ? "" : lawOfFlute(setup));
+}
+
+/// What of the wheel grinds the end, and so must be touched off.
+std::string whatGrinds(const GrindJob& job) {
+  if (job.process().kind == OperationKind::kGash) {
+    const bool right = job.cutter.cut == CutDirection::kRightHand;
+    return line("", right ? "The rim and the upper face grind: Z, touched off with the lower one, relies on the width."
+                          : "The rim and the lower face grind.");
+  }
+  return line("", "The lower face grinds: X and Z are touched off with it.") +
+         line("X", "swivel set, Z = 0, wheel's lower face against the end, at the top of the blank") +
+         line("",
+              format("reads %.3f mm for D = %g mm, %g mm longer than the tool",
+                     mm(touchX(job, job.cutter.end_diameter)), mm(job.cutter.end_diameter), mm(job.process().stock)));
 }
 
 /// The assumption about the wheel's position behind the reading of Z.
@@ -76,6 +107,7 @@ std::string whatToTouch(const GrindJob& job, const std::optional<double>& above_
     return line("", format("reads %s: %.3f mm for D = %g mm", formula.c_str(), mm(at_end), mm(end)));
   };
   return "touch off on a cylinder, blank or shank but no cone, with D its diameter\n" +
+         (isStraight(job.process().kind) ? whatGrinds(job) : "") +
          line("Z", "swivel at 0, wheel's lower face on top of the blank") +
          reads("D/2 " + added(touch.z), end / 2 + touch.z) + wheelsPlace(job, above_swivel) +
          line("Y", format("swivel set, Z = %.3f mm, wheel's circumference against the blank", mm(touch.z_for_y))) +
@@ -88,8 +120,28 @@ std::string whatComesOut(const JobSetup& setup) {
   for (const GroundFigure& figure : setup.check.figures) {
     text += line(rowOf(figure.figure).words, grinder::text(figure));
   }
+  if (setup.straight) return text;
   return text + line("flutes complete", complete ? format("X %.3f to %.3f mm", mm(complete->from), mm(complete->to))
                                                  : std::string("nowhere"));
+}
+
+/// @param room angle to the end of the machine's range [rad].
+std::string swivelText(double room) {
+  return line("swivel", format("%.3f deg from the end of the machine's range", deg(room)));
+}
+
+/// Where the rim ends, and so how far Y goes.
+std::string whatLimitsStraight(const JobSetup& setup, const Range& swivel) {
+  const GrindProcess& p = setup.job.process();
+  const JobSetup::Straight& straight = *setup.straight;
+  const std::string past = format("%.3f mm %s the cutter's axis, at Y %.3f mm", std::abs(mm(straight.past_axis)),
+                                  straight.past_axis < 0 ? "before" : "past", mm(straight.last.to[kY]));
+  std::string ends = "ends ";
+  if (p.kind == OperationKind::kChamfer) ends += format("%g mm beyond the flank, ", mm(kEndGap));
+  return swivelText(std::min(p.setup_swivel - swivel.from, swivel.to - p.setup_swivel)) + line("rim", ends + past) +
+         (p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd
+              ? line("next tooth", format("%g mm from the rim at the end of a stroke", mm(kEndGap)))
+              : "");
 }
 
 std::string whatLimits(const JobSetup& setup, const Range& swivel) {
@@ -103,11 +155,10 @@ std::string whatLimits(const JobSetup& setup, const Range& swivel) {
                                             deg(r.land_end_clearance->to)))
                 : std::string());
   }
+  if (setup.straight) return whatLimitsStraight(setup, swivel);
   const double percent = 100 * setup.margin;
   switch (setup.limit) {
-    case SetupLimit::kSwivel:
-      return line("swivel", format("%.3f deg from the end of the machine's range",
-                                   deg(setup.margin * (swivel.to - swivel.from))));
+    case SetupLimit::kSwivel: return swivelText(setup.margin * (swivel.to - swivel.from));
     case SetupLimit::kLand: return line("land", format("%.1f %% of the minimum pitch is left", percent));
     case SetupLimit::kCore: return line("core", format("%.1f %% of the small end's diameter is left", percent));
   }

@@ -33,6 +33,12 @@ std::optional<double> wheelAboveSwivel(const std::optional<WheelFile>& wheel, co
   return (wheelCentre(machine, upright, *wheel->flange) - machine.swivel_centre).z();
 }
 
+double touchX(const GrindJob& job, double diameter) {
+  const GrindProcess& p = job.process();
+  return (p.setup_height - diameter / 2) / std::tan(p.setup_swivel) +
+         wheelOf(job).lowerFace() / std::sin(p.setup_swivel) - p.stock;
+}
+
 double touchY(const GrindJob& job, double diameter) {
   return (diameter - job.cutter.end_diameter) / 2 + touchReadings(job).y;
 }

@@ -90,6 +90,47 @@ class TestSetup(CommandLine):
         lowered = 20 * (1 - math.cos(higher['swivel_deg'] * DEG))
         self.assertAlmostEqual(higher['touch_z_mm'], 1.5 - higher['height_mm'] - lowered, delta=1e-9)
 
+    def end_mill(self):
+        """Writes the shipped end mill, its flutes set up, with operations on its end instead of the reliefs."""
+        name = 'end_mill_d10_t4'
+        text, shown = self.text(JOBS + '/%s.yaml' % name).replace('../wheels', gc.package_file('wheels')), '  - kind: relief '
+        flutes, rest = text[:text.index(shown)], text[text.index('interpolation:'):]
+        end = ('  end: {clearance_deg: 8, dish_deg: 2, rake_deg: 3, clearance_tolerance_deg: 0.5, rake_tolerance_deg: 0.5, uncut_diameter_mm: 2}\n'
+               '  chamfer: {width_mm: 0.2, angle_deg: 45, clearance_deg: 10}\n')
+        process = ('    feed_mm_min: 400\n    infeed_mm: %s\n    finish_infeed_mm: 0.03\n    stock_mm: 0.1\n'
+                   '    wheel: {file: %s/wheels/straight_d100_w6.yaml}\n    setup: {file: %s.setup.yaml}\n')
+        for kind, infeed in (('gash\n    angle_deg: 45\n    past_mm: -0.15', 2), ('end\n    relief: primary', 0.2), ('chamfer', 0.1)):
+            flutes += '  - kind: %s\n' % kind + process % (infeed, gc.package_file('.'), name)
+        self.write(name + '.setup.yaml', self.text(JOBS + '/%s.setup.yaml' % name))
+        return self.write(name + '.yaml', flutes.replace('operations:', end + 'operations:') + rest)
+
+    def test_the_operations_on_the_end_are_set_up_in_turn(self):
+        job = self.end_mill()
+        self.assertRegex(self.grind(2, 'setup', job, '--operation', 'chamfer').stderr,
+                         "no set-up of the gash; 'grind setup --operation gash --write' solves it")
+        for operation, swivel in (('gash', 3.0), ('end_primary', 81.76), ('chamfer', None)):
+            found, _ = self.json(0, 'setup', job, '--operation', operation, '--write')
+            self.assertNotIn('limit', found)
+            self.assertAlmostEqual(found['to_mm'][2], 0, delta=1e-5)
+            if swivel:
+                self.assertAlmostEqual(found['swivel_deg'], swivel, delta=1e-4)
+            self.assertIn('\n%s:\n  swivel_deg: %g\n  height_mm: %.8g\n' % (operation, found['swivel_deg'], found['height_mm']),
+                          self.text(self.path('end_mill_d10_t4.setup.yaml')))
+            self.assertRegex(self.grind(0, 'setup', job, '--operation', operation).stdout, '(?m)^  first tooth +A %.3f deg$' % found['a_deg'])
+        self.write('end_mill_d10_t4.yaml', self.text(job).replace('dish_deg: 2', 'dish_deg: 3'))
+        self.assertRegex(self.grind(2, 'plan', job, '--operation', 'chamfer').stderr, 'solved for cutter.end.dish_deg = 2; the job now has cutter.end.dish_deg = 3')
+
+    def test_an_end_is_refused_on_a_machine_that_swivels_less_and_keeps_nothing(self):
+        job = self.end_mill()
+        self.grind(0, 'setup', job, '--operation', 'gash', '--write')
+        model = self.text(gc.package_file('urdf/grinder.urdf')).replace('lower="-1.5707963" upper="1.5707963"', 'lower="-1.0471976" upper="1.0471976"')
+        said = self.grind(1, 'setup', job, '--operation', 'end_primary', '--write', '--urdf', self.write('grinder.urdf', model)).stderr
+        self.assertEqual(said, 'the set-up takes a swivel of 81.76 deg; the machine swivels -60 to 60 deg; change cutter.end.clearance_deg\n')
+        self.assertNotIn('end_primary', self.text(self.path('end_mill_d10_t4.setup.yaml')))
+        self.write('end_mill_d10_t4.yaml', self.text(job).replace('setup.yaml}', 'setup.yaml, swivel_deg: 81}'))
+        self.assertRegex(self.grind(2, 'setup', job, '--operation', 'end_primary').stderr,
+                         r'operations\[1\]\.setup\.swivel_deg stands beside .*; allowed beside it: none')
+
 
 if __name__ == '__main__':
     rostest.rosrun('flute_grinder', 'setup', '__main__')

@@ -59,6 +59,11 @@ struct EndPlane {
 };
 EndPlane endPlaneOf(const GrindJob& job);
 
+/// The only swivel that lays the plane of an operation on the end on a face of the wheel [rad].
+double swivelOfPlane(const GrindJob& job);
+
+constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
+
 /// The tooth of an operation on the end.
 EndTooth endToothOf(const GrindJob& job, int tooth);
 

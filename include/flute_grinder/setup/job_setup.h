@@ -3,6 +3,7 @@
 #include "flute_grinder/base/enum_table.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/setup_file.h"
+#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/ground_job.h"
 
 #include <array>
@@ -39,13 +40,25 @@ struct JobSetup {
     std::optional<Range> land_end_clearance;
   };
   std::optional<Relief> relief;
+  /// Strokes of an operation on the end, instead of overtravel, limit and margin.
+  struct Straight {
+    FaceStroke last;             ///< the last pass of the first tooth
+    Axes travel = Axes::Zero();  ///< travel of each axis in the strokes of all teeth and passes [m], A [rad]
+    int passes = 0;              ///< of each tooth
+    double stock = 0;            ///< what they remove: of a gash radial, else normal to the plane [m]
+    /// How far the wheel's circumference is past the cutter's axis at the end of a stroke, in the direction of Y;
+    /// negative before it [m].
+    double past_axis = 0;
+  };
+  std::optional<Straight> straight;
 };
 
 /// Solves the set-up of a job: rake, edge and core over the flute, see docs/algorithm.md. Uses the wheel's wear at the
 /// job's start, and the middle of unequal spiral angles. The figures are rounded as in a file before the tool is
 /// checked, and the overtravel is lengthened as the job's law of Z requires. Takes some tenths of a second, or some
 /// seconds if there is none. For a relief, finds swivel and height: the swivel nearest to the flutes' swivel at which
-/// the rim covers the land and clears the next tooth.
+/// the rim covers the land and clears the next tooth. For an operation on the end, takes the swivel of its plane, and
+/// the height at which Z is 0 at the end of the last stroke.
 /// @param asked as in JobToSetUp; its numbers are rounded to nine digits, see roundedOff().
 /// @param swivel range that the machine allows [rad].
 /// @param keep the figure that stays.

@@ -29,6 +29,11 @@ TouchReadings touchReadings(const GrindJob& job, double above_swivel = 0);
 std::optional<double> wheelAboveSwivel(const std::optional<WheelFile>& wheel, const GrindJob& job,
                                        const MachineGeometry& machine);
 
+/// The work X at which the wheel's lower face touches the end of a blank from above, at the swivel of the set-up and at
+/// Z = 0. The blank is longer than the tool by the stock of the job's operation.
+/// @param diameter diameter of the blank [m].
+double touchX(const GrindJob& job, double diameter);
+
 /// The work Y at which the largest circumference of the job's wheel touches a blank.
 /// @param diameter diameter of the blank [m].
 double touchY(const GrindJob& job, double diameter);

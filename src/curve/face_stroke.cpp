@@ -135,9 +135,10 @@ FacePose gashPose(const OnTooth& normal, CutDirection cut) noexcept {
   return {hand * swivel, hand * (units::kPi / 2 - std::atan2(-normal[2], -normal[1]))};
 }
 
-OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake) noexcept {
-  // From the end's edge to the periphery the rake face falls back by what the chamfer's edge rises along the axis.
-  const double behind = (std::cos(angle) + std::sin(angle) * std::tan(dish)) * tan_rake;
+OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake, double tan_hook) noexcept {
+  // From the end's edge to the periphery the rake face falls back by what the chamfer's edge rises along the axis, and
+  // comes forward by what it goes outward.
+  const double behind = (std::cos(angle) + std::sin(angle) * std::tan(dish)) * tan_rake - std::sin(angle) * tan_hook;
   return flankNormal(units::kPi / 2 - angle, clearance, std::atan(behind));
 }
 

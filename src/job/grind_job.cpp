@@ -187,11 +187,22 @@ void checkOperations(Checker& checker, const GrindJob& job) {
 }
 
 /// A relief needs a straight wheel, since the rim grinds it; so does an operation on the end, of which the faces do.
-void checkStraightWheel(Checker& checker, const GrindProcess& p) {
+/// The rim of a gash's wheel may slope away from the face, and so spare the tooth before.
+void checkStraightWheel(Checker& checker, const GrindJob& job) {
+  const GrindProcess& p = job.process();
   if (p.wheel_profile == WheelShape::kStraight) return;
+  if (p.kind == OperationKind::kGash && p.wheel_profile == WheelShape::kAngled) {
+    const bool right = job.cutter.cut == CutDirection::kRightHand;
+    if (p.wheel_side == (right ? WheelFace::kUpper : WheelFace::kLower)) return;
+    return checker.refuse(ReasonKind::kNotAllowed, "process.wheel_side",
+                          {static_cast<double>(p.wheel_side), Unit::kNone},
+                          right ? "the upper face, which grinds the rake face of a right-hand gash"
+                                : "the lower face, which grinds the rake face of a left-hand gash");
+  }
   checker.refuse(ReasonKind::kNotAllowed, "process.wheel_profile", {static_cast<double>(p.wheel_profile), Unit::kNone},
-                 isRelief(p.kind) ? "0, straight, for a relief: its cylinder is what grinds it"
-                                  : "0, straight, for an operation on the end");
+                 isRelief(p.kind)                 ? "0, straight, for a relief: its cylinder is what grinds it"
+                 : p.kind == OperationKind::kGash ? "0, straight, or 1, angled, for a gash"
+                                                  : "0, straight, for an operation on the end");
 }
 
 /// Checks what only an operation on the end has.
@@ -243,7 +254,7 @@ void checkTogether(Checker& checker, const GrindJob& job) {
                   "where the cone closes");
   }
   if (p.kind != OperationKind::kFlute) {
-    checkStraightWheel(checker, p);
+    checkStraightWheel(checker, job);
     if (isStraight(p.kind)) checkEnd(checker, job);
     return checkWheel(checker, p);
   }

@@ -160,9 +160,12 @@ EndPlane endPlaneOf(const GrindJob& job) {
               corner + c.end_land * OnTooth(std::tan(c.end_clearance), 0, 1)};
     case OperationKind::kChamfer: {
       const double hand = c.cut == CutDirection::kRightHand ? 1 : -1, tan_rake = hand * std::tan(c.spiral_angle);
-      const double x = c.chamfer_width * (1 / std::tan(c.chamfer_angle) + std::tan(c.end_dish));
+      // The flute's hook is behind the face of a gash, and lifts the end's edge there within the primary flank.
+      const double tan_hook = std::max(0.0, std::tan(c.rake_angle));
+      const double tan_dish = std::tan(c.end_dish) + tan_hook * std::tan(c.end_clearance);
+      const double x = c.chamfer_width * (1 / std::tan(c.chamfer_angle) + tan_dish);
       const double behind = x * tan_rake / radius;
-      return {chamferNormal(c.chamfer_angle, c.chamfer_clearance, c.end_dish, tan_rake),
+      return {chamferNormal(c.chamfer_angle, c.chamfer_clearance, std::atan(tan_dish), tan_rake, tan_hook),
               {x, radius * std::cos(behind), radius * std::sin(behind)}};
     }
     default: return {endNormal(c.end_clearance, c.end_dish), corner};

@@ -80,6 +80,7 @@ void PlanChecks::measure(const Setpoint& p) {
     statistics_.max_jerk = statistics_.max_jerk.max(check_.jerk().abs());
   }
   if (p.step != StepKind::kNone) measureStroke(p);
+  if (program_.isStraight() && p.at_feed) addFeed(p.feed);
   if (p.cycle % 2 == 0) end_x_ = p.position[kX];
 }
 
@@ -93,10 +94,13 @@ void PlanChecks::measureStroke(const Setpoint& p) {
   if (!(deviation * deviation_factor_ <= deviation_.limit)) addDeviation(p, deviation * deviation_factor_);
   checkBend(p);
   if (p.step == StepKind::kEven && p.at_feed) {
-    const double feed = std::abs(p.position[kX] - end_x_) / (2 * period_) * edge.cutter.edgePerTravel();
-    statistics_.max_feed = std::max(statistics_.max_feed, feed);
-    statistics_.min_feed = statistics_.min_feed == 0 ? feed : std::min(statistics_.min_feed, feed);
+    addFeed(std::abs(p.position[kX] - end_x_) / (2 * period_) * edge.cutter.edgePerTravel());
   }
+}
+
+void PlanChecks::addFeed(double feed) {
+  statistics_.max_feed = std::max(statistics_.max_feed, feed);
+  statistics_.min_feed = statistics_.min_feed == 0 ? feed : std::min(statistics_.min_feed, feed);
 }
 
 void PlanChecks::addViolation(const LimitViolation& v) {

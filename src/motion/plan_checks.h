@@ -37,6 +37,8 @@ class PlanChecks {
 
   void count(const Setpoint& setpoint);
   void measure(const Setpoint& setpoint);
+  /// Adds a feed at which a stroke runs steadily.
+  void addFeed(double feed);
   void measureStroke(const Setpoint& setpoint);
   void checkRoom(LimitViolation place, double room);
   void checkBend(const Setpoint& setpoint);

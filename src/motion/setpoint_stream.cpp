@@ -290,6 +290,7 @@ double SetpointStream::strokeParameter() const noexcept {
 }
 
 void SetpointStream::straightStep() noexcept {
+  const bool was_steady = law_.cruising();
   law_.advance(period_);
   if (law_.finished()) {
     current_.position = to_;
@@ -297,6 +298,7 @@ void SetpointStream::straightStep() noexcept {
     current_.position = clamped(from_ + way_ * law_.position(), from_, to_);
   }
   current_.feed = law_.speed() * linear_way_;
+  current_.at_feed = current_.move == MoveKind::kStroke && was_steady && law_.cruising();
   if (onPath()) current_.move_fraction = law_.position();
 }
 

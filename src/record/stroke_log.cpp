@@ -50,7 +50,8 @@ void StrokeLog::add(const Setpoint& setpoint, double time) {
     if (!(deviation <= stroke.deviation)) stroke.deviation_x = x;
     updateMax(stroke.deviation, deviation);
   }
-  if (!in_flute || setpoint.step != StepKind::kEven) return;
+  const bool straight = setpoint.step == StepKind::kNone;
+  if (straight ? !setpoint.at_feed : !in_flute || setpoint.step != StepKind::kEven) return;
   if (!stroke.has_feed || setpoint.feed < stroke.min_feed) {
     stroke.min_feed = setpoint.feed;
     stroke.min_feed_x = x;

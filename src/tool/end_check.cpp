@@ -37,6 +37,11 @@ struct EndMeasurement {
   double (*tolerance)(const CutterGeometry&);
 };
 
+/// The primary flank, from the radius through the corner: a flute's hook takes the edge back from there.
+FigureValue landFromRadius(const EndPlace& p) {
+  return p.at.land ? FigureValue(*p.at.land + p.at.behind) : std::nullopt;
+}
+
 double clearanceTolerance(const CutterGeometry& c) { return c.end_clearance_tolerance; }
 
 constexpr EndMeasurement kEndMeasurements[]{
@@ -47,7 +52,7 @@ constexpr EndMeasurement kEndMeasurements[]{
     {ToolFigure::kEndSecondClearance, OperationKind::kSecondaryEnd,
      [](const EndPlace& p) { return p.at.second_clearance; },
      [](const CutterGeometry& c) { return c.end_second_clearance; }, clearanceTolerance},
-    {ToolFigure::kEndLand, OperationKind::kSecondaryEnd, [](const EndPlace& p) { return p.at.land; },
+    {ToolFigure::kEndLand, OperationKind::kSecondaryEnd, landFromRadius,
      [](const CutterGeometry& c) { return c.end_land; },
      [](const CutterGeometry& c) { return widthTolerance(c.end_land); }},
     {ToolFigure::kEndRake, OperationKind::kGash, [](const EndPlace& p) { return p.at.rake; },

@@ -51,10 +51,16 @@ GrindJob endJob(OperationKind kind) {
   return job;
 }
 
+/// With edges at the teeth's angles.
+ValidJob validEndJob(OperationKind kind) {
+  const ValidJob job(endJob(kind));
+  return job.withEdges(ValidJob(job->ofOperation(0)), std::vector<EdgeHelix>(job->tooth_angles.size()));
+}
+
 TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
   for (const OperationKind kind : kKinds) {
     SCOPED_TRACE(toString(kind));
-    const ValidJob job(endJob(kind));
+    const ValidJob job = validEndJob(kind);
     ASSERT_GT(job.depths().size(), 2u);
     const double sin = std::sin(job->process().setup_swivel), cos = std::cos(job->process().setup_swivel);
     std::vector<Setpoint> setpoints;
@@ -82,7 +88,7 @@ TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
 
 TEST(StraightStrokes, ArePlannedByTheirShapesAsOneByOne) {
   for (const OperationKind kind : kKinds) {
-    const ValidJob job(endJob(kind));
+    const ValidJob job = validEndJob(kind);
     const JobPlan whole = planJob(job, plainMachine(), plainMachine().park, [](const Setpoint&) {});
     const JobPlan by_shapes = planJob(job, plainMachine(), plainMachine().park);
     EXPECT_EQ(whole.statistics.setpoints, by_shapes.statistics.setpoints);
@@ -94,7 +100,7 @@ TEST(StraightStrokes, ArePlannedByTheirShapesAsOneByOne) {
 TEST(StraightStrokes, BeginAnewAfterARetract) {
   for (const OperationKind kind : kKinds) {
     SCOPED_TRACE(toString(kind));
-    const ValidJob job(endJob(kind));
+    const ValidJob job = validEndJob(kind);
     SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
     Setpoint p;
     while (stream.next(p) && !(p.move == MoveKind::kStroke && p.tooth == 1 && p.move_fraction > 0.6)) continue;

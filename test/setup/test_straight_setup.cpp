@@ -4,6 +4,7 @@
 #include "flute_grinder/setup/job_setup.h"
 #include "flute_grinder/setup/setup_sheet.h"
 #include "flute_grinder/setup/touch_off.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include "jobs.h"
 #include "refusal.h"
@@ -92,7 +93,7 @@ TEST(StraightSetup, HasTheSwivelOfThePlaneAndZeroAtTheEnd) {
     const JobSetup setup = solved(endJob(kind));
     const double swivel = swivels[static_cast<int>(kind) - static_cast<int>(OperationKind::kGash)] * kDegree;
     EXPECT_NEAR(setup.job.process().setup_swivel, swivel, kAngleRounding);
-    const ValidJob job(setup.job);
+    const ValidJob job = withLaws(ValidJob(setup.job));
     for (const double z : zOfTeeth(job)) EXPECT_NEAR(z, 0, kLengthRounding);
     EXPECT_EQ(setup.straight.value().last.to[kZ], zOfTeeth(job)[0]);
   }
@@ -143,7 +144,7 @@ TEST(StraightSetup, CountsPassesAndTravel) {
 TEST(StraightSetup, OfUnequalTeethHasZeroInTheMiddle) {
   GrindJob job = endJob(OperationKind::kPrimaryEnd);
   job.tooth_angles = {0, 80 * kDegree, 180 * kDegree, 260 * kDegree};
-  const std::vector<double> z = zOfTeeth(ValidJob(solved(job).job));
+  const std::vector<double> z = zOfTeeth(withLaws(ValidJob(solved(job).job)));
   EXPECT_GT(z[1] - z[0], 5 * kMillimetre);
   EXPECT_NEAR((z[0] + z[1] + z[2] + z[3]) / 4, 0, kLengthRounding);
 }
@@ -153,7 +154,7 @@ TEST(StraightSetup, HasTheNearestHeightThatIsAllowed) {
   job.process().wheel_diameter = 500 * kMillimetre;
   const JobSetup setup = solved(job);
   EXPECT_EQ(setup.job.process().setup_height, -100 * kMillimetre);
-  EXPECT_LT(zOfTeeth(ValidJob(setup.job))[0], -10 * kMillimetre);
+  EXPECT_LT(zOfTeeth(withLaws(ValidJob(setup.job)))[0], -10 * kMillimetre);
 }
 
 TEST(StraightSetup, OfALeftHandToolHasTheSameSwivelOrTheMirroredOne) {
@@ -163,7 +164,7 @@ TEST(StraightSetup, OfALeftHandToolHasTheSameSwivelOrTheMirroredOne) {
             -solved(endJob(OperationKind::kGash)).job.process().setup_swivel);
   const GrindJob end = endJob(OperationKind::kPrimaryEnd);
   EXPECT_EQ(swivelOfPlane(leftHand(end)), swivelOfPlane(end));
-  EXPECT_NE(refused(leftHand(end), kMachine).find("cutter.cut = left_hand; allowed: right_hand, for a primary flank"),
+  EXPECT_NE(refused(leftHand(end), kMachine).find("cutter.cut = 1; allowed: 0, right_hand, for flanks of the end"),
             std::string::npos);
 }
 

@@ -85,7 +85,8 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
 /// @param clearance normal to the chamfer's edge [rad].
 /// @param dish of the end, as for endNormal() [rad].
 /// @param tan_rake tangent of the rake face's angle to the axis at the corner: of the helix, or of the gash.
-OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake) noexcept;
+/// @param tan_hook tangent of its angle to the radius there: of the radial rake; 0 of a gash.
+OnTooth chamferNormal(double angle, double clearance, double dish, double tan_rake, double tan_hook = 0) noexcept;
 
 /// The stroke that grinds the flank of a chamfer, with the wheel's lower face: down along Y, until the rim has passed
 /// all of the flank. Stock is normal to the flank.

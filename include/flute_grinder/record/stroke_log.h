@@ -9,7 +9,8 @@
 
 namespace grinder {
 
-/// Figures of a stroke as ground, with the feed within the flute or along the relief's edge. A stroke that was held and
+/// Figures of a stroke as ground, with the feed within the flute or along the relief's edge; of a straight stroke,
+/// between its ramps. A stroke that was held and
 /// resumed counts once.
 struct StrokeFigures {
   ToothPass place;

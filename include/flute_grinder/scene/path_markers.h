@@ -15,7 +15,8 @@ namespace grinder {
 /// pass, red at the job's tolerance.
 class ToolPath {
  public:
-  /// @param edges edges of the teeth, none of an operation on the end; an empty edge and its measurements are not shown.
+  /// @param edges edges of the teeth, none of an operation on the end; an empty edge and its measurements are not
+  /// shown.
   ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges);
 
   /// Adds a measured position; positions off the stroke are ignored.

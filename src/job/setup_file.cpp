@@ -54,7 +54,8 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
   if (path == "process.behind" || begins(path, "process.gash_")) return field.isOf(kind);
   // A plane of the end has nothing to do with the flutes; the edge of a chamfer is on their rake face.
   if (isStraight(kind)) {
-    return path == "cutter.end_diameter" || (path == "cutter.spiral_angle" && kind == OperationKind::kChamfer);
+    const bool of_rake_face = path == "cutter.spiral_angle" || path == "cutter.rake_angle";
+    return path == "cutter.end_diameter" || (of_rake_face && kind == OperationKind::kChamfer);
   }
   return begins(path, "cutter.") && path.find("tolerance") == std::string_view::npos;
 }

@@ -19,7 +19,7 @@ double deg(double radians) { return radians / kDegree; }
 /// "+ 1.200 mm", or "- 1.200 mm"
 std::string added(double metres) { return format("%c %.3f mm", metres < 0 ? '-' : '+', std::abs(mm(metres))); }
 
-std::string line(const char* name, const std::string& text) { return format("  %-17s", name) + text + "\n"; }
+std::string line(const char* name, const std::string& text) { return format("  %-16s ", name) + text + "\n"; }
 
 std::string wheelText(const GrindProcess& p) {
   std::string text =

@@ -99,6 +99,7 @@ constexpr Measurement kMeasurements[]{
 static_assert(isInOrder(kMeasurements) &&
               std::size(kMeasurements) == static_cast<std::size_t>(ToolFigure::kEndClearance));
 
+bool isOfEnd(ToolFigure figure) { return rowOf(figure).of == StrokeForm::kStraight; }
 const Measurement& of(ToolFigure figure) { return kMeasurements[static_cast<std::size_t>(figure)]; }
 
 double scaleOf(const GroundFigure& figure) { return shopScale(rowOf(figure.figure).unit); }
@@ -124,8 +125,12 @@ void add(GroundFigure& figure, double value, const Place& p) {
 
 }  // namespace
 
-FigureValue measured(ToolFigure figure, const FigurePlace& place) { return of(figure).measured(place); }
-FigureValue asked(ToolFigure figure, const FigurePlace& place) { return of(figure).asked(place); }
+FigureValue measured(ToolFigure figure, const FigurePlace& place) {
+  return isOfEnd(figure) ? std::nullopt : of(figure).measured(place);
+}
+FigureValue asked(ToolFigure figure, const FigurePlace& place) {
+  return isOfEnd(figure) ? std::nullopt : of(figure).asked(place);
+}
 double widthTolerance(double width) noexcept { return std::max(kLandPart * width, kLeastLandOff); }
 double tolerance(ToolFigure figure, const FigurePlace& place) { return of(figure).tolerance(place); }
 
@@ -137,7 +142,6 @@ bool isAsAsked(ToolFigure figure, const FigurePlace& place) {
 CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& sections) {
   CutterFigures figures;
   for (const ToolFigureRow& row : kToolFigures) {
-    if (row.of == StrokeForm::kStraight) continue;
     std::optional<GroundFigure> figure;
     for (const GroundSection& section : sections) {
       for (std::size_t tooth = 0; tooth < section.teeth.size(); ++tooth) {

@@ -225,6 +225,24 @@ TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
 }
 
 /// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
+/// At a stroke's beginning, a wheel larger by less than `clear` touches nothing of the blank, and one by more does.
+void expectClear(const FaceStroke& stroke, const FaceWheel& wheel, const EndTooth& tooth, double clear) {
+  for (const double part : {0.97, 1.1}) {
+    FaceWheel larger = wheel;
+    larger.radius += part * clear;
+    FaceStroke still = stroke;
+    still.to = still.from;
+    BruteForce blank(larger, tooth.radius, tooth.cut == CutDirection::kLeftHand);
+    blank.grind(still, 0, 1);
+    bool touched = false;
+    for (int i = 0; i < 200 * 100; ++i) {
+      const double x = i / 100 * 0.1 * kMillimetre, angle = (i % 100 - 50) * 0.01;
+      touched = touched || blank.isGround(x, tooth.radius, angle);
+    }
+    EXPECT_EQ(touched, part > 1) << part;
+  }
+}
+
 TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
   auto between = test_support::numbers(7);
   for (int i = 0; i < 20; ++i) {
@@ -243,7 +261,7 @@ TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
     SCOPED_TRACE(testing::Message() << "rake " << rake / kDegree << ", dish " << dish / kDegree << ", hand " << hand);
     EXPECT_NEAR(stroke.to[kY] + wheel.nominal_radius, -past - tooth.radius + wheel.radius * std::cos(angle),
                 1e-12);  // the bottom, less its sagitta
-    EXPECT_NEAR(stroke.from[kY] - stroke.to[kY], tooth.radius + past + 1 * kMillimetre, 1e-12);
+    expectClear(stroke, wheel, tooth, 1 * kMillimetre);
     BruteForce tool(wheel, tooth.radius, cut == CutDirection::kLeftHand);
     tool.grind(stroke, 0, 500);
     for (int k = 0; k < 200; ++k) {

@@ -173,6 +173,9 @@ const Row kRows[]{
     {Kind::kClearance, Unit::kRadian, kPi / 20, kPi / 18, ofThirdTooth(kPi / 360),
      "cutter.clearance_deg = 10 deg: tooth 3 is ground with 9 deg at X = 12.3 mm; allowed: within 0.5 deg of it; "
      "change the height or the swivel of the relief's set-up"},
+    {Kind::kEnd, Unit::kRadian, kPi / 20, kPi / 18,
+     [](Reason& r) { ofThirdTooth(kPi / 360)(r), r.detail = "gash rake"; },
+     "the gash rake of tooth 3 is 9 deg, 12.3 mm from the axis; allowed: within 0.5 deg of 10 deg"},
     {Kind::kUndercut, Unit::kMetre, 9.98e-3, 10e-3, ofThirdTooth(6e-6),
      "the relief leaves tooth 3 an edge diameter of 9.98 mm at X = 12.3 mm; allowed: within 0.006 mm of 10 mm; grind "
      "the flutes with an edge nearer to the asked helix"},

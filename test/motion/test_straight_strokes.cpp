@@ -25,7 +25,7 @@ GrindJob endJob(OperationKind kind) {
   CutterGeometry& c = job.cutter;
   c.end_diameter = 10e-3;
   c.cone_angle = 0;
-  c.spiral_angle = 0;
+  c.spiral_angle = c.rake_angle = 0;
   c.end_clearance = 8 * kDegree;
   c.end_second_clearance = 18 * kDegree;
   c.end_land = 0.4e-3;

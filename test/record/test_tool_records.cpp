@@ -62,7 +62,14 @@ class ToolRecordsTest : public ::testing::Test {
     return files;
   }
 
-  const GrindJob job_ = readJobFile("jobs/end_mill_d10_t4.yaml", "1");
+  /// Flutes and reliefs.
+  static GrindJob threeOperations() {
+    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "1");
+    job.operations.resize(3);
+    return job;
+  }
+
+  const GrindJob job_ = threeOperations();
   const test_support::TempFolder folder_;
   int count_ = 0;
 };

@@ -32,7 +32,7 @@ constexpr OperationKind kKinds[] = {OperationKind::kGash, OperationKind::kPrimar
 GrindJob endJob(OperationKind kind, int teeth = 4) {
   GrindJob job = test_support::jobOf("roughing_d10_t4");
   CutterGeometry& c = job.cutter;
-  c.spiral_angle = 0;
+  c.spiral_angle = c.rake_angle = 0;
   c.end_clearance = 8 * kDegree;
   c.end_second_clearance = 18 * kDegree;
   c.end_land = 0.4 * kMillimetre;
@@ -133,8 +133,10 @@ TEST(StraightSetup, CountsPassesAndTravel) {
   EXPECT_NEAR(straight.travel[kX], (stock - 0.2 * kMillimetre) / std::sin(setup.job.process().setup_swivel), 1e-9);
   EXPECT_NEAR(straight.travel[kY], 1 * kMillimetre - straight.last.to[kY], 1e-12);
   EXPECT_EQ(straight.travel[kZ], 0);
-  EXPECT_NEAR(straight.travel[kA], 270 * kDegree, 1e-12);
-  EXPECT_NEAR(straight.last.to[kA], std::atan(dish / clearance), 1e-12);
+  const ValidJob ground = withLaws(ValidJob(setup.job));  // with where the flutes have their edges
+  const double first = ground.edges()[0].at_end;
+  EXPECT_NEAR(straight.travel[kA], 270 * kDegree + ground.edges()[3].at_end - first, 1e-12);
+  EXPECT_NEAR(straight.last.to[kA], first + std::atan(dish / clearance), 1e-12);
 
   const JobSetup gash = solved(endJob(OperationKind::kGash));
   EXPECT_NEAR(gash.straight.value().stock, kRadius - 0.05 * kMillimetre, 1e-12);
@@ -212,10 +214,11 @@ TEST(StraightSetup, ItsFileIsForItsPlaneAndItsWheelAlone) {
     visitJobFields([&](const JobField& field, auto of) {
       const std::string key = field.file_key;
       const auto begins_with = [&](const char* head) { return key.find(head) == 0; };
-      const bool of_plane = begins_with("cutter.end") || begins_with("cutter.chamfer.") ||
-                            (key == "cutter.spiral_angle_deg" && kind == OperationKind::kChamfer) ||
-                            (begins_with("process.wheel.") && key.find("wear") == std::string::npos) ||
-                            ((key == "process.angle_deg" || key == "process.past_mm") && kind == OperationKind::kGash);
+      const bool of_plane =
+          begins_with("cutter.end") || begins_with("cutter.chamfer.") ||
+          ((key == "cutter.spiral_angle_deg" || key == "cutter.rake_angle_deg") && kind == OperationKind::kChamfer) ||
+          (begins_with("process.wheel.") && key.find("wear") == std::string::npos) ||
+          ((key == "process.angle_deg" || key == "process.past_mm") && kind == OperationKind::kGash);
       GrindJob other = job;
       of(other) += 0.001 * shopScale(field.unit);
       const std::string said = test_support::refusalOf([&] { takeSetup(text, "my.setup.yaml", other); });
@@ -232,9 +235,9 @@ TEST(StraightSetup, IsOnTheSheet) {
     for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
   };
   expect(sheet(OperationKind::kPrimaryEnd),
-         {"swivel           81.760 deg", "first tooth      A 13.954 deg", "last stroke      from X ",
-          "passes           7 of", "0.967 mm across the plane",
-          "The lower face grinds: X and Z are touched off with it.", "for D = 10 mm, 0.1 mm longer than the tool",
+         {"swivel           81.760 deg", "first tooth      A ", "last stroke      from X ", "passes           7 of",
+          "0.967 mm across the plane", "The lower face grinds: X and Z are touched off with it.",
+          "for D = 10 mm, 0.1 mm longer than the tool",
           "rim              ends 1.397 mm past the cutter's axis, at Y -6.397 mm",
           "next tooth       0.05 mm from the rim", "swivel           8.240 deg from the end"});
   expect(

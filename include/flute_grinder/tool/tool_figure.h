@@ -125,7 +125,7 @@ struct FigurePlace {
 
 using FigureValue = std::optional<double>;
 
-/// The measured value; nothing where there is none. An incomplete flute has no rake, since a longer stroke would form
+/// The measured value; nothing where there is none, as of a figure of the end, see askedOfEnd(). An incomplete flute has no rake, since a longer stroke would form
 /// another rake face.
 FigureValue measured(ToolFigure figure, const FigurePlace& place);
 

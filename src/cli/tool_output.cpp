@@ -1,5 +1,7 @@
 #include "cli/tool_output.h"
 
+#include "cli/json_output.h"
+
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/tool_text.h"
@@ -102,7 +104,7 @@ std::vector<Figure> figuresOfFlutes() {
 
 std::vector<Figure> figuresOf(const ValidJob& job) {
   std::vector<Figure> figures = figuresOfFlutes();
-  if (job.relief(0) == nullptr) return figures;
+  if (!job->hasGround(OperationKind::kPrimaryRelief)) return figures;
   for (Figure& figure :
        std::vector<Figure>{askedFigure(ToolFigure::kClearance),
                            {"land_end_clearance_deg", "at the land's end", "end deg", kDegree,
@@ -209,6 +211,14 @@ void printExtremes(const GroundTool& tool) {
   }
 }
 
+/// Prints the figures of the tool's end.
+void printEnd(const CutterFigures& figures) {
+  std::printf("\n");
+  for (const GroundFigure& figure : figures) {
+    std::printf("%-20s %s\n", rowOf(figure.figure).words, text(figure).c_str());
+  }
+}
+
 std::string text(const Range& range) {
   return format("X %.3f to %.3f mm", range.from / kMillimetre, range.to / kMillimetre);
 }
@@ -282,7 +292,8 @@ Json curves(const GroundTool& tool) {
   Json curves = Json::array();
   const Place first{tool.job, tool.sections.front(), 0};
   for (const Figure& figure : figuresOf(tool.job)) {
-    if (!figure.row || (*figure.row == ToolFigure::kLand && tool.job.relief(0) != nullptr)) continue;
+    if (!figure.row || (*figure.row == ToolFigure::kLand && tool.job->hasGround(OperationKind::kPrimaryRelief)))
+      continue;
     const ToolFigureRow& row = rowOf(*figure.row);
     const bool is_asked = asked(row.value, first).has_value();
     curves.push_back({{"key", figure.key},
@@ -341,7 +352,9 @@ void printText(const GroundTool& tool) {
   std::printf("\n");
   for (const MeasuredSection& section : tool.sections) printSection(tool.job, section);
   printExtremes(tool);
-  if (tool.check.complete) {
+  if (tool.job.isStraight()) {
+    printEnd(tool.check.figures);
+  } else if (tool.check.complete) {
     std::printf("\n%-18s  X %.3f to %.3f mm\n", "flutes complete", tool.check.complete->from / kMillimetre,
                 tool.check.complete->to / kMillimetre);
   } else {
@@ -372,6 +385,7 @@ Json toJson(const GroundTool& tool) {
           {"volume_mm3", tool.volume_removed / (kMillimetre * kMillimetre * kMillimetre)},
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
+          {"end", tool.job.isStraight() ? toJson(tool.check.figures) : Json(nullptr)},
           {"on_planned", tool.on_planned},
           {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
           {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},

@@ -322,6 +322,16 @@ GrindJob GrindJob::ofOperation(int index) const {
   return job;
 }
 
+bool GrindJob::hasGround(OperationKind kind) const {
+  return std::any_of(operations.begin(), operations.begin() + operation + 1,
+                     [kind](const GrindProcess& p) { return p.kind == kind; });
+}
+
+const GrindProcess* GrindJob::next() const {
+  const auto next = static_cast<std::size_t>(operation) + 1;
+  return next < operations.size() ? &operations[next] : nullptr;
+}
+
 std::vector<GrindJob> GrindJob::ofAllOperations() const {
   std::vector<GrindJob> jobs(operations.size(), *this);
   for (std::size_t i = 0; i < jobs.size(); ++i) jobs[i].operation = static_cast<int>(i);

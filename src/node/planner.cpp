@@ -1,8 +1,20 @@
 #include "node/planner.h"
 
+#include "flute_grinder/job/job_digest.h"
+
+#include <string>
 #include <utility>
 
 namespace grinder {
+
+namespace {
+
+/// The digest of the operation after a job's; empty after the last.
+std::string digestOfNext(const GrindJob& job) {
+  return job.next() == nullptr ? "" : jobDigest(job.ofOperation(job.operation + 1));
+}
+
+}  // namespace
 
 Planner::Planner(const Machine& machine, const MachineShapes& shapes)
     : machine_(machine), shapes_(shapes), thread_([this] { run(); }) {}
@@ -56,8 +68,8 @@ std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
 bool Planner::isKept(const Request& request) const {
   if (!kept_ || kept_->program->job().digest() != request.job.digest() || !(kept_->program->run() == request.run))
     return false;
-  // The digest does not contain the operations that follow, but the last relief is judged differently from the others.
-  return kept_->program->job()->operations.size() == request.job->operations.size();
+  // The digest does not contain the operations that follow, but the next one decides how a relief or a gash is judged.
+  return digestOfNext(*kept_->program->job()) == digestOfNext(*request.job);
 }
 
 PlannedJob Planner::makePlan(const Request& request) const {

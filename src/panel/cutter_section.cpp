@@ -20,15 +20,20 @@ QString line(const QString& text, bool good) {
   return good ? text : QString("<span style=\"color:%1\">%2</span>").arg(kWrong, text);
 }
 
-QString figureLine(const CutterSection& section, const GroundFigure& figure) {
-  bool good = true;
-  for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) good = good && section.isWithin(figure.figure, i);
+QString figureLine(const GroundFigure& figure, bool good) {
   const ToolFigureRow& row = rowOf(figure.figure);
   QString text = row.words + QString(" ") + QString::fromStdString(groundText(figure));
   text[0] = text[0].toUpper();
   const QString asked = QString::fromStdString(askedText(figure));
   return line(text, good) +
          (asked.isEmpty() ? "" : QString(" (%1 ± %2)").arg(asked).arg(figure.tolerance / shopScale(row.unit)));
+}
+
+/// The figures of the end that an operation leaves, whatever the section.
+QString figuresOfEnd(const ValidJob& job) {
+  QStringList lines;
+  for (const GroundFigure& figure : checkGroundCutter(job).figures) lines << figureLine(figure, isAsAsked(figure));
+  return lines.join("<br>");
 }
 
 /// The faults of a section beyond its figures.
@@ -73,11 +78,20 @@ CutterSection cutterSection(const ValidJob& job, double x) {
 }
 
 QString figuresText(const CutterSection& section) {
+  if (section.job.isStraight()) return figuresOfEnd(section.job);
+  const auto is_within = [&](ToolFigure figure) {
+    for (std::size_t i = 0; i < section.ground.teeth.size(); ++i) {
+      if (!section.isWithin(figure, i)) return false;
+    }
+    return true;
+  };
   QStringList lines;
   for (const QString& fault : faults(section)) lines << line(fault, false);
   for (const GroundFigure& figure : figuresOf(section.job, {section.ground})) {
     // Only the figures of this operation: there is no room for all.
-    if (rowOf(figure.figure).of == rowOf(section.job->process().kind).form) lines << figureLine(section, figure);
+    if (rowOf(figure.figure).of == rowOf(section.job->process().kind).form) {
+      lines << figureLine(figure, is_within(figure.figure));
+    }
   }
   return lines.join("<br>");
 }

@@ -93,7 +93,7 @@ Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tole
 
 bool isJudged(const ToolFigureRow& row, const FigurePlace& p) {
   if (row.of == StrokeForm::kStraight) return false;
-  if (row.of == StrokeForm::kRelief && p.job->process().kind == OperationKind::kFlute) return false;
+  if (row.of == StrokeForm::kRelief && !p.job->hasGround(OperationKind::kPrimaryRelief)) return false;
   return row.value == ToolFigure::kLand || asked(row.value, p).has_value();
 }
 
@@ -231,8 +231,7 @@ void take(const Json& json, T& value) {
 }
 
 /// The criteria of an end: each figure's value that is farther from the asked one.
-std::vector<Criterion> criteriaOfEnd(const ValidJob& job, const GroundTool* tool) {
-  std::vector<Criterion> criteria;
+void addCriteriaOfEnd(const ValidJob& job, const GroundTool* tool, std::vector<Criterion>& criteria) {
   for (const GroundFigure& asks : askedOfEnd(job)) {
     const ToolFigureRow& row = rowOf(asks.figure);
     const double scale = shopScale(row.unit);
@@ -249,8 +248,6 @@ std::vector<Criterion> criteriaOfEnd(const ValidJob& job, const GroundTool* tool
       add(criterion, at.value / scale, format("tooth %d, %.3f mm from the axis", at.tooth + 1, at.x / kMillimetre));
     }
   }
-  criteria.push_back(gougeOf(job, tool));
-  return criteria;
 }
 
 }  // namespace
@@ -276,7 +273,6 @@ Tolerances readTolerances(const std::string& path) {
 }
 
 std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* tool, const Tolerances& tolerances) {
-  if (job.isStraight()) return criteriaOfEnd(job, tool);
   GroundSection small_end;
   small_end.radius = job->cutter.end_diameter / 2;
   small_end.teeth.resize(1);
@@ -285,11 +281,12 @@ std::vector<Criterion> criteriaOfTool(const ValidJob& job, const GroundTool* too
     const FigurePlace first{job, small_end, 0};
     if (!isJudged(row, first)) continue;
     Criterion& criterion = criteria.emplace_back(criterionOf(row, first, tolerances));
-    // Flutes taken from the plan were not measured.
+    // What is taken from the plan was not measured.
     const bool is_measured =
-        tool != nullptr && tool->allTeethGround() && !(tool->on_planned && row.of == StrokeForm::kFlute);
+        tool != nullptr && tool->allTeethGround() && !(tool->on_planned && row.of != rowOf(job->process().kind).form);
     if (is_measured) addFigure(criterion, row, *tool, tolerances);
   }
+  if (job.isStraight()) addCriteriaOfEnd(job, tool, criteria);
   criteria.push_back(gougeOf(job, tool));
   return criteria;
 }

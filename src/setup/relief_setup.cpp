@@ -132,8 +132,8 @@ class Trials {
  public:
   Trials(const GrindJob& job, const ValidJob& flutes)
       : job_(job), flutes_(flutes), edges_(edgesOf(flutes)), lands_(landsOf(groundCutterOf(flutes))) {
-    const bool goes_on = static_cast<std::size_t>(job.operation) + 1 < job.operations.size();
-    land_ = goes_on ? job.cutter.land : 0;
+    const GrindProcess* next = job.next();
+    land_ = next != nullptr && isRelief(next->kind) ? job.cutter.land : 0;
     for (const Land& land : lands_) {
       CutterGeometry geometry = job.cutter;
       geometry.spiral_angle = edges_[land.tooth].spiral_angle;

@@ -106,9 +106,9 @@ void addCuts(const ValidJob& job, const EndStrokes& strokes, std::vector<EndCut>
 
 /// The job of the primary flank after a gash; nothing if there is none that can be ground yet.
 std::optional<ValidJob> flankAfter(const ValidJob& job) {
-  const auto next = static_cast<std::size_t>(job->operation) + 1;
-  const bool follows = job->process().kind == OperationKind::kGash && next < job->operations.size() &&
-                       job->operations[next].kind == OperationKind::kPrimaryEnd;
+  const GrindProcess* next = job->next();
+  const bool follows =
+      job->process().kind == OperationKind::kGash && next != nullptr && next->kind == OperationKind::kPrimaryEnd;
   if (!follows) return std::nullopt;
   try {
     return ValidJob(job->ofOperation(job->operation + 1)).withEdges(job.flutes(), job.edges());
@@ -138,21 +138,15 @@ GroundEnd groundEndOf(const ValidJob& job, const EndStrokes& own, const std::opt
           EndFlutes(groundCutterOf(job.flutes()))};
 }
 
-/// Whether an operation is the job's or before it in the list.
-bool isDone(const ValidJob& job, OperationKind kind) {
-  const auto last = job->operations.begin() + job->operation + 1;
-  return std::any_of(job->operations.begin(), last, [kind](const GrindProcess& p) { return p.kind == kind; });
-}
-
 /// Whether edges of end teeth are measured: they are there, or a primary flank will make them.
 bool hasEdges(const ValidJob& job, const std::optional<ValidJob>& next) {
-  return next || isDone(job, OperationKind::kPrimaryEnd);
+  return next || job->hasGround(OperationKind::kPrimaryEnd);
 }
 
 /// A figure is asked once its operation is done.
 bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
   if (m.figure == ToolFigure::kPeripheryFrom) return true;
-  return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : isDone(job, m.since);
+  return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : job->hasGround(m.since);
 }
 
 GroundFigure askedFigure(const EndMeasurement& m, const CutterGeometry& cutter) {
@@ -172,7 +166,7 @@ class EndCheck {
     const bool has_edge = hasEdges(job_, next_);
     const double whole = has_edge ? end_.wholeFrom(tooth).value_or(radius) : 0;
     place.uncut = 2 * whole;
-    if (isDone(job_, OperationKind::kChamfer)) place.chamfer = end_.chamfer(tooth);
+    if (job_->hasGround(OperationKind::kChamfer)) place.chamfer = end_.chamfer(tooth);
     const double inner = std::max(whole, cutter_.end_uncut_diameter / 2) + kBeyond;
     const double outer = kOutermost * (radius - (place.chamfer ? place.chamfer->width : 0));
     for (int i = 0; i < kEndSections && inner < outer; ++i) {
@@ -203,7 +197,7 @@ class EndCheck {
     const LogCurve helix(cutter);
     const double behind = (cutter_.cut == CutDirection::kRightHand ? kTouched : -kTouched) / cutter.radius(0);
     const double chamfer =
-        isDone(job_, OperationKind::kChamfer) ? cutter_.chamfer_width / std::tan(cutter_.chamfer_angle) : 0;
+        job_->hasGround(OperationKind::kChamfer) ? cutter_.chamfer_width / std::tan(cutter_.chamfer_angle) : 0;
     const double begin = chamfer + widthTolerance(chamfer), end = begin + cutter.radius(0);
     double taken = 0;
     for (double x = begin; x < end; x += kTouched) {

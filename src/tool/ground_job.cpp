@@ -145,8 +145,8 @@ class Checker {
       add(ReasonKind::kNextEdge, section.x, number, Unit::kRadian, -relief.next_edge, 0);
     }
     const bool secondary = job_->process().kind == OperationKind::kSecondaryRelief;
-    const auto next = static_cast<std::size_t>(job_->operation) + 1;
-    const bool last = next == job_->operations.size() || !isRelief(job_->operations[next].kind);
+    const GrindProcess* next = job_->next();
+    const bool last = next == nullptr || !isRelief(next->kind);
     const bool is_wide =
         last ? relief.heel.has_value() : job_.relief(number)->surfaceAt(0, job_->cutter.land).radius > 0;
     if (!is_wide || (secondary && !relief.land)) {

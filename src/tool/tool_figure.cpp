@@ -23,7 +23,7 @@ FigureValue ifComplete(const Place& p, FigureValue value) { return p.tooth().com
 
 /// A value that only a secondary relief has.
 FigureValue ifSecondary(const Place& p, double asked) {
-  return p.job->process().kind == OperationKind::kSecondaryRelief ? FigureValue(asked) : std::nullopt;
+  return p.job->hasGround(OperationKind::kSecondaryRelief) ? FigureValue(asked) : std::nullopt;
 }
 
 FigureValue ofRelief(const Place& p, FigureValue ReliefSection::*member) {
@@ -156,6 +156,12 @@ CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& s
     if (figure) figures.push_back(*figure);
   }
   return figures;
+}
+
+bool isAsAsked(const GroundFigure& figure) {
+  if (!figure.asked) return true;
+  return figure.least.value >= figure.asked->from - figure.tolerance &&
+         figure.largest.value <= figure.asked->to + figure.tolerance;
 }
 
 const GroundFigure* find(const CutterFigures& figures, ToolFigure figure) {

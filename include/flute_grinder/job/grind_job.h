@@ -129,6 +129,10 @@ struct GrindJob {
 
   GrindProcess& process() { return processOf(*this); }              ///< the job's operation
   const GrindProcess& process() const { return processOf(*this); }  ///< the job's operation
+  /// Whether the tool has an operation of a kind after the job's: it is the job's, or before it.
+  bool hasGround(OperationKind kind) const;
+  /// The operation after the job's; null after the last.
+  const GrindProcess* next() const;
   /// The operation for people, e.g. "primary relief"; empty for the only operation of a cutter.
   std::string operationText() const { return operations.size() < 2 ? "" : rowOf(process().kind).words; }
   /// The job of another operation on the same cutter.

@@ -163,6 +163,9 @@ CutterFigures figuresOf(const ValidJob& job, const std::vector<GroundSection>& s
 /// @param job from withLaws().
 CutterFigures askedOfEnd(const ValidJob& job);
 
+/// Whether all values are within the tolerance of what is asked, or nothing is.
+bool isAsAsked(const GroundFigure& figure);
+
 /// The figure in a list; null if it is not there.
 const GroundFigure* find(const CutterFigures& figures, ToolFigure figure);
 

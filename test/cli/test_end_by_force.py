@@ -61,7 +61,7 @@ class Stroke:
         """The ranges of X on rays, one for each position and ray; from infinity to there if there is none."""
         centre_x, centre_y, centre_z, a = (self.poses[:, i] for i in range(4))
         off_y, off_z = r * numpy.cos(angle - a) - centre_y, r * numpy.sin(angle - a) - centre_z
-        # Along the wheel's axis and from it, over x from the centre: along = u - sine x, along ** 2 + radial ** 2 = off ** 2 + x ** 2.
+        # Over x from the centre: along the axis u - sine x; its square and the one of the distance from it are off ** 2 + x ** 2.
         u = self.cosine * off_z
         rim, rim_x = self.radius - self.taper * (self.half_width - u), -self.taper * self.sine
         a2 = 1 - self.sine ** 2 - rim_x ** 2

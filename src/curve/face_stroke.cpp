@@ -169,7 +169,9 @@ FaceStroke chamferStroke(const EndTooth& tooth, const OnTooth& normal, const OnT
   const double part = normal.dot(through) / (tooth.radius * std::hypot(normal[1], normal[2]));
   const double behind = std::atan2(normal[2], normal[1]) + std::acos(std::clamp(part, -1.0, 1.0));
   const double turn = tooth.cut == CutDirection::kRightHand ? behind : -behind;
-  const double lowest = std::min(place[1], tooth.radius * std::cos(pose.tooth + turn));
+  // A left-hand edge may fall from the periphery to the end, there to at most the radius through the corner.
+  const double lowest =
+      std::min({place[1], tooth.radius * std::cos(pose.tooth), tooth.radius * std::cos(pose.tooth + turn)});
   const InFace centre(lowest - gap + wheel.radius, place.dot(acrossAt(pose.swivel)));
   FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;

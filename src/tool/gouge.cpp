@@ -103,7 +103,9 @@ double beyondPlane(const GrindJob& job, const PathDeviation& off) {
   const double sin = std::sin(job.process().setup_swivel), cos = std::cos(job.process().setup_swivel);
   const double along_spindle = -sin * off.x + cos * off.z;
   if (job.process().kind != OperationKind::kGash) return -along_spindle;
-  return std::max(job.cutter.cut == CutDirection::kRightHand ? along_spindle : -along_spindle, -off.y);
+  // What is off a stroke is at right angles to it, and the bottom runs along it.
+  const double below_bottom = -off.y / std::cos(job.process().gash_angle);
+  return std::max(job.cutter.cut == CutDirection::kRightHand ? along_spindle : -along_spindle, below_bottom);
 }
 
 std::vector<Gouge> gougesOnEnd(const RunStrokes& strokes, double min) {

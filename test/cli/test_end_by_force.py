@@ -1,0 +1,253 @@
+#!/usr/bin/env python3
+"""Holds the setpoints of the shipped end mill's flutes, gashes, end teeth and chamfers against what the wheels leave that follow
+them: from the file of `grind plan --csv`, the wheels and the set-up of the job file, and nothing of the package. On rays parallel
+to the axis, each position of a wheel takes away a range of X."""
+
+import csv
+import json
+import math
+import os
+import pathlib
+import shutil
+import sys
+import tempfile
+import unittest
+
+import numpy
+import rostest
+import yaml
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
+
+import grinder_client as gc  # noqa: E402
+
+JOB = gc.package_file('jobs/end_mill_d10_t4.yaml')
+KINDS = {'flute': 'flute', 'gash': 'gash', 'end primary': 'end_primary', 'end secondary': 'end_secondary', 'chamfer': 'chamfer'}
+RATE = 200  # [Hz] of the setpoints
+STEP = 0.01  # of differences [mm]
+
+
+def read(path):
+    with open(path, encoding='utf-8') as file:
+        return yaml.safe_load(file)
+
+
+def beside(path, name):
+    return read(os.path.join(os.path.dirname(path), name))
+
+
+class Stroke:
+    """The last stroke of a tooth in an operation. All lengths in mm."""
+
+    def __init__(self, diameter, process, rows, tooth):
+        wheel = process['wheel']
+        self.kind, self.tooth = process['name'], tooth
+        self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
+        self.taper = math.tan(math.radians(wheel.get('angle_deg', 0)))  # the larger face is up
+        swivel = math.radians(process['setup']['swivel_deg'])
+        self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
+        own = [row for row in rows if int(row['tooth']) == tooth]
+        last = max(int(row['pass']) for row in own)
+        # Of the wheel's centre, and A. Between some, less than 0.2 um is left by a rim, and 0.2 um by the corner in a flute.
+        every = 2 if self.kind == 'flute' else 8
+        poses = [(float(row['x_mm']), diameter / 2 + self.radius + float(row['y_mm']),
+                  process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
+                 for row in own if int(row['pass']) == last]
+        if self.kind == 'flute':  # the rest of it is far from the end
+            poses = [pose for pose in poses if pose[0] < 12]
+        self.poses = numpy.array(poses[::every] + poses[-1:])[:, :, None]
+
+    def removed(self, r, angle):
+        """The ranges of X on rays, one for each position and ray; from infinity to there if there is none."""
+        centre_x, centre_y, centre_z, a = (self.poses[:, i] for i in range(4))
+        off_y, off_z = r * numpy.cos(angle - a) - centre_y, r * numpy.sin(angle - a) - centre_z
+        # Over x from the centre: along the axis u - sine x; its square and the one of the distance from it are off ** 2 + x ** 2.
+        u = self.cosine * off_z
+        rim, rim_x = self.radius - self.taper * (self.half_width - u), -self.taper * self.sine
+        a2 = 1 - self.sine ** 2 - rim_x ** 2
+        a1 = u * self.sine - rim * rim_x
+        a0 = off_y ** 2 + off_z ** 2 - u ** 2 - rim ** 2
+        root = a1 ** 2 - a2 * a0
+        with numpy.errstate(invalid='ignore'):
+            reach = numpy.sqrt(root)
+        faces = numpy.sort([(u - self.half_width) / self.sine, (u + self.half_width) / self.sine], axis=0)
+        low, high = numpy.maximum(faces[0], (-a1 - reach) / a2), numpy.minimum(faces[1], (-a1 + reach) / a2)
+        met = low < high  # not if there is no root
+        return numpy.where(met, low + centre_x, math.inf), numpy.where(met, high + centre_x, -math.inf)
+
+
+class Tool:
+    """The strokes of the job's operations on the end."""
+
+    def __init__(self, folder):
+        job, path = read(JOB), os.path.join(folder, 'setpoints.csv')
+        machine = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=RATE)
+        self.cutter, self.printed, self.strokes = job['cutter'], {}, []
+        self.radius, self.teeth = self.cutter['end_diameter_mm'] / 2, self.cutter['teeth']
+        for process in job['operations']:
+            name = KINDS.get(('%s %s' % (process['kind'], process.get('relief', ''))).strip())
+            if name is None:
+                continue
+            process.update(name=name, setup=beside(JOB, process['setup']['file'])[name])
+            if 'file' in process['wheel']:
+                process['wheel'] = beside(JOB, process['wheel']['file'])
+            done = gc.grind('plan', JOB, '--operation', name, '--machine', machine, '--json', '--csv', path)
+            assert done.returncode == 0, done.stderr
+            self.printed[name] = json.loads(done.stdout)
+            with open(path, encoding='utf-8') as file:
+                names = next(file).strip().split(',')
+                rows = list(csv.DictReader((line for line in file if ',stroke,' in line), names))
+            self.strokes += [Stroke(self.cutter['end_diameter_mm'], process, rows, tooth) for tooth in range(self.teeth)]
+        self.angles = [2 * math.pi * tooth / self.teeth for tooth in range(self.teeth)]
+        self.angles = [angle + self.helix(tooth, 0) for tooth, angle in enumerate(self.angles)]
+
+    def of(self, tooth, *kinds):
+        return [s for s in self.strokes if s.tooth == tooth and (not kinds or s.kind in kinds)]
+
+    def ray(self, tooth, r, behind):
+        """At a distance along the tooth's radius, and one at right angles to it."""
+        return numpy.hypot(r, behind), self.angles[tooth] + numpy.arctan2(behind, r)
+
+    def helix(self, tooth, x):
+        """The angle from a tooth's to its flute's edge on the periphery, at X."""
+        low, high = -1.0, 1.0
+        for _ in range(5):
+            behind = numpy.linspace(low, high, 41)
+            ray = numpy.full(41, self.radius), self.angles[tooth] + behind
+            last = self.is_removed(self.of(tooth, 'flute'), ray, x).nonzero()[0][-1]
+            low, high = behind[last], behind[last + 1]
+        return high
+
+    @staticmethod
+    def is_removed(strokes, ray, x):
+        """At X on each ray."""
+        taken = numpy.zeros(len(ray[0]), bool)
+        for stroke in strokes:
+            low, high = stroke.removed(*ray)
+            taken |= ((low <= x) & (x <= high)).any(axis=0)
+        return taken
+
+    def surface(self, strokes, tooth, r, behind):
+        """X of what is left on rays into a blank that ends at X = 0, and the index of the stroke that left it."""
+        ray = self.ray(tooth, r, behind)
+        ranges = [stroke.removed(*ray) for stroke in strokes]
+        x, by = numpy.zeros(len(ray[0])), numpy.full(len(ray[0]), -1)
+        while True:
+            before = x.copy()
+            for i, (low, high) in enumerate(ranges):
+                reached = numpy.where(low <= x + 1e-12, high, -math.inf).max(axis=0)
+                by, x = numpy.where(reached > x, i, by), numpy.maximum(x, reached)
+            if (x == before).all():
+                return x, by
+
+    def edges(self, strokes, tooth, rs, kind, first, last):
+        """At each distance from the axis, where behind the radius a flank begins, and its X there; NaN where there is none."""
+        flank = next(i for i, s in enumerate(strokes) if s.tooth == tooth and s.kind == kind)
+        low, high = numpy.full(len(rs), first), numpy.full(len(rs), last)
+        for count in (41, 21, 21, 21):
+            places = low + (high - low) * numpy.linspace(0, 1, count)[:, None]
+            x, by = self.surface(strokes, tooth, numpy.tile(rs, count), places.ravel())
+            is_flank = (by == flank).reshape(count, -1)
+            at = is_flank.argmax(axis=0)
+            found = is_flank.any(axis=0) & (at > 0)
+            column = numpy.arange(len(rs))
+            low, high = places[at - 1, column], places[at, column]
+        x = x.reshape(count, -1)[at, column]
+        return numpy.where(found, high, math.nan), numpy.where(found, x, math.nan)
+
+
+class EndByForce(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.tool = Tool(folder)
+        cls.end, cls.chamfer = cls.tool.cutter['end'], cls.tool.cutter['chamfer']
+        cls.dish, cls.clearance = (math.tan(math.radians(cls.end[key])) for key in ('dish_deg', 'clearance_deg'))
+        cls.corner = cls.tool.radius - cls.chamfer['width_mm']
+        cls.rs = numpy.array([0.1, 0.3, 0.6, 0.9]) * cls.corner
+
+    def near(self, tooth, name, values, asked, allowed):
+        self.assertLessEqual(numpy.abs(values - asked).max(), allowed, '%s of tooth %d: %s' % (name, tooth + 1, values))
+
+    def x(self, tooth, r, behind):
+        return self.tool.surface(self.tool.strokes, tooth, r, behind)[0]
+
+    def flank(self, tooth, kind, first, last):
+        """Where a flank begins, and its clearance and dish there in deg."""
+        behind = self.tool.edges(self.tool.strokes, tooth, self.rs, kind, first, last)[0]
+        x, inside, along = (self.x(tooth, self.rs - off, behind + way) for off, way in ((0, STEP), (STEP, STEP), (0, 2 * STEP)))
+        return behind, numpy.degrees(numpy.arctan((along - x) / STEP)), numpy.degrees(numpy.arctan((inside - x) / STEP))
+
+    def test_flanks(self):
+        for tooth in range(self.tool.teeth):
+            for kind, key, first, last, begins in (('end_primary', 'clearance_deg', -0.02, 0.1, 0),
+                                                   ('end_secondary', 'second_clearance_deg', 0.2, 0.6, self.end['land_mm'])):
+                behind, clearance, dish = self.flank(tooth, kind, first, last)
+                self.near(tooth, key, clearance, self.end[key], 0.01)
+                self.near(tooth, 'dish', dish, self.end['dish_deg'], 0.01)
+                # Of the primary one the flute's hook has taken a little outside.
+                self.near(tooth, kind, behind, begins, 0.002 if begins else 0.03)
+
+    def test_rake_of_the_gash(self):
+        for tooth in range(self.tool.teeth):
+            x, faces = (self.tool.radius - self.rs) * self.dish, []
+            for depth in (0.02, 0.06):
+                low, high = numpy.full(len(x), -0.02), numpy.full(len(x), 0.1)
+                for _ in range(25):
+                    middle = (low + high) / 2
+                    gone = self.tool.is_removed(self.tool.of(tooth, 'gash'), self.tool.ray(tooth, self.rs, middle), x + depth)
+                    low, high = numpy.where(gone, middle, low), numpy.where(gone, high, middle)
+                faces.append(low)
+            self.near(tooth, 'rake', numpy.degrees(numpy.arctan((faces[1] - faces[0]) / 0.04)), self.end['rake_deg'], 0.01)
+
+    def is_whole(self, tooth, rs):
+        """Whether an edge is where the tooth's own strokes leave it, in the plane that is asked, so that no other touches it."""
+        all_strokes, own = (self.tool.edges(strokes, tooth, rs, 'end_primary', -0.02, 0.1)
+                            for strokes in (self.tool.strokes, self.tool.of(tooth)))
+        plane = (self.tool.radius - rs) * self.dish + all_strokes[0] * self.clearance
+        return ((abs(all_strokes[0] - own[0]) < 1e-4) & (abs(all_strokes[1] - own[1]) < 1e-4) &
+                (abs(all_strokes[1] - plane) < 1e-3))
+
+    def test_edges_are_whole_outside_the_uncut_diameter(self):
+        printed = self.tool.printed['chamfer']['figures']['uncut_diameter']['ground_mm'][1] / 2
+        self.assertLess(2 * printed, self.end['uncut_diameter_mm'])
+        rs = numpy.concatenate([numpy.arange(0.02, 0.1, 0.005), numpy.linspace(0.1, self.corner - 0.02, 20)])
+        for tooth in range(self.tool.teeth):
+            whole = self.is_whole(tooth, rs)
+            self.assertTrue(whole.any() and not whole.all())
+            self.near(tooth, 'whole from', rs[~whole].max(), printed, 0.02)
+
+    def test_the_edges_of_the_periphery_are_untouched(self):
+        strokes = [s for s in self.tool.strokes if s.kind != 'flute']
+        for tooth in range(self.tool.teeth):
+            # Behind the chamfer; in front of that it has taken them.
+            x = numpy.concatenate([[0.1], numpy.linspace(0.23, self.tool.radius, 30)])
+            angles = numpy.array([self.tool.angles[tooth] + self.tool.helix(tooth, at) for at in x])
+            behind = 0.005 / self.tool.radius
+            ray = numpy.full(len(x), self.tool.radius - 1e-5), angles + behind
+            self.assertEqual(self.tool.is_removed(strokes, ray, x).tolist(), [True] + 30 * [False])
+
+    def test_chamfer(self):
+        radius = self.tool.radius
+        for tooth in range(self.tool.teeth):
+            def edge(kind, rs, tooth=tooth):
+                return self.tool.edges(self.tool.strokes, tooth, numpy.array(rs), kind, -0.02, 0.2)
+
+            rs = self.corner + numpy.linspace(-0.04, 0.04, 17)
+            with numpy.errstate(invalid='ignore'):  # a place that is no number is not less
+                before = ~(edge('chamfer', rs)[0] <= numpy.nan_to_num(edge('end_primary', rs)[0], nan=math.inf))
+            self.near(tooth, 'width', radius - rs[before].max(), self.chamfer['width_mm'], 0.02)
+            rs = numpy.array([self.corner + 0.05, radius - 0.05])
+            behind, x = edge('chamfer', rs)
+            rise = (x[1] - x[0]) / (rs[1] - rs[0])
+            self.near(tooth, 'angle', math.degrees(math.atan2(1, rise)), self.chamfer['angle_deg'], 0.3)
+            along = numpy.array([x[1] - x[0], rs[1] - rs[0], behind[1] - behind[0]])
+            fall = (self.x(tooth, rs, behind + 2 * STEP) - self.x(tooth, rs, behind + STEP))[0] / STEP
+            normal, of_surface = numpy.cross(along, [fall, 0, 1]), numpy.array([-1, rise, 0])
+            cosine = abs(normal @ of_surface) / numpy.linalg.norm(normal) / numpy.linalg.norm(of_surface)
+            self.near(tooth, 'clearance', math.degrees(math.acos(cosine)), self.chamfer['clearance_deg'], 0.3)
+
+
+if __name__ == '__main__':
+    rostest.rosrun('flute_grinder', 'end_by_force', '__main__')

@@ -1,0 +1,191 @@
+// What the plan says of the end of the shipped end mill, with one of its numbers changed.
+
+#include "tool/end_check.h"
+
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/tool/z_law.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <vector>
+
+namespace grinder {
+namespace test_end_check {
+
+using units::kDegree;
+using units::kMillimetre;
+
+using Change = std::function<void(GrindJob&)>;
+
+GrindProcess& operationOf(GrindJob& job, OperationKind kind) {
+  const auto is = [kind](const GrindProcess& p) { return p.kind == kind; };
+  return *std::find_if(job.operations.begin(), job.operations.end(), is);
+}
+
+/// The shipped job with a change, up to the operation, and with the swivels of its planes.
+GrindJob jobOf(const std::string& operation, const Change& change) {
+  GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", operation);
+  change(job);
+  for (GrindProcess& process : job.operations) {
+    if (!isStraight(process.kind)) continue;
+    process.setup_swivel = swivelOfPlane(job.ofOperation(static_cast<int>(&process - job.operations.data())));
+  }
+  return job;
+}
+
+const Change kShipped = [](GrindJob&) {};
+
+CutterCheck checked(const GrindJob& job) { return checkGroundCutter(withLaws(ValidJob(job))); }
+
+double largest(const CutterCheck& check, ToolFigure figure) {
+  const GroundFigure* found = find(check.figures, figure);
+  return found ? found->largest.value : -1;
+}
+
+Change ofTeeth(const std::vector<double>& degrees) {
+  return [degrees](GrindJob& job) {
+    job.tooth_angles.clear();
+    for (const double angle : degrees) job.tooth_angles.push_back(angle * kDegree);
+  };
+}
+
+struct Asked {
+  ToolFigure figure;
+  double value, off;  ///< [m], [rad]
+};
+
+/// What the job file asks for; the flute's hook bends the chamfer's edge.
+constexpr Asked kAsked[] = {{ToolFigure::kEndClearance, 8 * kDegree, 1e-6},
+                            {ToolFigure::kEndSecondClearance, 18 * kDegree, 1e-6},
+                            {ToolFigure::kEndDish, 2 * kDegree, 1e-6},
+                            {ToolFigure::kEndRake, 3 * kDegree, 1e-6},
+                            {ToolFigure::kEndLand, 0.4 * kMillimetre, 1e-9},
+                            {ToolFigure::kPeripheryFrom, 0, 0},
+                            {ToolFigure::kUncutDiameter, 0.1 * kMillimetre, 0.03 * kMillimetre},
+                            {ToolFigure::kChamferWidth, 0.2 * kMillimetre, 5e-6},
+                            {ToolFigure::kChamferAngle, 45 * kDegree, 0.2 * kDegree},
+                            {ToolFigure::kChamferClearance, 10 * kDegree, 0.1 * kDegree}};
+
+void expectAsAsked(const CutterCheck& check) {
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
+  EXPECT_EQ(check.figures.size(), std::size(kAsked));
+  for (const Asked& asked : kAsked) {
+    const GroundFigure* found = find(check.figures, asked.figure);
+    ASSERT_TRUE(found) << toString(asked.figure);
+    EXPECT_NEAR(found->least.value, asked.value, asked.off) << toString(asked.figure);
+    EXPECT_NEAR(found->largest.value, asked.value, asked.off) << toString(asked.figure);
+  }
+}
+
+TEST(EndCheck, TheShippedEndIsAsAskedWithOtherTeethToo) {
+  for (const auto& teeth : std::vector<std::vector<double>>{
+           {0, 90, 180, 270}, {0, 180}, {0, 120, 240}, {0, 80, 185, 270}, {0, 95, 180, 280}}) {
+    SCOPED_TRACE(testing::PrintToString(teeth));
+    expectAsAsked(checked(jobOf("chamfer", ofTeeth(teeth))));
+  }
+}
+
+/// The one that is not like the others tells of which tooth the figure is.
+TEST(EndCheck, UnequalTeethAreMeasuredOneByOne) {
+  const auto extremes = [](const std::vector<double>& teeth) {
+    const CutterCheck check = checked(jobOf("end_primary", ofTeeth(teeth)));
+    return *find(check.figures, ToolFigure::kUncutDiameter);
+  };
+  const double even = largest(checked(jobOf("end_primary", kShipped)), ToolFigure::kUncutDiameter);
+  // The rim passes the axis the farther, the nearer its tooth's next one is to a quarter turn.
+  const GroundFigure third = extremes({0, 90, 180, 280}), second = extremes({0, 90, 190, 270});
+  EXPECT_NEAR(third.least.value, even, 1e-8);
+  EXPECT_NEAR(second.least.value, even, 1e-8);
+  EXPECT_GT(third.largest.value, even + 1e-6);
+  EXPECT_NEAR(third.largest.value, second.largest.value, 1e-8);
+  EXPECT_EQ(third.largest.tooth, (second.largest.tooth + 1) % 4);
+}
+
+GrindProcess& gashOf(GrindJob& job) { return operationOf(job, OperationKind::kGash); }
+
+TEST(EndCheck, RefusesAnEndThatIsNotAsAskedAndNamesTheFigure) {
+  const auto thin = [](GrindJob& job) {
+    gashOf(job).wheel_profile = WheelShape::kStraight;
+    gashOf(job).wheel_angle = 0;
+    gashOf(job).wheel_width = 3 * kMillimetre;
+  };
+  const struct {
+    const char* operation;
+    Change change;
+    const char* says;
+    ToolFigure figure;
+    double least, most;  ///< of its largest [mm]
+  } rows[]{
+      // Behind a straight rim 3 mm wide, the lower face is at the tooth before from 3 mm outward.
+      {"gash", thin, "the uncut diameter of tooth 1 is 6.0", ToolFigure::kUncutDiameter, 6, 6.1},
+      {"end_primary", thin, "the uncut diameter of tooth 1 is 6.0", ToolFigure::kUncutDiameter, 6, 6.1},
+      {"gash", [](GrindJob& job) { gashOf(job).gash_past = -0.5 * kMillimetre; },
+       "the uncut diameter of tooth 1 is 1.4", ToolFigure::kUncutDiameter, 1, 2 * 0.9},
+      {"end_secondary", [](GrindJob& job) { job.cutter.end_land = 4 * kMillimetre; },
+       "the end land cannot be measured: nothing is left of it", ToolFigure::kUncutDiameter, 0, 0.3},
+      {"gash", ofTeeth({0, 60, 120, 180, 240, 300}), "the uncut diameter of tooth 1 is 10 mm",
+       ToolFigure::kUncutDiameter, 10, 10},
+  };
+  for (const auto& row : rows) {
+    SCOPED_TRACE(&row - rows);
+    const CutterCheck check = checked(jobOf(row.operation, row.change));
+    EXPECT_NE(text(check.reasons).find(row.says), std::string::npos) << text(check.reasons);
+    EXPECT_GE(largest(check, row.figure), row.least * kMillimetre - 1e-9);
+    EXPECT_LE(largest(check, row.figure), row.most * kMillimetre + 1e-9);
+  }
+}
+
+/// The plan of a gash tells which edges it spoils, once the flank that follows can be planned.
+TEST(EndCheck, AGashKnowsTheUncutDiameterOfTheFlankThatFollows) {
+  GrindJob job = jobOf("gash", kShipped);
+  const double foreseen = largest(checked(job), ToolFigure::kUncutDiameter);
+  EXPECT_NEAR(foreseen, largest(checked(jobOf("end_primary", kShipped)), ToolFigure::kUncutDiameter), 1e-9);
+  GrindJob not_set_up = job;
+  operationOf(not_set_up, OperationKind::kPrimaryEnd).setup_swivel = 0;
+  const CutterCheck alone = checked(not_set_up);
+  EXPECT_EQ(find(alone.figures, ToolFigure::kUncutDiameter), nullptr);
+  EXPECT_NEAR(largest(alone, ToolFigure::kEndRake), 3 * kDegree, 1e-6);
+  EXPECT_TRUE(alone.reasons.empty());
+}
+
+/// Gash and chamfer alone; a left-hand one has its flutes and its gash mirrored in Z, and its chamfer in Y.
+Change withoutFlanks(CutDirection cut) {
+  return [cut](GrindJob& job) {
+    const auto is_left_out = [](const GrindProcess& p) {
+      return isRelief(p.kind) || p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd;
+    };
+    job.operations.erase(std::remove_if(job.operations.begin(), job.operations.end(), is_left_out),
+                         job.operations.end());
+    job.operation = static_cast<int>(job.operations.size()) - 1;
+    if (cut == CutDirection::kRightHand) return;
+    job.cutter.cut = cut;
+    job.cutter.spiral_angle *= -1;
+    for (GrindProcess& p : job.operations) {
+      p.wheel_side = WheelFace::kLower;
+      p.setup_swivel *= -1;
+      p.setup_height *= -1;
+    }
+  };
+}
+
+TEST(EndCheck, ALeftHandEndMeasuresAsItsMirrorImage) {
+  const CutterCheck right = checked(jobOf("chamfer", withoutFlanks(CutDirection::kRightHand)));
+  const CutterCheck left = checked(jobOf("chamfer", withoutFlanks(CutDirection::kLeftHand)));
+  EXPECT_EQ(text(left.reasons), text(right.reasons));
+  ASSERT_EQ(left.figures.size(), right.figures.size());
+  EXPECT_GT(left.figures.size(), 4u);
+  for (const GroundFigure& figure : right.figures) {
+    const GroundFigure* other = find(left.figures, figure.figure);
+    ASSERT_TRUE(other);
+    EXPECT_NEAR(other->least.value, figure.least.value, 1e-9) << toString(figure.figure);
+    EXPECT_NEAR(other->largest.value, figure.largest.value, 1e-9) << toString(figure.figure);
+  }
+}
+
+}  // namespace test_end_check
+}  // namespace grinder

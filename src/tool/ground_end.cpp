@@ -15,6 +15,9 @@ constexpr double kStep = 0.02;       ///< step of the search for an edge and for
 constexpr double kFarthest = 0.6;    ///< how far behind the radius an edge is searched, per radius
 constexpr double kNearby = 1e-5;     ///< distance between the rays of a slope, per radius
 constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake face is found, per radius
+/// Width of what may be left of the blank's end in front of a primary flank, per radius: a blank without stock is not
+/// quite reached where an axis is off by the rounding of its encoder.
+constexpr double kBlunt = 2e-3;
 constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
 
 bool holds(const std::vector<Range>& ranges, double x) {
@@ -97,7 +100,8 @@ std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r)
     if (is_flank(behind)) {
       const double edge = changeBetween(before, behind, is_flank);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
-      const bool faced = isRemoved(tooth, r, edge - kNearby * radius_, x, By::kOwnFace);
+      const double blunt = (face == EndFace::kPrimary ? kBlunt : kNearby) * radius_;
+      const bool faced = isRemoved(tooth, r, edge - blunt, x, By::kOwnFace);
       return faced ? std::optional(edge) : std::nullopt;
     }
     before = behind;

@@ -1,5 +1,6 @@
 #include "ride_job.h"
 
+#include "face_opinion.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 
 #include <algorithm>
@@ -84,6 +85,15 @@ GrindJob randomFlutes(Random& random) {
   return job;
 }
 
+/// Random edges under an operation that follows those of the flutes.
+std::vector<EdgeHelix> randomEdges(Random& random, const ValidJob& flutes) {
+  std::vector<EdgeHelix> edges;
+  for (int i = 0; i < flutes.teeth(); ++i) {
+    edges.push_back({flutes.cutterOf(i).spiral_angle * between(random, 0.98, 1.02), between(random, -0.01, 0.01)});
+  }
+  return edges;
+}
+
 /// Of a cutter's flutes, those or a relief behind them.
 ValidJob withRelief(Random& random, GrindJob job) {
   CutterGeometry& c = job.cutter;
@@ -111,11 +121,47 @@ ValidJob withRelief(Random& random, GrindJob job) {
   }
   const ValidJob flutes(job.ofOperation(0));
   const int index = flip(random, 0.5) || !secondary ? 1 : 2;
-  std::vector<EdgeHelix> edges;
-  for (int i = 0; i < flutes.teeth(); ++i) {
-    edges.push_back({flutes.cutterOf(i).spiral_angle * between(random, 0.98, 1.02), between(random, -0.01, 0.01)});
+  return ValidJob(job.ofOperation(index)).withEdges(flutes, randomEdges(random, flutes));
+}
+
+/// Of a cutter's flutes, an operation on its end.
+ValidJob withEnd(Random& random, GrindJob job) {
+  CutterGeometry& c = job.cutter;
+  const bool left = c.cut == CutDirection::kLeftHand;
+  c.end_clearance = between(random, 0.05, 0.25);
+  c.end_second_clearance = c.end_clearance + between(random, 0.05, 0.25);
+  c.end_land = c.end_diameter * between(random, 0.02, 0.1);
+  c.end_dish = flip(random, 0.2) ? 0 : between(random, 0, 0.1);
+  c.end_rake = flip(random, 0.2) ? 0 : between(random, -0.1, 0.2);
+  c.end_clearance_tolerance = c.end_rake_tolerance = 0.01;
+  c.chamfer_width = c.end_diameter * between(random, 0.01, 0.1);
+  c.chamfer_angle = between(random, 0.3, 1.2);
+  c.chamfer_clearance = between(random, 0.05, 0.3);
+  GrindProcess p = job.process();
+  p.depth = p.depth_end = p.overtravel_end = p.overtravel_shank = p.setup_x_shift = p.setup_height = 0;
+  p.z_law = ZLaw::kPublished;
+  // A chamfer is over the soonest, and so drawn less often.
+  constexpr OperationKind kinds[]{OperationKind::kChamfer, OperationKind::kGash, OperationKind::kGash,
+                                  OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd};
+  p.kind = kinds[static_cast<std::size_t>(fraction(random) * (left ? 3 : 5))];
+  p.wheel_diameter = between(random, 30e-3, 150e-3);
+  p.wheel_width = between(random, 1e-3, 10e-3);
+  p.stock = flip(random, 0.5) ? 0 : between(random, 0, 0.5e-3);
+  if (p.kind == OperationKind::kGash) {
+    p.gash_angle = between(random, 0.3, 1.2);
+    p.gash_past = c.end_diameter * between(random, -0.3, 0.1);
   }
-  return ValidJob(job.ofOperation(index)).withEdges(flutes, edges);
+  p.infeed = c.end_diameter * (p.kind == OperationKind::kGash ? between(random, 0.2, 0.6) : between(random, 0.05, 0.4));
+  p.feed = acrossDecades(random, 10e-3, 150e-3);
+  p.finish_infeed = flip(random, 0.2) ? p.infeed / 10 : 0;
+  job.operations.push_back(p);
+  job.operation = 1;
+  job.process().setup_swivel = swivelOfPlane(job);
+  const ValidJob flutes(job.ofOperation(0));
+  const std::vector<EdgeHelix> edges = randomEdges(random, flutes);
+  const double z = ValidJob(job).withEdges(flutes, edges).faceStroke(0, 0, 0).to[kZ];
+  job.process().setup_height = z + between(random, -1e-3, 1e-3);
+  return ValidJob(job).withEdges(flutes, edges);
 }
 
 ValidJob withCorrections(Random& random, const ValidJob& job) {
@@ -141,10 +187,67 @@ void limitBends(Random& random, const ValidJob& job, AxisLimits& limits) {
   limits.max_jerk[kZ] = std::clamp(jerk, 0.1, 1000.0);
 }
 
+/// What is asked of the end of a tool at one of its teeth.
+second_opinion::Face faceOf(const ValidJob& job, int tooth) {
+  using Kind = second_opinion::Face::Kind;
+  const CutterGeometry& c = job->cutter;
+  const GrindProcess& p = job->process();
+  second_opinion::Face f;
+  const bool secondary = p.kind == OperationKind::kSecondaryEnd;
+  f.kind = p.kind == OperationKind::kGash      ? Kind::kGash
+           : p.kind == OperationKind::kChamfer ? Kind::kChamfer
+                                               : Kind::kEnd;
+  f.left_hand = c.cut == CutDirection::kLeftHand;
+  f.radius = second_opinion::Real(c.end_diameter) / 2;
+  const std::vector<double>& angles = job->tooth_angles;
+  const auto i = static_cast<std::size_t>(tooth);
+  f.pitch = i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + units::kTurn - angles[i];
+  f.a = angles[i] + job.edges()[i].at_end;
+  f.dish = c.end_dish;
+  f.rake = c.end_rake;
+  f.clearance = f.kind == Kind::kChamfer ? c.chamfer_clearance : secondary ? c.end_second_clearance : c.end_clearance;
+  f.first_clearance = c.end_clearance;
+  f.land = secondary ? c.end_land : 0;
+  f.width = c.chamfer_width;
+  f.angle = f.kind == Kind::kGash ? p.gash_angle : c.chamfer_angle;
+  f.spiral = (f.left_hand ? -1 : 1) * std::tan(second_opinion::Real(c.spiral_angle));
+  f.hook = std::max(0.0, std::tan(c.rake_angle));
+  f.past = p.gash_past;
+  f.swivel = p.setup_swivel;
+  f.height = p.setup_height;
+  f.wheel_radius = second_opinion::Real(p.wheel_diameter) / 2;
+  f.wheel_width = p.wheel_width;
+  f.gap = kEndGap;
+  f.clear = p.clearance;
+  f.stock = p.stock;
+  return f;
+}
+
+/// The passes of straight strokes, each of which is judged.
+std::vector<second_opinion::Pass> straightPassesOf(const ValidJob& job) {
+  std::vector<second_opinion::Pass> passes;
+  for (const JobPass& pass : job.passes()) {
+    const FaceStroke stroke = job.faceStroke(pass.place.tooth, pass.depth, pass.wear);
+    second_opinion::Pass one{pass.place.tooth, pass.place.pass};
+    Axes::Map(one.from.data()) = stroke.from;
+    Axes::Map(one.to.data()) = stroke.to;
+    one.stock = second_opinion::Real(job.deepest()) - pass.depth;
+    one.wear = pass.wear;
+    judge(faceOf(job, one.tooth), one);
+    passes.push_back(one);
+  }
+  return passes;
+}
+
 second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const Axes& offset) {
   second_opinion::Asked asked;
   using second_opinion::Real;
-  for (int i = 0; i < job.teeth(); ++i) {
+  asked.straight = job.isStraight();
+  if (asked.straight) {
+    asked.teeth.resize(static_cast<std::size_t>(job.teeth()));
+    asked.passes = straightPassesOf(job);
+  }
+  for (int i = 0; i < job.teeth() && !asked.straight; ++i) {
     const StrokeLaw& law = job.strokeLaw(i);
     const Cone& c = law.cutter;
     second_opinion::Tooth tooth;
@@ -161,11 +264,14 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
     asked.teeth.push_back(tooth);
   }
   for (const JobPass& pass : job.passes()) {
+    if (asked.straight) break;
     const DepthLaw law = job.depthLaw(pass.place.tooth, pass.depth, pass.wear);
     asked.passes.push_back({pass.place.tooth, pass.place.pass, law.at_end, law.taper});
   }
-  asked.from = job.strokeLaw(0).from;
-  asked.to = job.strokeLaw(0).to;
+  if (!asked.straight) {
+    asked.from = job.strokeLaw(0).from;
+    asked.to = job.strokeLaw(0).to;
+  }
   asked.clearance = job->process().clearance;
   asked.offset_y = offset[kY];
   asked.deviation = job->interpolation.tolerance;
@@ -189,7 +295,10 @@ double minCycles(const GrindProgram& program) {
   for (const Move& move : program.moves()) {
     const Axes way = (move.to - at).abs();
     double at_feed = 0;
-    if (move.kind == MoveKind::kStroke) at_feed = way[kX] * program.cutter(move.tooth).edgePerTravel();
+    if (move.kind == MoveKind::kStroke) {
+      at_feed =
+          program.isStraight() ? way.head<3>().matrix().norm() : way[kX] * program.cutter(move.tooth).edgePerTravel();
+    }
     if (move.kind == MoveKind::kInfeed) at_feed = way[kY];
     const Axes least = (way / limits.max_velocity)
                            .max(2 * (way / limits.max_acceleration).sqrt())
@@ -245,15 +354,23 @@ bool limitToPath(Random& random, RideJob& ride) {
   return stream.rest() == Rest::kEnd;
 }
 
+/// The highest Y of the surface along the strokes.
+double surfaceOf(const ValidJob& job) {
+  if (job.isStraight()) return 0;
+  const double growth = std::tan(job->cutter.cone_angle);
+  const StrokeLaw& law = job.strokeLaw(0);
+  return std::max(law.from * growth, law.to * growth);
+}
+
 std::optional<RideJob> draw(Random& random) {
   GrindJob flutes = randomFlutes(random);
-  ValidJob job = flip(random, 0.3) ? withRelief(random, flutes) : ValidJob(flutes);
+  ValidJob job = flip(random, 0.3)   ? withRelief(random, flutes)
+                 : flip(random, 0.5) ? withEnd(random, flutes)
+                                     : ValidJob(flutes);
   if (job->process().z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
   Machine machine = randomMachine(random);
   if (job->process().z_law == ZLaw::kConstantRake) limitBends(random, job, machine.limits);
-  const double growth = std::tan(job->cutter.cone_angle);
-  const StrokeLaw& law = job.strokeLaw(0);
-  const double clear = std::max(law.from * growth, law.to * growth) + job->process().clearance;
+  const double clear = surfaceOf(job) + job->process().clearance;
   Axes offset = Axes::Zero();
   if (flip(random, 0.5))
     offset << between(random, -0.5, 0.5), between(random, -0.3, 0.3), between(random, -0.5, 0.5),

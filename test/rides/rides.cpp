@@ -287,7 +287,8 @@ class Ride {
     row.y_off = drive_.yOff();
     row.rises = sample_.state == S::kRetracting || sample_.state == S::kLifting;
     row.lifts = sample_.setpoint.move == MoveKind::kLift;
-    row.in_stroke = sample_.setpoint.step != StepKind::kNone;
+    const bool of_straight = job_.asked.straight && sample_.setpoint.move == MoveKind::kStroke;
+    row.in_stroke = of_straight || sample_.setpoint.step != StepKind::kNone;
     row.ends_stroke = row.in_stroke && sample_.setpoint.move_fraction >= 1;
     std::copy(sample_.setpoint.position.data(), sample_.setpoint.position.data() + kAxisCount, row.work.begin());
     if (sample_.state == S::kFault && drive_.isCommandedOn()) throw second_opinion::Violation("the power stays on");

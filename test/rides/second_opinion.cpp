@@ -149,6 +149,7 @@ Real Watch::lowest(Real x) const {
 
 /// Above all of the work.
 Real Watch::clearHeight() const {
+  if (asked_.straight) return asked_.clearance;
   const Real growth = asked_.teeth.front().growth;
   return std::max(asked_.from * growth, asked_.to * growth) + asked_.clearance;
 }
@@ -163,7 +164,7 @@ void Watch::checkWayOut(const Row& row) {
     progress_.in_work = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);
-    progress_.in_work = row.work[0] >= low && row.work[0] <= high;
+    progress_.in_work = asked_.straight || (row.work[0] >= low && row.work[0] <= high);
   } else if (progress_.in_work && row.moves && !risesFrom(last_.at, row.at)) {
     throw Violation("the wheel leaves the work another way than up");
   }
@@ -179,6 +180,7 @@ void Watch::checkPlace(const Row& row) {
     if (row.cycle == 0 || !last_.of_job || risesFrom(last_.work, row.work)) return;
     throw Violation("a lift moves another axis, or down");
   }
+  if (asked_.straight) return checkStraightPlace(row);
   const Real x = row.work[0], y = row.work[1];
   const Tooth& tooth = asked_.teeth[static_cast<std::size_t>(row.tooth)];
   const Real surface = x * tooth.growth;
@@ -206,6 +208,53 @@ void Watch::checkPlace(const Row& row) {
   if (across && !row.in_stroke) throw Violation("the wheel goes across in the work without a stroke");
 }
 
+/// Beside the work a wheel goes up, or comes down to where a stroke begins; only strokes go elsewhere.
+void Watch::checkStraightPlace(const Row& row) {
+  if (row.in_stroke || row.work[1] >= clearHeight() - noiseOf(1)) return;
+  if (risesFrom(last_.work, row.work) || beginsPass(row)) return;
+  throw Violation("the wheel is beside the work without a stroke, and goes not up");
+}
+
+bool Watch::beginsPass(const Row& row) const {
+  return std::any_of(asked_.passes.begin(), asked_.passes.end(), [&](const Pass& pass) {
+    const Point& from = pass.from;
+    return pass.tooth == row.tooth && pass.pass == row.pass && row.work[0] == from[0] && row.work[1] >= from[1] &&
+           row.work[2] == from[2] && row.work[3] == from[3];
+  });
+}
+
+/// A straight stroke is begun again at its beginning after whatever has left it.
+void Watch::checkStraightStroke(const Row& row, const Pass& pass, bool next) {
+  Point way{};
+  Real length = 0, along = 0, before = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    way[i] = pass.to[i] - pass.from[i];
+    length = std::hypot(length, Real(way[i]));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    along += (Real(row.work[i]) - pass.from[i]) * way[i] / length;
+    before += (Real(last_.work[i]) - pass.from[i]) * way[i] / length;
+  }
+  for (int i = 0; i < 4; ++i) {
+    const auto axis = static_cast<std::size_t>(i);
+    const Real at = i == 3 ? Real(pass.from[3]) : pass.from[axis] + way[axis] * along / length;
+    if (!(std::abs(row.work[axis] - at) <= 4 * noiseOf(i)))
+      throw Violation(text("off the stroke: place", i, row.work[axis], at));
+  }
+  const Real noise = noiseOf(0) + noiseOf(1) + noiseOf(2), step = along - before;
+  if (!(along <= length + noise)) throw Violation(text("beyond the stroke: place", 1, along, length));
+  if (!(step >= -noise)) throw Violation(text("a stroke goes back: place", 1, along, before));
+  const Real most = asked_.period * asked_.feed * (1 + 1e-9L);
+  if (!(step <= most + noise)) throw Violation(text("feed: way", 1, step, most));
+  if (!next) return;
+  if (!(along - progress_.reached <= most + noise)) throw Violation(text("a gap: place", 1, along, progress_.reached));
+  progress_.reached = std::max(progress_.reached, along);
+  if (length - along > noise) return;
+  ++progress_.ground;
+  progress_.reached = 0;
+  progress_.again = !row.ends_stroke;
+}
+
 void Watch::checkStroke(const Row& row) {
   const auto is = [&](std::size_t i) {
     return i < asked_.passes.size() && asked_.passes[i].tooth == row.tooth && asked_.passes[i].pass == row.pass;
@@ -218,8 +267,9 @@ void Watch::checkStroke(const Row& row) {
                     " after " + std::to_string(progress_.ground) + " passes");
   }
   progress_.again = !next && !row.ends_stroke;
-  checkFeed(row, asked_.teeth[static_cast<std::size_t>(row.tooth)]);
   const Pass& own = asked_.passes[next ? progress_.ground : progress_.ground - 1];
+  if (asked_.straight) return checkStraightStroke(row, own, next);
+  checkFeed(row, asked_.teeth[static_cast<std::size_t>(row.tooth)]);
   const Real x = row.work[0];
   const Real y = x * asked_.teeth[static_cast<std::size_t>(row.tooth)].growth - own.at_end + x * own.taper;
   if (!(std::abs(row.work[1] - y) <= 2 * noiseOf(1))) throw Violation(text("stroke: place", 1, row.work[1], y));

@@ -22,13 +22,16 @@ struct Tooth {
   std::vector<double> coefficients;
 };
 
-/// A pass in the order of grinding: Y = X growth - at_end + X taper.
+/// A pass in the order of grinding: Y = X growth - at_end + X taper; or a straight stroke.
 struct Pass {
   int tooth = 0, pass = 0;
   Real at_end = 0, taper = 0;
+  Point from{}, to{};        ///< of a straight stroke
+  Real stock = 0, wear = 0;  ///< that it leaves, and of the wheel's radius [m]
 };
 
 struct Asked {
+  bool straight = false;  ///< the strokes are, at constant A
   std::vector<Tooth> teeth;
   std::vector<Pass> passes;
   Real from = 0, to = 0;  ///< X of a stroke's ends
@@ -96,7 +99,10 @@ class Watch {
   void checkPlace(const Row& row);
   void checkWayOut(const Row& row);
   bool risesFrom(const Point& from, const Point& to) const;
+  void checkStraightPlace(const Row& row);
+  bool beginsPass(const Row& row) const;
   void checkStroke(const Row& row);
+  void checkStraightStroke(const Row& row, const Pass& pass, bool next);
   void checkFeed(const Row& row, const Tooth& tooth);
   Real lowest(Real x) const;
   Real clearHeight() const;

@@ -1,0 +1,139 @@
+"""Shows that an operation on the end of a tool is ground as planned, held, retracted, killed and continued in a straight stroke, and
+kept as what it is; and that its records are of a tool that passes."""
+
+import csv
+import glob
+import json
+import os
+
+import yaml
+from flute_grinder import job as job_file
+from flute_grinder.msg import GrinderState
+
+import grinder_client as gc
+import path_checks as checks
+import record_files
+from grinder_client import LIFT, MM, STROKE, A, X, Y, Z
+from test_journal import JournalTest, strokes_of
+
+OPERATION = 'primary flank of the end'
+KINDS = ('flute', None), ('gash', None), ('end', 'primary')
+TEETH = 4
+
+
+class TestEnd(JournalTest):
+    """The end mill's flutes, gashes and primary flanks of the end, in one pass each."""
+
+    def setUp(self):
+        super().setUp()
+        self.history = self.folder + '/history'
+        self.job_path = self.folder + '/mill.yaml'
+        jobs = gc.package_file('jobs/')
+        with open(jobs + 'end_mill_d10_t4.yaml') as text:
+            mill = yaml.safe_load(text)
+        mill['operations'] = [o for o in mill['operations'] if (o['kind'], o.get('relief')) in KINDS]
+        for operation in mill['operations']:
+            operation.update(feed_mm_min=1000, infeed_mm=6, finish_infeed_mm=0, spark_out=0, clearance_mm=1)
+            for part in ('wheel', 'setup'):
+                if 'file' in operation[part]:
+                    operation[part]['file'] = jobs + operation[part]['file']
+        with open(self.job_path, 'w') as file:
+            yaml.safe_dump(mill, file)
+        self.goal = job_file.goal(self.job_path, 'end_primary')
+
+    def start(self, **arguments):
+        machine = dict(gc.machine(pace=5), **{name: os.path.join(self.folder, name) for name in ('journal', 'history', 'offsets')})
+        for joint, position in zip(gc.JOINTS, self.at or ()):
+            machine['hardware'][joint]['start_position'] = position
+        gc.OwnNode.start(self, machine, **arguments)
+
+    def wait_record(self, number):
+        paths = gc.poll(lambda: (lambda found: len(found) == number and found)(sorted(glob.glob(self.history + '/*.json'))), 'the record')
+        return record_files.read(paths[-1])
+
+    def prepare(self, operation, swivel):
+        """Answers what a start asks for. The zero points are the machine's, so that a plan begins where the run does."""
+        self.grind(0, 'confirm-wheel', self.job_path, '--operation', operation)
+        self.grind(0, 'confirm-swivel', swivel)
+        zeros = [argument for axis in 'xyz' for argument in ('--set', axis + '=0')]
+        self.grind(0, 'offsets', *zeros, '--job', self.job_path, '--operation', operation, '--answer', 'set-offset')
+        return self.job_path, '--operation', operation
+
+    def judged(self):
+        """The verdicts on the records, with their tools measured."""
+        done = gc.grind('history', '--from', self.history, '--judge-again', '--json')
+        self.assertEqual(done.stderr, '')
+        return [(entry['operation'], entry['verdict'], entry['verdict_because']) for entry in json.loads(done.stdout)]
+
+    def check_as_planned(self):
+        """On a tool whose operations before are ground, without anybody who interferes."""
+        for operation, swivel in (('flute', '43.32'), ('gash', '3')):
+            self.grind(0, 'run', *self.prepare(operation, swivel))
+        end = self.prepare('end_primary', '81.76')
+        self.grind(0, 'plan', *end, '--csv', self.folder + '/plan.csv')
+        self.grind(0, 'run', *end, '--csv', self.folder + '/run.csv')
+        planned, streamed = ([row[:12] for row in csv.reader(open('%s/%s.csv' % (self.folder, name)))] for name in ('plan', 'run'))
+        self.assertTrue(planned == streamed, 'the setpoints differ')
+        for tooth in range(TEETH):
+            places = {(row[6], row[8], row[9]) for row in planned if row[2:4] == ['stroke', str(tooth)]}
+            self.assertEqual(len(places), 1, 'X, Z, A of a stroke')
+        record = self.wait_record(3)
+        self.assertEqual((record['operation'], record['outcome'], len(record['strokes'])), (OPERATION, 'done', TEETH))
+        self.assertEqual(self.wait_finished()['operation'], OPERATION)
+        self.assertEqual(self.json('status')['last_job']['operation'], OPERATION)
+        self.assertRegex(self.said('offsets'), r'(?m)^tool in the collet: mill\.yaml with flute, gash, %s$' % OPERATION)
+        self.assertEqual(self.judged(), [(name, 'passed', []) for name in ('flute', 'gash', OPERATION)])
+
+    def hold_below(self, run, tooth):
+        """Holds a run in the midst of a tooth's stroke, deeper than 2 mm into the end."""
+        run.wait_past(lambda s: s.move == STROKE and s.tooth == tooth and s.position[Y] < -2 * MM, 'the stroke')
+        self.assertTrue(self.client.hold().success)
+        self.client.wait_state(GrinderState.HELD)
+        self.client.wait_rest()
+
+    def check_begun_again(self, setpoints):
+        """That the wheel was lifted once out of a stroke, along Y, and that the stroke was begun again where it begins."""
+        lift = next(i for i, s in enumerate(setpoints) if s.move == LIFT and setpoints[i - 1].move == STROKE)
+        left = setpoints[lift - 1]
+        lifted = [s for s in setpoints[lift:] if s.move == LIFT]
+        self.assertEqual(len({tuple(s.position[axis] for axis in (X, Z, A)) for s in [left, *lifted]}), 1)
+        heights = [s.position[Y] for s in lifted]
+        self.assertEqual(heights, sorted(heights))
+        self.assertGreaterEqual(heights[-1], 1 * MM - 1e-12)
+        again = next(s for s in setpoints[lift:] if s.move == STROKE)
+        first = next(s for s in setpoints if s.move == STROKE)
+        self.assertEqual((again.tooth, again.pass_, again.position), (first.tooth, first.pass_, first.position))
+
+    def test_as_planned_then_retracted_killed_and_continued(self):
+        self.start()
+        self.client.make_ready_at_park()
+        self.check_as_planned()
+        self.grind(0, 'reclamped')
+        self.assertTrue(self.client.set_feed_override(0.02).success)
+        run = self.client.send(self.goal)
+        self.hold_below(run, 0)
+        self.assertTrue(self.client.retract().success)
+        self.client.wait_state(GrinderState.RETRACTED)
+        self.assertTrue(self.client.resume().success)
+        self.hold_below(run, 0)
+        self.check_begun_again(run.setpoints)
+        self.assertTrue(self.client.resume().success)
+        self.hold_below(run, 1)
+        self.assertTrue(checks.is_gapless(run.setpoints))
+        self.kill()
+
+        self.start()
+        self.client.make_ready()
+        self.client.confirm_swivel(gc.process_of(self.goal).setup_swivel)
+        journal = self.read_journal()
+        self.assertEqual([journal[key] for key in ('operation', 'finished', 'tooth', 'pass', 'wheel_in_work')], [OPERATION, False, 1, 0, False])
+        self.assertRegex(self.said('status'), r'(?m)^last job .*mill\.yaml, %s.*tooth 2, pass 1 not finished' % OPERATION)
+        self.assertTrue(self.client.set_feed_override(1).success)
+        self.grind(0, 'run', self.job_path, '--operation', 'end_primary', '--continue', '--answer', 'ignore-offsets')
+        self.client.fresh_state()
+        setpoints = [s for batch in self.client.batches for s in batch.setpoints]
+        self.assertEqual(strokes_of(setpoints)[0], [(tooth, 0) for tooth in range(1, TEETH)])
+        record = self.wait_record(4)
+        self.assertEqual((record['operation'], record['continues'], record['outcome'], len(record['strokes'])),
+                         (OPERATION, True, 'done', TEETH - 1))
+        self.assertEqual(self.judged()[3], (OPERATION, 'incomplete', ['ground without the check of the zero points']))

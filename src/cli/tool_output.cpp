@@ -1,7 +1,6 @@
 #include "cli/tool_output.h"
 
 #include "cli/json_output.h"
-
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/tool_text.h"

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <string>
 #include <utility>
 
 namespace grinder {
@@ -20,15 +21,16 @@ constexpr int kVolumeSections = 12;
 constexpr double kMinGouge = 1e-6;  ///< depth up to which a gouge may come from averaging positions [m]
 
 /// The reason for the deepest gouge, if it is deep enough.
-std::optional<Reason> reasonOf(const std::vector<Gouge>& gouges) {
+std::optional<Reason> reasonOf(const ValidJob& job, const std::vector<Gouge>& gouges) {
   const auto shallower = [](const Gouge& a, const Gouge& b) { return a.depth < b.depth; };
   const auto deepest = std::max_element(gouges.begin(), gouges.end(), shallower);
   if (deepest == gouges.end() || !(deepest->depth > kBadGouge)) return std::nullopt;
-  return otherReason(
-      format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the flute that the job asks for, at X = "
-             "%.3f mm; allowed: up to %.3f mm",
-             deepest->place.tooth + 1, deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre,
-             deepest->x / kMillimetre, kBadGouge / kMillimetre));
+  const std::string beyond = job.isStraight()
+                                 ? "face that the job asks for"
+                                 : format("flute that the job asks for, at X = %.3f mm", deepest->x / kMillimetre);
+  return otherReason(format("tooth %d, pass %d, %s: the wheel went %.3f mm beyond the ", deepest->place.tooth + 1,
+                            deepest->place.pass + 1, toString(deepest->move), deepest->depth / kMillimetre) +
+                     beyond + format("; allowed: up to %.3f mm", kBadGouge / kMillimetre));
 }
 
 }  // namespace
@@ -65,7 +67,7 @@ GroundTool measure(const std::string& source, const RunStrokes& strokes, const s
   tool.on_planned = strokes.isOnPlanned();
   tool.strokes = strokes.strokes();
   tool.gouges = gougesOf(strokes, kMinGouge);
-  if (auto reason = reasonOf(tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
+  if (auto reason = reasonOf(strokes.job(), tool.gouges)) tool.check.reasons.push_back(*std::move(reason));
   return tool;
 }
 

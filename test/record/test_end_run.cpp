@@ -57,14 +57,14 @@ std::vector<Setpoint> setpointsOf(const ValidJob& job, bool broken) {
 }
 
 RunStrokes runOf(const ValidJob& job, const Axes& error, bool broken = false) {
-  RunStrokes strokes(job);
+  RunStrokes strokes(job, groundCutterOf(job));  // flutes and reliefs are as planned, and measured
   const std::vector<Setpoint> all = setpointsOf(job, broken);
   for (std::size_t i = 1; i < all.size(); ++i) strokes.add(all[i], all[i - 1].position + error);
   strokes.finish();
   return strokes;
 }
 
-GroundTool toolOf(const RunStrokes& run) { return measure("", run, {}); }
+GroundTool toolOf(const RunStrokes& run) { return measure("", run, {0, run.job()->cutter.flute_length}); }
 
 Axes along(int axis, double error) {
   Axes axes = Axes::Zero();
@@ -148,9 +148,9 @@ TEST(EndRun, IsPassedIfAllTeethAreGroundWithoutAGouge) {
   std::vector<RunStroke> strokes = run.strokes();
   const auto is_third = [](const RunStroke& stroke) { return stroke.place.tooth == 2; };
   strokes.erase(std::remove_if(strokes.begin(), strokes.end(), is_third), strokes.end());
-  const Verdict missing = verdictOn(RunStrokes(job, strokes));
+  const Verdict missing = verdictOn(RunStrokes(job, strokes, groundCutterOf(job)));
   EXPECT_EQ(missing.verdict, "incomplete");
-  EXPECT_EQ(missing.because.size(), askedOfEnd(job).size());
+  EXPECT_GT(missing.because.size(), askedOfEnd(job).size());
   for (const std::string& why : missing.because) EXPECT_NE(why.find(": not measured"), std::string::npos) << why;
   const Verdict gouged = verdictOn(runOf(jobOf("end_primary"), along(kX, 20 * kMicrometre)));
   EXPECT_EQ(gouged.verdict, "failed");

@@ -125,8 +125,8 @@ struct FigurePlace {
 
 using FigureValue = std::optional<double>;
 
-/// The measured value; nothing where there is none, as of a figure of the end, see askedOfEnd(). An incomplete flute has no rake, since a longer stroke would form
-/// another rake face.
+/// The measured value; nothing where there is none, as of a figure of the end, see askedOfEnd(). An incomplete flute
+/// has no rake, since a longer stroke would form another rake face.
 FigureValue measured(ToolFigure figure, const FigurePlace& place);
 
 /// The asked value; nothing if the job does not ask for it there.

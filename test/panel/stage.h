@@ -104,8 +104,17 @@ class Stage {
   void be(const std::string& name) { be(static_cast<std::uint8_t>(valueOf<MachineState>(name).value()), name); }
   /// The same, until a panel shows it, and with it all that was changed before.
   void be(const std::string& name, Panel& panel) {
+    const auto shown = [&panel](const std::string& state) {
+      return QString::fromStdString(panel.state()).toLower() == QString::fromStdString(state).replace('_', ' ');
+    };
+    // A state that is shown already tells nothing of the changes.
+    const std::string other = name == "disabled" ? "ready" : "disabled";
+    if (shown(name)) {
+      be(other);
+      WAIT_FOR(shown(other));
+    }
     be(name);
-    WAIT_FOR(QString::fromStdString(panel.state()).toLower() == QString::fromStdString(name).replace('_', ' '));
+    WAIT_FOR(shown(name));
   }
   void standAt(const std::vector<double>& position) {
     change([&] { joints.name = {"axis_x", "axis_y", "axis_z", "axis_a"}, joints.position = position; });

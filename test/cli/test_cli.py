@@ -267,7 +267,7 @@ class TestGoal(CommandLine):
         message.goal_id.id = '/' + 'n' * 40 + '-12345-1700000000.123456789'
         written = io.BytesIO()
         message.serialize(written)
-        self.assertLess(len(written.getvalue()), 1000)
+        self.assertLess(len(written.getvalue()), 1200)
 
     def test_what_is_refused_is_said_as_by_plan(self):
         bad = gc.job_file(self.path('bad.yaml'), cone_angle_deg=90)

@@ -95,14 +95,14 @@ class TestSetup(CommandLine):
         name = 'end_mill_d10_t4'
         text, shown = self.text(JOBS + '/%s.yaml' % name).replace('../wheels', gc.package_file('wheels')), '  - kind: relief '
         flutes, rest = text[:text.index(shown)], text[text.index('interpolation:'):]
-        end = ('  end: {clearance_deg: 8, dish_deg: 2, rake_deg: 3, clearance_tolerance_deg: 0.5, rake_tolerance_deg: 0.5, uncut_diameter_mm: 2}\n'
-               '  chamfer: {width_mm: 0.2, angle_deg: 45, clearance_deg: 10}\n')
         process = ('    feed_mm_min: 400\n    infeed_mm: %s\n    finish_infeed_mm: 0.03\n    stock_mm: 0.1\n'
-                   '    wheel: {file: %s/wheels/straight_d100_w6.yaml}\n    setup: {file: %s.setup.yaml}\n')
-        for kind, infeed in (('gash\n    angle_deg: 45\n    past_mm: -0.15', 2), ('end\n    relief: primary', 0.2), ('chamfer', 0.1)):
-            flutes += '  - kind: %s\n' % kind + process % (infeed, gc.package_file('.'), name)
-        self.write(name + '.setup.yaml', self.text(JOBS + '/%s.setup.yaml' % name))
-        return self.write(name + '.yaml', flutes.replace('operations:', end + 'operations:') + rest)
+                   '    wheel: {file: %s.yaml}\n    setup: {file: %s.setup.yaml}\n')
+        for kind, infeed, wheel in (('gash\n    angle_deg: 45\n    past_mm: 0.2', 2, 'angled_d100_w5_a45'),
+                                    ('end\n    relief: primary', 0.2, 'straight_d100_w6'), ('chamfer', 0.1, 'straight_d100_w6')):
+            flutes += '  - kind: %s\n' % kind + process % (infeed, gc.package_file('wheels/' + wheel), name)
+        of_flutes = self.text(JOBS + '/%s.setup.yaml' % name)
+        self.write(name + '.setup.yaml', of_flutes[:of_flutes.index('primary:')])
+        return self.write(name + '.yaml', flutes + rest)
 
     def test_the_operations_on_the_end_are_set_up_in_turn(self):
         job = self.end_mill()

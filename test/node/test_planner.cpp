@@ -103,7 +103,6 @@ TEST_F(PlannerTest, KeepsNoPlanOfAReliefThatIsNowTheLast) {
   GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "primary");
   const auto planned = plan(ValidJob(job));
   ASSERT_TRUE(planned->good()) << text(planned->reasons);
-  job.operations[2].feed *= 0.9;
   EXPECT_EQ(plan(ValidJob(job)), planned);
   job.operations.pop_back();
   EXPECT_EQ(plan(ValidJob(job))->fault, PlanFault::kTool);

@@ -140,7 +140,8 @@ void judgeRimOfChamfer(const Face& f, const Plane& plane, const Pose& pose, cons
   const Real half = (n2 + std::sqrt(std::max(Real(0), n1 * n1 + n2 * n2 - c * c))) / (c + n1);
   const Real leaves = 2 * std::atan(half);
   const Vector end = inMachine(f, {0, f.radius * std::cos(leaves), f.radius * std::sin(leaves)}, pose.tooth);
-  requireSame("rim below the chamfer", face[1] - rim, std::min(place[1], end[1]) - f.gap);
+  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth);  // beyond it, a left-hand edge may fall to the end
+  requireSame("rim below the chamfer", face[1] - rim, std::min({place[1], end[1], corner[1]}) - f.gap);
 }
 
 /// The rim on a gash's bottom, as seen along the spindle; from the axis, where the plane meets it.

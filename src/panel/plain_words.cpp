@@ -96,7 +96,8 @@ std::string operationEntry(int index, OperationKind kind) { return format("%d %s
 
 std::optional<OperationKind> operationOf(const flute_grinder::GrindGoal& goal) {
   if (goal.operations.size() < 2 || goal.operation >= goal.operations.size()) return std::nullopt;
-  return static_cast<OperationKind>(processOf(goal).kind);
+  const int kind = processOf(goal).kind;
+  return kind < countOf<OperationKind>() ? std::optional(static_cast<OperationKind>(kind)) : std::nullopt;
 }
 
 std::string describe(const flute_grinder::GrindGoal& goal) {

@@ -24,7 +24,7 @@ struct EndPlace {
   const CutterGeometry& cutter;
   EndSection at;
   double uncut = 0;      ///< diameter outside which the edge is whole [m]
-  double periphery = 0;  ///< see ToolFigure::kPeripheryFrom [m]
+  double periphery = 0;  ///< see ToolFigure::kPeripheryTaken [m]
   std::optional<ChamferFigures> chamfer;
 };
 
@@ -59,7 +59,7 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry& c) { return c.end_rake; }, [](const CutterGeometry& c) { return c.end_rake_tolerance; }},
     {ToolFigure::kUncutDiameter, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.uncut); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
-    {ToolFigure::kPeripheryFrom, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
+    {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
@@ -145,7 +145,7 @@ bool hasEdges(const ValidJob& job, const std::optional<ValidJob>& next) {
 
 /// A figure is asked once its operation is done.
 bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
-  if (m.figure == ToolFigure::kPeripheryFrom) return true;
+  if (m.figure == ToolFigure::kPeripheryTaken) return true;
   return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : job->hasGround(m.since);
 }
 

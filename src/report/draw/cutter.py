@@ -5,10 +5,10 @@ import math
 
 def process_of(file):
     """The operation of a job's file that was ground."""
-    return next(each for each in file['operations'] if name_of(each) == file['operation'])
+    return next(each for each in file['operations'] if operation_name(each) == file['operation'])
 
 
-def name_of(operation):
+def operation_name(operation):
     """The name of an operation on the command line."""
     if operation['kind'] == 'end':
         return 'end_' + operation['relief']

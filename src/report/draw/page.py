@@ -5,7 +5,7 @@ import os
 import re
 from datetime import datetime
 
-from cutter import name_of, process_of, radius, spiral_angles, tooth_angles
+from cutter import operation_name, process_of, radius, spiral_angles, tooth_angles
 from figures import QUANTITIES
 
 PAGE = '''<!DOCTYPE html>
@@ -138,7 +138,7 @@ def process_facts(process):
             ('set-up', 'swivel %g deg, height %g mm%s' % (
                 setup['swivel_deg'], setup['height_mm'], ', shift in X %g mm' % setup['x_shift_mm'] if setup.get('x_shift_mm') else '')),
             ('depth' if 'depth_mm' in process else 'operation', '%s%s, infeed %g mm' % (
-                '%g mm' % process['depth_mm'] if 'depth_mm' in process else name_of(process),
+                '%g mm' % process['depth_mm'] if 'depth_mm' in process else operation_name(process),
                 ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', process['infeed_mm'])),
             ('feed', '%g mm/min' % process['feed_mm_min'])]
 

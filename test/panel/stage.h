@@ -107,12 +107,10 @@ class Stage {
     const auto shown = [&panel](const std::string& state) {
       return QString::fromStdString(panel.state()).toLower() == QString::fromStdString(state).replace('_', ' ');
     };
-    // A state that is shown already tells nothing of the changes.
+    // What is shown already, or is on its way, tells nothing of the changes.
     const std::string other = name == "disabled" ? "ready" : "disabled";
-    if (shown(name)) {
-      be(other);
-      WAIT_FOR(shown(other));
-    }
+    be(other);
+    WAIT_FOR(shown(other));
     be(name);
     WAIT_FOR(shown(name));
   }

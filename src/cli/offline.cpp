@@ -3,6 +3,7 @@
 #include "cli/csv.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
+#include "cli/tool_output.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/step_table.h"
@@ -109,10 +110,7 @@ int runTable(const TableOptions& options) {
 void printPlan(const flute_grinder::PlanReport& plan) {
   if (plan.statistics.setpoints == 0) return;
   printStatistics(fromMessage(plan.statistics));
-  for (const flute_grinder::ToolFigure& figure : plan.figures) {
-    const GroundFigure ground = fromMessage(figure);
-    std::printf("%-20s %s\n", rowOf(ground.figure).words, text(ground).c_str());
-  }
+  for (const flute_grinder::ToolFigure& figure : plan.figures) printFigure(fromMessage(figure));
   if (plan.complete[0] <= plan.complete[1]) {
     std::printf("%-20s X %.3f to %.3f mm\n", "flutes complete", plan.complete[0] / kMillimetre,
                 plan.complete[1] / kMillimetre);

@@ -1,6 +1,5 @@
 #include "cli/tool_output.h"
 
-#include "cli/json_output.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/tool_text.h"
@@ -213,9 +212,7 @@ void printExtremes(const GroundTool& tool) {
 /// Prints the figures of the tool's end.
 void printEnd(const CutterFigures& figures) {
   std::printf("\n");
-  for (const GroundFigure& figure : figures) {
-    std::printf("%-20s %s\n", rowOf(figure.figure).words, text(figure).c_str());
-  }
+  for (const GroundFigure& figure : figures) printFigure(figure);
 }
 
 std::string text(const Range& range) {
@@ -341,6 +338,10 @@ Json toJson(const GroundTool& tool, const MeasuredSection& section) {
 }
 
 }  // namespace
+
+void printFigure(const GroundFigure& figure) {
+  std::printf("%-20s %s\n", rowOf(figure.figure).words, text(figure).c_str());
+}
 
 void printText(const GroundTool& tool) {
   std::printf("%s: %s\n\n%8s  %5s", tool.source.c_str(),

@@ -8,6 +8,9 @@
 
 namespace grinder {
 
+/// Prints a figure over all teeth, with what is asked.
+void printFigure(const GroundFigure& figure);
+
 /// Prints the sections and the extremes over all of them in shop units. Teeth count from 1.
 void printText(const GroundTool& tool);
 

@@ -214,8 +214,7 @@ void checkEnd(Checker& checker, const GrindJob& job) {
     checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
                    "more than the cutter's radius at the end,", -radius);
   }
-  const bool is_flank = p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd;
-  if (is_flank && c.cut == CutDirection::kLeftHand) {
+  if (isEndFlank(p.kind) && c.cut == CutDirection::kLeftHand) {
     checker.refuse(ReasonKind::kNotAllowed, "cutter.cut", {static_cast<double>(c.cut), Unit::kNone},
                    "0, right_hand, for flanks of the end: those of a left-hand cutter take a cup wheel, which is not "
                    "lifted along Y");

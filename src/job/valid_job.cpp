@@ -300,6 +300,10 @@ ValidJob ValidJob::withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edge
   return job;
 }
 
+ValidJob ValidJob::ofOperation(int index) const {
+  return ValidJob(content_->job.ofOperation(index)).withEdges(flutes(), edges());
+}
+
 const ZCorrection& ValidJob::zCorrectionOf(int tooth) const {
   if (content_->z_corrections.empty()) {
     throw std::invalid_argument("process.z_law = constant_rake: its corrections of Z are not computed; see withLaws()");

@@ -79,14 +79,18 @@ std::string placeOf(const FigurePlace& p, ToolFigure figure) {
   return figure == ToolFigure::kCoreDiameter ? at : format("tooth %zu, ", p.number + 1) + at;
 }
 
-/// The criterion of a figure at a place, without a measured value.
-Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tolerances& tolerances) {
+/// The criterion of a figure without a measured value.
+Criterion criterionOf(const ToolFigureRow& row, double asked, double tolerance) {
   const double scale = shopScale(row.unit);
-  Criterion criterion{row.words, row.unit == Unit::kRadian ? "deg" : "mm", true, 3, {}, {}, {}, false, "", ""};
-  if (const FigureValue asks = asked(row.value, p)) {
-    criterion.asked = *asks / scale;
-    criterion.tolerance = tolerance(row.value, p) / scale;
-  }
+  const char* unit = row.unit == Unit::kRadian ? "deg" : "mm";
+  return {row.words, unit, true, 3, asked / scale, tolerance / scale, {}, false, "", ""};
+}
+
+/// The same at a place, where nothing may be asked.
+Criterion criterionOf(const ToolFigureRow& row, const FigurePlace& p, const Tolerances& tolerances) {
+  const FigureValue asks = asked(row.value, p);
+  Criterion criterion = criterionOf(row, asks.value_or(0), asks ? tolerance(row.value, p) : 0);
+  if (!asks) criterion.asked = criterion.tolerance = std::nullopt;
   setTolerance(criterion, tolerances);
   return criterion;
 }
@@ -235,9 +239,7 @@ void addCriteriaOfEnd(const ValidJob& job, const GroundTool* tool, std::vector<C
   for (const GroundFigure& asks : askedOfEnd(job)) {
     const ToolFigureRow& row = rowOf(asks.figure);
     const double scale = shopScale(row.unit);
-    const char* unit = row.unit == Unit::kRadian ? "deg" : "mm";
-    Criterion& criterion = criteria.emplace_back(
-        Criterion{row.words, unit, true, 3, asks.asked->from / scale, asks.tolerance / scale, {}, false, "", ""});
+    Criterion& criterion = criteria.emplace_back(criterionOf(row, asks.asked->from, asks.tolerance));
     if (tool == nullptr || !tool->allTeethGround()) continue;
     const GroundFigure* found = find(tool->check.figures, asks.figure);
     if (found == nullptr) {

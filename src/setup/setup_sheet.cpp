@@ -139,9 +139,8 @@ std::string whatLimitsStraight(const JobSetup& setup, const Range& swivel) {
   std::string ends = "ends ";
   if (p.kind == OperationKind::kChamfer) ends += format("%g mm beyond the flank, ", mm(kEndGap));
   return swivelText(std::min(p.setup_swivel - swivel.from, swivel.to - p.setup_swivel)) + line("rim", ends + past) +
-         (p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd
-              ? line("next tooth", format("%g mm from the rim at the end of a stroke", mm(kEndGap)))
-              : "");
+         (isEndFlank(p.kind) ? line("next tooth", format("%g mm from the rim at the end of a stroke", mm(kEndGap)))
+                             : "");
 }
 
 std::string whatLimits(const JobSetup& setup, const Range& swivel) {

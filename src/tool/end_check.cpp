@@ -1,6 +1,7 @@
 #include "tool/end_check.h"
 
 #include "flute_grinder/curve/log_curve.h"
+#include "tool/ground_end.h"
 
 #include <algorithm>
 #include <cmath>
@@ -111,12 +112,14 @@ std::optional<ValidJob> flankAfter(const ValidJob& job) {
       job->process().kind == OperationKind::kGash && next != nullptr && next->kind == OperationKind::kPrimaryEnd;
   if (!follows) return std::nullopt;
   try {
-    return ValidJob(job->ofOperation(job->operation + 1)).withEdges(job.flutes(), job.edges());
+    return job.ofOperation(job->operation + 1);
   } catch (const InvalidJob&) {  // it is not set up yet, and says so when it is planned
     return std::nullopt;
   }
 }
 
+/// The end of a tool after all operations of the list up to a job's, and a next one if it is given.
+/// @param own the job's strokes; those of the operations before are as planned.
 GroundEnd groundEndOf(const ValidJob& job, const EndStrokes& own, const std::optional<ValidJob>& next) {
   std::vector<EndCut> cuts;
   double stock = 0;
@@ -128,7 +131,7 @@ GroundEnd groundEndOf(const ValidJob& job, const EndStrokes& own, const std::opt
       addCuts(job, own, cuts);
       continue;
     }
-    const ValidJob before = ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
+    const ValidJob before = job.ofOperation(i);
     addCuts(before, strokesOf(before), cuts);
   }
   if (next) addCuts(*next, strokesOf(*next), cuts);
@@ -264,8 +267,6 @@ CutterFigures askedOfEnd(const ValidJob& job) {
   }
   return figures;
 }
-
-GroundEnd groundEndOf(const ValidJob& job) { return groundEndOf(job, strokesOf(job), std::nullopt); }
 
 CutterCheck checkGroundEnd(const RunStrokes& run) {
   EndCheck check(run.job(), run.straightStrokes());

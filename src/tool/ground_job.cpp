@@ -199,8 +199,7 @@ class Checker {
 GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last) {
   std::vector<Reliefs> reliefs(flutes.flutes().size());
   for (int i = 1; i <= last; ++i) {
-    const ValidJob relief =
-        i == job->operation ? job : ValidJob(job->ofOperation(i)).withEdges(job.flutes(), job.edges());
+    const ValidJob relief = i == job->operation ? job : job.ofOperation(i);
     const std::vector<double> wear = relief.wearOfTeeth();
     for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
-
 #include "tool/end_check.h"
 
 #include <algorithm>
@@ -33,6 +32,18 @@ std::optional<Reason> reasonOf(const ValidJob& job, const std::vector<Gouge>& go
                      beyond + format("; allowed: up to %.3f mm", kBadGouge / kMillimetre));
 }
 
+/// A cutter with its sections, not checked.
+GroundTool withSections(const ValidJob& job, const std::string& source, GroundCutter cutter,
+                        const std::vector<double>& at) {
+  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
+  for (const double x : at) {
+    const GroundSection section = tool.cutter.section(x);
+    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
+  }
+  tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
+  return tool;
+}
+
 }  // namespace
 
 bool GroundTool::allTeethGround() const {
@@ -50,19 +61,14 @@ std::vector<double> evenSections(const GrindJob& job, int count) {
 }
 
 GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
-  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
+  GroundTool tool = withSections(job, source, std::move(cutter), at);
   tool.check = checkGroundCutter(job, tool.cutter);
-  for (const double x : at) {
-    const GroundSection section = tool.cutter.section(x);
-    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
-  }
-  tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
   return tool;
 }
 
 GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
-  GroundTool tool = measure(strokes.job(), source, strokes.cutter(), at);
-  if (strokes.job().isStraight()) tool.check = checkGroundEnd(strokes);
+  GroundTool tool = withSections(strokes.job(), source, strokes.cutter(), at);
+  tool.check = strokes.job().isStraight() ? checkGroundEnd(strokes) : checkGroundCutter(tool.job, tool.cutter);
   tool.of_run = true;
   tool.on_planned = strokes.isOnPlanned();
   tool.strokes = strokes.strokes();

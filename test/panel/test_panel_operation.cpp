@@ -15,6 +15,25 @@ class Operation : public Staged {
   }
   bool says(const std::string& begin) { return panel.text("plan_report").find(begin) == 0; }
 
+  /// Loads a copy of the reamer.
+  void loadCopy() {
+    changedJob(kReamer, copy, {});
+    config.mapSetValue("Node", "cell/stage");
+    config.mapSetValue("Job", copy);
+    panel.widget().load(config);
+  }
+  /// The text of the reamer's last operation.
+  static QByteArray lastOperation() {
+    QFile reamer(kReamer);
+    EXPECT_TRUE(reamer.open(QFile::ReadOnly));
+    const QByteArray all = reamer.readAll();
+    const int from = all.indexOf("  - kind: relief\n    relief: secondary\n");
+    return all.mid(from, all.indexOf("interpolation:") - from);
+  }
+
+  const QTemporaryDir folder;
+  const QString copy = folder.filePath("job.yaml");
+  rviz::Config config;
   Panel panel{"cell/stage", kReamer};
   QComboBox& box = panel.the<QComboBox>("operation");
 };
@@ -55,25 +74,16 @@ TEST_F(Operation, ThatIsChosenIsPlannedAndStarted) {
 }
 
 TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
-  const QTemporaryDir folder;
-  const QString path = changedJob(kReamer, folder.filePath("job.yaml"), {});
-  rviz::Config config;
-  config.mapSetValue("Node", "cell/stage");
-  config.mapSetValue("Job", path);
-  panel.widget().load(config);
+  loadCopy();
   panel.chooseOperation("2 primary relief");
   panel.plan();
-  changedJob(kReamer, path, {{"feed_mm_min: 700", "feed_mm_min: 701"}});
+  changedJob(kReamer, copy, {{"feed_mm_min: 700", "feed_mm_min: 701"}});
   panel.click("plan");
   WAIT_FOR(stage.get(&Stage::plans).size() == 2);
   EXPECT_DOUBLE_EQ(stage.get(&Stage::plans).at(1).goal.operations.at(0).feed, 701e-3 / 60);
   EXPECT_EQ(box.currentText(), "2 primary relief");
   WAIT_FOR(says("Takes "));
-  QFile reamer(kReamer);
-  ASSERT_TRUE(reamer.open(QFile::ReadOnly));
-  QByteArray last = reamer.readAll();
-  last = last.mid(last.indexOf("  - kind: relief\n    relief: secondary\n"));
-  changedJob(kReamer, path, {{last.left(last.indexOf("interpolation:")), ""}, {"  second_clearance_deg: 22\n", ""}});
+  changedJob(kReamer, copy, {{lastOperation(), ""}, {"  second_clearance_deg: 22\n", ""}});
   panel.click("start");
   EXPECT_EQ(panel.text("plan_report"), "Choose the operation first.");
   EXPECT_EQ(box.currentText(), "choose");
@@ -87,23 +97,14 @@ TEST_F(Operation, IsChosenAnewWithAnotherFileOrAnotherListOnly) {
 
 /// The last operation of the reamer becomes a gash, and so the third in its list.
 TEST_F(Operation, IsNumberedByItsPlaceAndChosenAnewWithOtherKinds) {
-  const QTemporaryDir folder;
-  const QString path = changedJob(kReamer, folder.filePath("job.yaml"), {});
-  rviz::Config config;
-  config.mapSetValue("Node", "cell/stage");
-  config.mapSetValue("Job", path);
-  panel.widget().load(config);
+  loadCopy();
   panel.chooseOperation("3 secondary relief");
   panel.plan();
-  QFile reamer(kReamer);
-  ASSERT_TRUE(reamer.open(QFile::ReadOnly));
-  QByteArray relief = reamer.readAll();
-  relief = relief.mid(relief.indexOf("  - kind: relief\n    relief: secondary\n"));
-  relief = relief.left(relief.indexOf("interpolation:"));
+  const QByteArray relief = lastOperation();
   QByteArray gash = relief;
   gash.replace("kind: relief\n    relief: secondary\n", "kind: gash\n    angle_deg: 30\n    past_mm: 0\n");
   gash.replace("{file: taper_reamer_d6_t6.setup.yaml}", "{swivel_deg: 0, height_mm: 0}");
-  changedJob(kReamer, path, {{relief, gash}, {"  second_clearance_deg: 22\n", "  end: {rake_tolerance_deg: 1}\n"}});
+  changedJob(kReamer, copy, {{relief, gash}, {"  second_clearance_deg: 22\n", "  end: {rake_tolerance_deg: 1}\n"}});
   panel.click("start");
   EXPECT_EQ(panel.text("plan_report"), "Choose the operation first.");
   EXPECT_EQ(box.currentText(), "choose");

@@ -156,9 +156,7 @@ TEST(EndCheck, AGashKnowsTheUncutDiameterOfTheFlankThatFollows) {
 /// Gash and chamfer alone; a left-hand one has its flutes and its gash mirrored in Z, and its chamfer in Y.
 Change withoutFlanks(CutDirection cut) {
   return [cut](GrindJob& job) {
-    const auto is_left_out = [](const GrindProcess& p) {
-      return isRelief(p.kind) || p.kind == OperationKind::kPrimaryEnd || p.kind == OperationKind::kSecondaryEnd;
-    };
+    const auto is_left_out = [](const GrindProcess& p) { return isRelief(p.kind) || isEndFlank(p.kind); };
     job.operations.erase(std::remove_if(job.operations.begin(), job.operations.end(), is_left_out),
                          job.operations.end());
     job.operation = static_cast<int>(job.operations.size()) - 1;

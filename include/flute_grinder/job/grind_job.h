@@ -60,6 +60,9 @@ inline constexpr OperationRow kOperationKinds[]{
 };
 constexpr auto& rowsOf(OperationKind) noexcept { return kOperationKinds; }
 constexpr bool isRelief(OperationKind kind) noexcept { return rowOf(kind).form == StrokeForm::kRelief; }
+constexpr bool isEndFlank(OperationKind kind) noexcept {
+  return kind == OperationKind::kPrimaryEnd || kind == OperationKind::kSecondaryEnd;
+}
 constexpr bool isStraight(OperationKind kind) noexcept { return rowOf(kind).form == StrokeForm::kStraight; }
 
 /// How the flutes, or a relief behind the edge of every tooth, are ground. For a relief, `depth`, `depth_end`, the

@@ -137,6 +137,9 @@ class ValidJob {
   /// @param edges the edges of all teeth.
   /// @throw InvalidJob if no relief can be ground behind these edges.
   ValidJob withEdges(const ValidJob& flutes, std::vector<EdgeHelix> edges) const;
+  /// Another operation after the flutes, with the same flutes and edges as this one has from withEdges().
+  /// @param index from 1. @throw InvalidJob if it cannot be ground.
+  ValidJob ofOperation(int index) const;
   /// The flutes and the edges under another operation, after withEdges().
   const ValidJob& flutes() const { return *content_->flutes; }
   const std::vector<EdgeHelix>& edges() const { return content_->edges; }

@@ -57,7 +57,8 @@ struct CutterCheck {
 /// complete over their length unless the job allows otherwise. The spiral tolerance applies to the edge's angle in each
 /// section and to its turn from each section to the next, so the edge leaves the asked helix by no more than a helix at
 /// the tolerance would. The asked core is linear between the diameters at the ends. For an operation on the end, the
-/// end is measured instead, see checkGroundEnd(). Takes some milliseconds.
+/// end as planned is measured instead: end teeth, gash and chamfer as asked, edges whole, periphery untouched. Takes
+/// some milliseconds.
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter);
 
 /// Checks the cutter that a job grinds; teeth share a flute if the difference of the wheel's wear between them does not

@@ -47,6 +47,10 @@ struct ToolFigureRow : EnumRow<ToolFigure> {
   bool of_complete = false;               ///< whether it counts only where the flute is complete
 };
 
+constexpr ToolFigureRow figureOfEnd(ToolFigure figure, const char* name, const char* words, Unit unit) {
+  return {{figure, name}, words, unit, ReasonKind::kEnd, StrokeForm::kStraight};
+}
+
 inline constexpr ToolFigureRow kToolFigures[]{
     {{ToolFigure::kRake, "rake"}, "rake", Unit::kRadian, ReasonKind::kRake, StrokeForm::kFlute, true},
     {{ToolFigure::kChordalRake, "chordal_rake"},
@@ -71,44 +75,16 @@ inline constexpr ToolFigureRow kToolFigures[]{
      Unit::kMetre,
      ReasonKind::kUndercut,
      StrokeForm::kRelief},
-    {{ToolFigure::kEndClearance, "end_clearance"},
-     "end clearance",
-     Unit::kRadian,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kEndDish, "end_dish"}, "end dish", Unit::kRadian, ReasonKind::kEnd, StrokeForm::kStraight},
-    {{ToolFigure::kEndSecondClearance, "end_second_clearance"},
-     "second end clearance",
-     Unit::kRadian,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kEndLand, "end_land"}, "end land", Unit::kMetre, ReasonKind::kEnd, StrokeForm::kStraight},
-    {{ToolFigure::kEndRake, "end_rake"}, "gash rake", Unit::kRadian, ReasonKind::kEnd, StrokeForm::kStraight},
-    {{ToolFigure::kUncutDiameter, "uncut_diameter"},
-     "uncut diameter",
-     Unit::kMetre,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kPeripheryTaken, "periphery_taken"},
-     "periphery taken",
-     Unit::kMetre,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kChamferWidth, "chamfer_width"},
-     "chamfer width",
-     Unit::kMetre,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kChamferAngle, "chamfer_angle"},
-     "chamfer angle",
-     Unit::kRadian,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
-    {{ToolFigure::kChamferClearance, "chamfer_clearance"},
-     "chamfer clearance",
-     Unit::kRadian,
-     ReasonKind::kEnd,
-     StrokeForm::kStraight},
+    figureOfEnd(ToolFigure::kEndClearance, "end_clearance", "end clearance", Unit::kRadian),
+    figureOfEnd(ToolFigure::kEndDish, "end_dish", "end dish", Unit::kRadian),
+    figureOfEnd(ToolFigure::kEndSecondClearance, "end_second_clearance", "second end clearance", Unit::kRadian),
+    figureOfEnd(ToolFigure::kEndLand, "end_land", "end land", Unit::kMetre),
+    figureOfEnd(ToolFigure::kEndRake, "end_rake", "gash rake", Unit::kRadian),
+    figureOfEnd(ToolFigure::kUncutDiameter, "uncut_diameter", "uncut diameter", Unit::kMetre),
+    figureOfEnd(ToolFigure::kPeripheryTaken, "periphery_taken", "periphery taken", Unit::kMetre),
+    figureOfEnd(ToolFigure::kChamferWidth, "chamfer_width", "chamfer width", Unit::kMetre),
+    figureOfEnd(ToolFigure::kChamferAngle, "chamfer_angle", "chamfer angle", Unit::kRadian),
+    figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

@@ -6,7 +6,7 @@ namespace grinder {
 /// @param fails,holds places where it does not hold and where it does, one change between them.
 template <typename Condition>
 double changeBetween(double fails, double holds, const Condition& condition) {
-  constexpr int halvings = 50;
+  constexpr int halvings = 36;  // of a fraction of a tool, to femtometres
   for (int i = 0; i < halvings; ++i) {
     const double middle = (fails + holds) / 2;
     (condition(middle) ? holds : fails) = middle;

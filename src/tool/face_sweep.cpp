@@ -1,9 +1,10 @@
 #include "tool/face_sweep.h"
 
-#include "tool/change.h"
+#include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -18,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kNothing{kInfinity, -kInfinity};
 constexpr int kGoldenSteps = 50;
 constexpr double kGolden = 0.6180339887498949;
+constexpr int kRootSteps = 60, kRootBits = 50;
 constexpr double kParallel = 1e-9;  ///< change along the spindle for each metre of a ray, below which there is none
 
 bool isEmpty(const Range& range) { return !(range.from <= range.to); }
@@ -39,6 +41,36 @@ Range chord(const Vector2d& centre, double radius, double along) {
   const double off = along - centre[1], square = radius * radius - off * off;
   if (!(square >= 0)) return kNothing;
   return {centre[0] - std::sqrt(square), centre[0] + std::sqrt(square)};
+}
+
+/// A place where a concave function is 0 or more; if there is none, about where it is largest.
+template <typename Function>
+double placeInside(const Function& f, Range range) {
+  double low = range.to - kGolden * (range.to - range.from), high = range.from + range.to - low;
+  double at_low = f(low), at_high = f(high);
+  for (int i = 0; i < kGoldenSteps && !(at_low >= 0 || at_high >= 0); ++i) {
+    if (at_low > at_high) {
+      range.to = high;
+      high = low, at_high = at_low;
+      low = range.to - kGolden * (range.to - range.from), at_low = f(low);
+    } else {
+      range.from = low;
+      low = high, at_low = at_high;
+      high = range.from + kGolden * (range.to - range.from), at_high = f(high);
+    }
+  }
+  return at_low > at_high ? low : high;
+}
+
+/// Where a function that has another sign at `from` than at `to` is 0.
+template <typename Function>
+double boundary(const Function& f, double from, double at_from, double to, double at_to) {
+  if (at_from == 0) return from;
+  if (at_to == 0) return to;
+  std::uintmax_t steps = kRootSteps;
+  const boost::math::tools::eps_tolerance<double> close(kRootBits);
+  const auto [low, high] = boost::math::tools::toms748_solve(f, from, to, at_from, at_to, close, steps);
+  return (low + high) / 2;
 }
 
 }  // namespace
@@ -109,26 +141,16 @@ Range FaceSweep::removed(const Ray& ray, const Leg& leg) const {
   const Range reach = common(where(ray.w, ray.w_per_x, {profile_.lowerFace(), profile_.upperFace()}),
                              where(ray.at[0], ray.at_per_x[0], leg.within(profile_.maxRadius(), ray.at[1])));
   if (isEmpty(reach)) return kNothing;
-  const auto in_wheel = [&](double x) { return depth(ray, leg, x) >= 0; };
-  if (in_wheel(reach.from) && in_wheel(reach.to)) return reach;
+  const auto depth_at = [&](double x) { return depth(ray, leg, x); };
+  const double at_from = depth_at(reach.from), at_to = depth_at(reach.to);
+  if (at_from >= 0 && at_to >= 0) return reach;
   // The depth is concave along the ray: there is one range, about any place that is inside.
   const Range cylinder = common(reach, where(ray.w, ray.w_per_x, profile_.maxPlace()));
-  double inside = (cylinder.from + cylinder.to) / 2;
-  if (isEmpty(cylinder)) {
-    double from = reach.from, to = reach.to;
-    for (int i = 0; i < kGoldenSteps; ++i) {
-      const double low = to - kGolden * (to - from), high = from + kGolden * (to - from);
-      if (depth(ray, leg, low) > depth(ray, leg, high)) {
-        to = high;
-      } else {
-        from = low;
-      }
-    }
-    inside = (from + to) / 2;
-  }
-  if (!in_wheel(inside)) return kNothing;
-  return {in_wheel(reach.from) ? reach.from : changeBetween(reach.from, inside, in_wheel),
-          in_wheel(reach.to) ? reach.to : changeBetween(reach.to, inside, in_wheel)};
+  const double inside = isEmpty(cylinder) ? placeInside(depth_at, reach) : (cylinder.from + cylinder.to) / 2;
+  const double at_inside = depth_at(inside);
+  if (!(at_inside >= 0)) return kNothing;
+  return {at_from >= 0 ? reach.from : boundary(depth_at, reach.from, at_from, inside, at_inside),
+          at_to >= 0 ? reach.to : boundary(depth_at, inside, at_inside, reach.to, at_to)};
 }
 
 /// Fed along the ray, the wheel removes all up to where its rim is at last.

@@ -56,6 +56,7 @@ void printWheel(const WheelFile& wheel) {
   if (isTapered(p.wheel_profile)) {
     line("angle", format("%.10g deg", p.wheel_angle / kDegree) + ", larger face " + toString(p.wheel_side));
   }
+  if (p.wheel_rim > 0) line("rim", millimetres(p.wheel_rim) + " mm wide");
   line("corner radii", millimetres(p.wheel_corner_radius_lower) + " mm lower, " +
                            millimetres(p.wheel_corner_radius_upper) + " mm upper");
   if (wheel.flange) line("flange", millimetres(*wheel.flange) + " mm from its face to the upper face");
@@ -77,6 +78,7 @@ Json toJson(const WheelFile& wheel) {
           {"new_width_mm", mm(wheel.new_width)},
           {"angle_deg", tapered ? Json(p.wheel_angle / kDegree) : Json(nullptr)},
           {"side", tapered ? Json(toString(p.wheel_side)) : Json(nullptr)},
+          {"rim_mm", p.wheel_rim > 0 ? Json(mm(p.wheel_rim)) : Json(nullptr)},
           {"corner_radius_mm", {mm(p.wheel_corner_radius_lower), mm(p.wheel_corner_radius_upper)}},
           {"points_mm", points.empty() ? Json(nullptr) : points},
           {"flange_mm", wheel.flange ? Json(mm(*wheel.flange)) : Json(nullptr)},

@@ -177,7 +177,9 @@ void ControlLoop::advance() {
     advanceJob();
   } else if (now_.sample.state == MachineState::kLifting) {
     if (!advanceAxisMove()) return;
-    if (now_.axis_move.finished()) now_.wheel.finishLift();
+    const AxisMove& move = now_.axis_move;
+    if (move.finished() && move.axis() == kX && !move.stopping()) return beginLiftAlong(kY);
+    if (move.finished() && move.axis() == kY) now_.wheel.finishLift();
     comeToRest();
   }
 }

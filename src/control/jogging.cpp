@@ -52,8 +52,9 @@ Refusal Jogging::begin(const JogRequest& jog, Answer& answer) noexcept {
   Refusal refusal = refusalOfState(jog);
   if (refusal == Refusal::kNone) refusal = refusalOfSpeed(jog, answer);
   if (refusal == Refusal::kNone) refusal = refusalOfPosition(answer);
-  const bool raises = jog.axis == kY && (jog.continuous ? jog.velocity : jog.distance) > 0;
-  if (refusal == Refusal::kNone && !raises) refusal = now_.wheel.refusal();
+  const bool upward = (jog.continuous ? jog.velocity : jog.distance) > 0;
+  const bool is_out = now_.wheel.isWayOut(jog.axis, upward, now_.sample.command[kX]);
+  if (refusal == Refusal::kNone && !is_out) refusal = now_.wheel.refusal();
   if (refusal == Refusal::kNone) refusal = findEnd(jog, answer);
   if (refusal != Refusal::kNone) return refusal;
 

@@ -35,13 +35,16 @@ void ControlLoop::executeRequest(MachineEvent event) {
 Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
   // The spindle by hand depends on one interlock alone.
   const Interlock interlock = isSwitch(event) ? Interlock::kProbe : job_.openInterlock();
+  const AxisLimits& limits = now_.config.machine.limits;
+  const LiftTarget lift = liftTarget();
+  const int axis = lift.x < limits.min_position[kX] ? kX : kY;
   Answer answer{event,
                 now_.sample.state,
                 refusal,
                 interlock,
-                kY,
-                liftTarget(),
-                now_.config.machine.limits.max_position[kY],
+                axis,
+                axis == kX ? lift.x : lift.y,
+                axis == kX ? limits.min_position[kX] : limits.max_position[kY],
                 now_.sample.swivel,
                 job_.swivel(),
                 {}};
@@ -156,15 +159,24 @@ Refusal ControlLoop::home() {
 
 Refusal ControlLoop::lift() {
   if (!now_.wheel.wheel().in_work) return Refusal::kNotInWork;
-  if (!(liftTarget() <= now_.config.machine.limits.max_position[kY])) return Refusal::kTooFar;
-  const double to = std::max(now_.sample.command[kY], liftTarget());
+  const AxisLimits& limits = now_.config.machine.limits;
+  const LiftTarget to = liftTarget();
+  const bool backs_off = to.x < now_.sample.command[kX];
+  if (!(to.y <= limits.max_position[kY])) return Refusal::kTooFar;
+  if (backs_off && !(to.x >= limits.min_position[kX])) return Refusal::kTooFar;
   now_.wheel.beginLift(to);
-  now_.axis_move.begin(MoveKind::kLift, now_.sample.command, kY, to, now_.config.machine.limits.max_velocity[kY]);
+  beginLiftAlong(backs_off ? kX : kY);
+  now_.apply(MachineEvent::kLift);
+  return Refusal::kNone;
+}
+
+void ControlLoop::beginLiftAlong(int axis) {
+  const LiftTarget target = liftTarget();
+  const double to = axis == kX ? target.x : std::max(now_.sample.command[kY], target.y);
+  now_.axis_move.begin(MoveKind::kLift, now_.sample.command, axis, to, now_.config.machine.limits.max_velocity[axis]);
   now_.limit_check.restart();
   // A lift is allowed wherever the other axes have come to rest; without the reference their limits mean nothing.
   now_.limit_check.widen(now_.sample.command);
-  now_.apply(MachineEvent::kLift);
-  return Refusal::kNone;
 }
 
 Refusal ControlLoop::setSwivel(double angle) {
@@ -177,8 +189,8 @@ Refusal ControlLoop::setSwivel(double angle) {
   return Refusal::kNone;
 }
 
-double ControlLoop::liftTarget() const {
-  return now_.wheel.liftTarget(now_.sample.drive.homed, now_.sample.command[kY]);
+LiftTarget ControlLoop::liftTarget() const {
+  return now_.wheel.liftTarget(now_.sample.drive.homed, now_.sample.command);
 }
 
 }  // namespace grinder

@@ -11,7 +11,15 @@ Wheel wheelOf(const GrindProgram& program) {
   // axis limit it may be rounded up, but no lift may exceed the limit.
   const double clear_y =
       std::min(program.clearanceHeight() + program.run().offset[kY], program.machine().limits.max_position[kY]);
-  return {false, clear_y, program.clearanceHeight() - deepest};
+  Wheel wheel{false, clear_y, program.clearanceHeight() - deepest};
+  if (!program.job().plunges()) return wheel;
+  double farthest = program.clearX();
+  for (const Move& move : program.moves()) {
+    if (move.kind == MoveKind::kStroke) farthest = std::max(farthest, move.to[kX]);
+  }
+  wheel.clear_x = std::max(program.clearX() + program.run().offset[kX], program.machine().limits.min_position[kX]);
+  wheel.back = farthest - program.clearX();
+  return wheel;
 }
 
 Wheel unknownWheel(const AxisLimits& limits) {

@@ -116,12 +116,17 @@ void checkWheelPoints(Checker& checker, const GrindJob& job) {
 
 /// Checks the wear, the angle and the corner radii against the wheel's shape.
 void checkWheel(Checker& checker, const GrindProcess& p) {
-  const bool tapered = isTapered(p.wheel_profile);
-  if (tapered != (p.wheel_angle > 0)) {
+  const bool tapered = isTapered(p.wheel_profile), is_cup = p.wheel_profile == WheelShape::kCup;
+  if (!is_cup && tapered != (p.wheel_angle > 0)) {
     checker.refuse(ReasonKind::kNotAllowed, "process.wheel_angle", {p.wheel_angle, Unit::kRadian},
                    tapered ? "more than 0 for this profile" : "0 for this profile");
   }
   checker.below("process.wheel_wear", p.wheel_wear, p.wheel_diameter / 2, "the wheel's radius");
+  if (is_cup) {
+    checker.below("process.wheel_rim", p.wheel_rim, p.wheel_diameter / 2 - p.wheel_wear, "what is left of its radius");
+  } else if (p.wheel_rim != 0) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.wheel_rim", {p.wheel_rim, Unit::kMetre}, "0 for this profile");
+  }
   if (tapered) {
     checker.below("process.wheel_width", p.wheel_width, (p.wheel_diameter / 2 - p.wheel_wear) / std::tan(p.wheel_angle),
                   "where the wheel's smaller face closes");
@@ -186,23 +191,42 @@ void checkOperations(Checker& checker, const GrindJob& job) {
   }
 }
 
-/// A relief needs a straight wheel, since the rim grinds it; so does an operation on the end, of which the faces do.
-/// The rim of a gash's wheel may slope away from the face, and so spare the tooth before.
-void checkStraightWheel(Checker& checker, const GrindJob& job) {
+/// Checks that a wheel can grind what only some wheels can: a relief's rim is a cylinder; a face grinds the end. The
+/// rim of a gash's wheel may slope away from the face, and so spare the tooth before. The rim of a cup goes round the
+/// next tooth of a left-hand end.
+void checkWheelSuits(Checker& checker, const GrindJob& job) {
   const GrindProcess& p = job.process();
-  if (p.wheel_profile == WheelShape::kStraight) return;
-  if (p.kind == OperationKind::kGash && p.wheel_profile == WheelShape::kAngled) {
-    const bool right = job.cutter.cut == CutDirection::kRightHand;
+  const bool right = job.cutter.cut == CutDirection::kRightHand, is_gash = p.kind == OperationKind::kGash;
+  const bool round_next = isEndFlank(p.kind) && !right, is_relief = isRelief(p.kind);
+  const auto refuse = [&](const char* path, auto choice, const char* allowed) {
+    checker.refuse(ReasonKind::kNotAllowed, path, {static_cast<double>(choice), Unit::kNone}, allowed);
+  };
+  if (p.wheel_profile == WheelShape::kStraight && !round_next) return;
+  if (p.wheel_profile == WheelShape::kAngled && is_gash) {
     if (p.wheel_side == (right ? WheelFace::kUpper : WheelFace::kLower)) return;
-    return checker.refuse(ReasonKind::kNotAllowed, "process.wheel_side",
-                          {static_cast<double>(p.wheel_side), Unit::kNone},
-                          right ? "the upper face, which grinds the rake face of a right-hand gash"
-                                : "the lower face, which grinds the rake face of a left-hand gash");
+    return refuse("process.wheel_side", p.wheel_side,
+                  right ? "the upper face, which grinds the rake face of a right-hand gash"
+                        : "the lower face, which grinds the rake face of a left-hand gash");
   }
-  checker.refuse(ReasonKind::kNotAllowed, "process.wheel_profile", {static_cast<double>(p.wheel_profile), Unit::kNone},
-                 isRelief(p.kind)                 ? "0, straight, for a relief: its cylinder is what grinds it"
-                 : p.kind == OperationKind::kGash ? "0, straight, or 1, angled, for a gash"
-                                                  : "0, straight, for an operation on the end");
+  if (p.wheel_profile == WheelShape::kCup && !is_gash && !is_relief) {
+    if (p.wheel_side != WheelFace::kLower) {
+      return refuse("process.wheel_side", p.wheel_side, "the lower face, which grinds the flank");
+    }
+    if (round_next && !(p.wheel_rim > 0)) {
+      checker.refuse(ReasonKind::kNotAllowed, "process.wheel_rim", {p.wheel_rim, Unit::kMetre},
+                     "more than 0 for flanks of a left-hand end: its inner edge goes round the next tooth");
+    }
+    if (round_next) {
+      checker.below("process.wheel_rim", p.wheel_rim, (p.wheel_diameter - job.cutter.end_diameter) / 2,
+                    "what leaves a recess as wide as the cutter");
+    }
+    return;
+  }
+  refuse("process.wheel_profile", p.wheel_profile,
+         round_next  ? "3, cup, for flanks of a left-hand end"
+         : is_relief ? "0, straight, for a relief: its cylinder is what grinds it"
+         : is_gash   ? "0, straight, or 1, angled, for a gash"
+                     : "0, straight, or 3, cup, for a flank of the end or a chamfer");
 }
 
 /// Checks what only an operation on the end has.
@@ -213,11 +237,6 @@ void checkEnd(Checker& checker, const GrindJob& job) {
   if (p.kind == OperationKind::kGash && !(p.gash_past > -radius)) {
     checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
                    "more than the cutter's radius at the end,", -radius);
-  }
-  if (isEndFlank(p.kind) && c.cut == CutDirection::kLeftHand) {
-    checker.refuse(ReasonKind::kNotAllowed, "cutter.cut", {static_cast<double>(c.cut), Unit::kNone},
-                   "0, right_hand, for flanks of the end: those of a left-hand cutter take a cup wheel, which is not "
-                   "lifted along Y");
   }
   if (p.kind == OperationKind::kChamfer) {
     checker.below("cutter.chamfer_width", c.chamfer_width, radius, "the cutter's radius at the end");
@@ -253,7 +272,7 @@ void checkTogether(Checker& checker, const GrindJob& job) {
                   "where the cone closes");
   }
   if (p.kind != OperationKind::kFlute) {
-    checkStraightWheel(checker, job);
+    checkWheelSuits(checker, job);
     if (isStraight(p.kind)) checkEnd(checker, job);
     return checkWheel(checker, p);
   }

@@ -24,7 +24,7 @@ const std::vector<OtherKey>& otherJobKeys() {
       {"process.z_law", "process.z_law", namesOf<ZLaw>(), "how Z follows X along a stroke: as in the paper, or with a correction that keeps the rake the same over the whole flute", toString(ZLaw::kPublished)},
       {"process.incomplete_ok", "process.incomplete_ok", "true, false", "whether the stroke may be too short for a complete flute over `cutter.flute_length_mm`", "false"},
       {"process.wheel_file", "process.wheel.file", "the path of a wheel file", "a [wheel file](#the-wheel-file), absolute or relative to the job file, in place of the wheel's keys but `process.wheel.wear_per_pass_mm`", "the wheel's own keys"},
-      {"process.wheel_profile", "process.wheel.profile", namesOf<WheelShape>(), "shape of the wheel, as FEPA 1A1, 1V1, 1F1 and 11V9, or by its points"},
+      {"process.wheel_profile", "process.wheel.profile", namesOf<WheelShape>(), "shape of the wheel, as FEPA 1A1, 1V1, 1F1, and 11V9 or 6A2, or by its points"},
       {"process.wheel_side", "process.wheel.side", namesOf<WheelFace>(), "the larger face of the wheel, as the machine carries it; for the profiles `angled` and `cup` only"},
       {"process.wheel_points", "process.wheel.points_mm", "[w, radius] in mm, w ascending from the lower face to the upper, 0 in the middle", "points of the profile along the wheel's axis, 2 to 100 of them; for the profile `points` only"},
       {"process.setup_file", "process.setup.file", "the path of a set-up file", "a [set-up file](write-a-job.md#the-set-up-file), absolute or relative to the job file, written by `grind setup --write`", "the figures of the set-up, depth and overtravel by hand"},

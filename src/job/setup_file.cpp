@@ -50,6 +50,7 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
   if ((begins(path, "cutter.end_") && path != "cutter.end_diameter") || begins(path, "cutter.chamfer_")) {
     return isStraight(kind) && path.find("tolerance") == std::string_view::npos && path != "cutter.end_uncut_diameter";
   }
+  if (path == "process.wheel_rim") return isEndFlank(kind);
   if (begins(path, "process.wheel_")) return path.find("wear") == std::string_view::npos;
   if (path == "process.behind" || begins(path, "process.gash_")) return field.isOf(kind);
   // A plane of the end has nothing to do with the flutes; the edge of a chamfer is on their rake face.

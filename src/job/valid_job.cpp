@@ -37,7 +37,8 @@ Range startOf(const ReliefPath& path, double length) {
 constexpr const char* kNoEdges = "the edges that the operation follows are not computed; see withLaws()";
 
 FaceWheel faceWheelOf(const GrindProcess& p, double wear) noexcept {
-  return {p.wheel_diameter / 2, p.wheel_diameter / 2 - wear, p.wheel_width, 0, p.setup_height, 0};
+  const double radius = p.wheel_diameter / 2;
+  return {radius, radius - wear, p.wheel_width, 0, p.setup_height, p.wheel_rim > 0 ? radius - p.wheel_rim : 0};
 }
 
 /// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
@@ -247,12 +248,11 @@ FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const {
   if (content_->edges.empty()) throw std::invalid_argument(kNoEdges);
   const auto i = static_cast<std::size_t>(tooth);
   FaceStroke stroke = lastFaceStroke(content_->job, tooth, wear);
-  const Axes shift = (content_->deepest - depth) * stroke.per_stock;
-  const double angle = content_->job.tooth_angles[i] + content_->edges[i].at_end;
-  for (Axes* at : {&stroke.from, &stroke.to}) {
-    *at += shift;
-    (*at)[kA] += angle;
-  }
+  const double deepest = content_->deepest, angle = content_->job.tooth_angles[i] + content_->edges[i].at_end;
+  // A wheel that comes along X begins every pass clear of all that there was to grind.
+  stroke.from += (plunges() ? deepest : deepest - depth) * stroke.per_stock;
+  stroke.to += (deepest - depth) * stroke.per_stock;
+  for (Axes* at : {&stroke.from, &stroke.to}) (*at)[kA] += angle;
   return stroke;
 }
 

@@ -5,6 +5,7 @@
 #include "flute_grinder/motion/work_offsets.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -124,6 +125,14 @@ double clearanceOf(const ValidJob& job, const std::vector<Helix>& helices, const
   return std::max(cutter.y(stroke.from), cutter.y(stroke.to)) + job->process().clearance;
 }
 
+/// X before which the wheel of strokes along X is clear of the work.
+double clearXOf(const ValidJob& job) {
+  double x = std::numeric_limits<double>::infinity();
+  if (!job.plunges()) return x;
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) x = std::min(x, job.faceStroke(tooth, 0, 0).from[kX]);
+  return x;
+}
+
 }  // namespace
 
 GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run)
@@ -134,7 +143,8 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
       helices_(helicesOf(job, stroke_, machine)),
       helix_of_tooth_(helices_.empty() ? 0 : job->tooth_angles.size()),
       terms_(termsOf(job, helices_, stroke_)),
-      clearance_y_(clearanceOf(job, helices_, stroke_)) {
+      clearance_y_(clearanceOf(job, helices_, stroke_)),
+      clear_x_(clearXOf(job)) {
   for (std::size_t tooth = 0; tooth < helix_of_tooth_.size(); ++tooth) {
     helix_of_tooth_[tooth] = indexOf(helices_, job.strokeLaw(static_cast<int>(tooth)).cutter.spiral_angle);
   }
@@ -150,7 +160,7 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
                                        run.first.tooth, run.first.pass, last.tooth, last.pass));
   }
 
-  constexpr std::ptrdiff_t moves_per_pass = 6;
+  constexpr std::ptrdiff_t moves_per_pass = 7;
   moves_.reserve(static_cast<std::size_t>((passes.end() - begin) * moves_per_pass + 2));
   const Axes park = machine.park - run.offset;
   Axes at = start();
@@ -183,6 +193,10 @@ void GrindProgram::appendStraightPass(const JobPass& pass, Axes& at) {
   go(MoveKind::kApproach);
   at = stroke.to;
   go(MoveKind::kStroke);
+  if (at[kX] > clear_x_) {
+    at[kX] = clear_x_;
+    go(MoveKind::kRetract);
+  }
   at[kY] = clearance_y_;
   go(MoveKind::kRetract);
 }

@@ -88,7 +88,7 @@ void SetpointStream::retract() noexcept {
   if (mid_pair_ || lost_ || !law_.resting() || rest() == Rest::kEnd) return;
   holding_ = false;
   stay_lifted_ = true;
-  if (leg_ == Leg::kLift) {
+  if (leg_ == Leg::kBackOff || leg_ == Leg::kLift) {
     // On the way back from a jog the wheel is off the work already.
     if (current_.move != MoveKind::kLift) law_ = SCurveProfile();
     return;
@@ -96,8 +96,15 @@ void SetpointStream::retract() noexcept {
   if (leg_ == Leg::kPath && onHelix()) {
     reentry_ = std::max(0.0, strokeParameter() - helix_->schedule.runUp());
   }
-  leg_ = Leg::kLift;
   lifted_ = current_.position;
+  if (lifted_[kY] >= program_->clearanceHeight() || lifted_[kX] <= program_->clearX()) return beginLift();
+  leg_ = Leg::kBackOff;
+  lifted_[kX] = program_->clearX();
+  beginStraight(MoveKind::kLift, lifted_);
+}
+
+void SetpointStream::beginLift() noexcept {
+  leg_ = Leg::kLift;
   lifted_[kY] = std::max(lifted_[kY], program_->clearanceHeight());
   beginStraight(MoveKind::kLift, lifted_);
 }
@@ -173,15 +180,16 @@ void SetpointStream::beginNext() noexcept {
   const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
   switch (leg_) {
     case Leg::kPath: return beginMove(program_->moves()[next_move_++]);
+    case Leg::kBackOff: return beginLift();
     case Leg::kLift:
       if ((current_.position != lifted_).any()) return beginWayBack();
       if (left_stroke) {
         leg_ = Leg::kBack;
         return beginReturn();
       }
-      // Another move is restarted: from above, it moves to its original target.
+      // Another move is restarted: from above, it moves to its original target, unless that is on the way out.
       leg_ = Leg::kPath;
-      if (next_move_ > 0) beginMove(program_->moves()[next_move_ - 1]);
+      if (next_move_ > 0 && !isBehind(program_->moves()[next_move_ - 1])) beginMove(program_->moves()[next_move_ - 1]);
       return;
     case Leg::kBack: {
       leg_ = Leg::kPlunge;
@@ -194,6 +202,11 @@ void SetpointStream::beginNext() noexcept {
       leg_ = Leg::kPath;
       return helix_ != nullptr ? beginStroke(reentry_) : beginMove(program_->moves()[next_move_ - 1]);
   }
+}
+
+/// Whether a lift has led the wheel farther out than a move does.
+bool SetpointStream::isBehind(const Move& move) const noexcept {
+  return move.kind == MoveKind::kRetract && move.to[kY] < current_.position[kY];
 }
 
 void SetpointStream::beginMove(const Move& move) noexcept {

@@ -27,6 +27,8 @@ void StateForm<Progress>::visit(StateFields& field, Progress& progress) {
   field("wheel_in_work", progress.wheel.in_work);
   field("clear_y_m", progress.wheel.clear_y);
   field("lift_m", progress.wheel.lift);
+  field("clear_x_m", progress.wheel.clear_x);
+  field("back_m", progress.wheel.back);
   field("y_doubted", progress.wheel.y_doubted);
   field("offset_x_m", progress.offset[kX]);
   field("offset_y_m", progress.offset[kY]);

@@ -26,6 +26,7 @@ std::string wheelText(const GrindProcess& p) {
       format("%s, D %g mm, %g mm wide", toString(p.wheel_profile), mm(p.wheel_diameter), mm(p.wheel_width));
   if (isTapered(p.wheel_profile))
     text += format(", %g deg, larger face %s", deg(p.wheel_angle), toString(p.wheel_side));
+  if (p.wheel_rim > 0) text += format(", rim %g mm", mm(p.wheel_rim));
   if (p.wheel_wear > 0) text += format(", worn by %g mm", mm(p.wheel_wear));
   return text;
 }
@@ -136,7 +137,8 @@ std::string whatLimitsStraight(const JobSetup& setup, const Range& swivel) {
   const JobSetup::Straight& straight = *setup.straight;
   const std::string past = format("%.3f mm %s the cutter's axis, at Y %.3f mm", std::abs(mm(straight.past_axis)),
                                   straight.past_axis < 0 ? "before" : "past", mm(straight.last.to[kY]));
-  std::string ends = "ends ";
+  const bool goes_round = isEndFlank(p.kind) && setup.job.cutter.cut == CutDirection::kLeftHand;
+  std::string ends = goes_round ? "goes round the next tooth, and ends " : "ends ";
   if (p.kind == OperationKind::kChamfer) ends += format("%g mm beyond the flank, ", mm(kEndGap));
   return swivelText(std::min(p.setup_swivel - swivel.from, swivel.to - p.setup_swivel)) + line("rim", ends + past) +
          (isEndFlank(p.kind) ? line("next tooth", format("%g mm from the rim at the end of a stroke", mm(kEndGap)))

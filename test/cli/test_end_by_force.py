@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Holds the setpoints of the shipped end mill's flutes, gashes, end teeth and chamfers against what the wheels leave that follow
-them: from the file of `grind plan --csv`, the wheels and the set-up of the job file, and nothing of the package. On rays parallel
-to the axis, each position of a wheel takes away a range of X."""
+"""Holds the setpoints of the flutes, gashes, end teeth and chamfers of shipped end mills of both hands against what the wheels
+leave that follow them: from the file of `grind plan --csv`, the wheels and the set-up of the job file, and nothing of the package.
+On rays parallel to the axis, each position of a wheel takes away a range of X, of a cup with its recess two."""
 
 import csv
 import json
@@ -21,9 +21,8 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
 
-JOB = gc.package_file('jobs/end_mill_d10_t4.yaml')
 KINDS = {'flute': 'flute', 'gash': 'gash', 'end primary': 'end_primary', 'end secondary': 'end_secondary', 'chamfer': 'chamfer'}
-RATE = 200  # [Hz] of the setpoints
+RATE = 200  # [Hz] of the setpoints; of the flutes', whose edges are off by more between them, it is five times as high
 STEP = 0.01  # of differences [mm]
 
 
@@ -39,17 +38,18 @@ def beside(path, name):
 class Stroke:
     """The last stroke of a tooth in an operation. All lengths in mm."""
 
-    def __init__(self, diameter, process, rows, tooth):
+    def __init__(self, diameter, process, rows, tooth, every):
         wheel = process['wheel']
         self.kind, self.tooth = process['name'], tooth
         self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
-        self.taper = math.tan(math.radians(wheel.get('angle_deg', 0)))  # the larger face is up
+        self.taper = math.tan(math.radians(wheel.get('angle_deg', 0)))
+        self.larger = -1 if wheel.get('side') == 'lower' else 1  # the larger face, along the spindle
+        self.recess = self.radius - wheel['rim_mm'] if 'rim_mm' in wheel else None
         swivel = math.radians(process['setup']['swivel_deg'])
         self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
         own = [row for row in rows if int(row['tooth']) == tooth]
         last = max(int(row['pass']) for row in own)
-        # Of the wheel's centre, and A. Between some, less than 0.2 um is left by a rim, and 0.2 um by the corner in a flute.
-        every = 2 if self.kind == 'flute' else 8
+        # Of the wheel's centre, and A.
         poses = [(float(row['x_mm']), diameter / 2 + self.radius + float(row['y_mm']),
                   process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
                  for row in own if int(row['pass']) == last]
@@ -63,41 +63,57 @@ class Stroke:
         off_y, off_z = r * numpy.cos(angle - a) - centre_y, r * numpy.sin(angle - a) - centre_z
         # Over x from the centre: along the axis u - sine x; its square and the one of the distance from it are off ** 2 + x ** 2.
         u = self.cosine * off_z
-        rim, rim_x = self.radius - self.taper * (self.half_width - u), -self.taper * self.sine
-        a2 = 1 - self.sine ** 2 - rim_x ** 2
-        a1 = u * self.sine - rim * rim_x
-        a0 = off_y ** 2 + off_z ** 2 - u ** 2 - rim ** 2
-        root = a1 ** 2 - a2 * a0
-        with numpy.errstate(invalid='ignore'):
-            reach = numpy.sqrt(root)
+        rim, rim_x = self.radius - self.taper * (self.half_width - self.larger * u), -self.larger * self.taper * self.sine
+
+        def within(rim, rim_x):
+            """Where a ray is in a cone about the spindle; no number if it is nowhere."""
+            a2 = 1 - self.sine ** 2 - rim_x ** 2
+            a1 = u * self.sine - rim * rim_x
+            a0 = off_y ** 2 + off_z ** 2 - u ** 2 - rim ** 2
+            with numpy.errstate(invalid='ignore'):
+                reach = numpy.sqrt(a1 ** 2 - a2 * a0)
+            return (-a1 - reach) / a2, (-a1 + reach) / a2
+
         faces = numpy.sort([(u - self.half_width) / self.sine, (u + self.half_width) / self.sine], axis=0)
-        low, high = numpy.maximum(faces[0], (-a1 - reach) / a2), numpy.minimum(faces[1], (-a1 + reach) / a2)
-        met = low < high  # not if there is no root
+        outer = within(rim, rim_x)
+        low, high = numpy.maximum(faces[0], outer[0]), numpy.minimum(faces[1], outer[1])
+        if self.recess is not None:
+            inner = [numpy.where(numpy.isnan(x), at, x) for x, at in zip(within(self.recess, 0), (high, high))]
+            low, high = (numpy.concatenate([low, numpy.maximum(low, inner[1])]),
+                         numpy.concatenate([numpy.minimum(high, inner[0]), high]))
+            centre_x = numpy.concatenate([centre_x, centre_x])
+        met = low < high  # not for no number
         return numpy.where(met, low + centre_x, math.inf), numpy.where(met, high + centre_x, -math.inf)
 
 
 class Tool:
     """The strokes of the job's operations on the end."""
 
-    def __init__(self, folder):
-        job, path = read(JOB), os.path.join(folder, 'setpoints.csv')
-        machine = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=RATE)
+    def __init__(self, file, folder):
+        job, path = read(file), os.path.join(folder, 'setpoints.csv')
         self.cutter, self.printed, self.strokes = job['cutter'], {}, []
         self.radius, self.teeth = self.cutter['end_diameter_mm'] / 2, self.cutter['teeth']
+        self.hand = -1 if self.cutter['cut'] == 'left_hand' else 1  # of the way behind an edge, in the sense of A
         for process in job['operations']:
             name = KINDS.get(('%s %s' % (process['kind'], process.get('relief', ''))).strip())
             if name is None:
                 continue
-            process.update(name=name, setup=beside(JOB, process['setup']['file'])[name])
+            process.update(name=name, setup=beside(file, process['setup']['file'])[name])
             if 'file' in process['wheel']:
-                process['wheel'] = beside(JOB, process['wheel']['file'])
-            done = gc.grind('plan', JOB, '--operation', name, '--machine', machine, '--json', '--csv', path)
+                process['wheel'] = beside(file, process['wheel']['file'])
+            rate = 5 * RATE if name == 'flute' else RATE
+            machine = gc.machine_file(os.path.join(folder, '%s.yaml' % name), control_rate=rate)
+            done = gc.grind('plan', file, '--operation', name, '--machine', machine, '--json', '--csv', path)
             assert done.returncode == 0, done.stderr
             self.printed[name] = json.loads(done.stdout)
-            with open(path, encoding='utf-8') as file:
-                names = next(file).strip().split(',')
-                rows = list(csv.DictReader((line for line in file if ',stroke,' in line), names))
-            self.strokes += [Stroke(self.cutter['end_diameter_mm'], process, rows, tooth) for tooth in range(self.teeth)]
+            with open(path, encoding='utf-8') as setpoints:
+                names = next(setpoints).strip().split(',')
+                rows = list(csv.DictReader((line for line in setpoints if ',stroke,' in line), names))
+            # Between some, less than 0.2 um is left by a rim.
+            strokes, edges = ([Stroke(self.cutter['end_diameter_mm'], process, rows, tooth, every) for tooth in range(self.teeth)]
+                              for every in (4 if name == 'flute' else 8, 1))
+            self.strokes += strokes
+            self.flutes = edges if name == 'flute' else self.flutes
         self.angles = [2 * math.pi * tooth / self.teeth for tooth in range(self.teeth)]
         self.angles = [angle + self.helix(tooth, 0) for tooth, angle in enumerate(self.angles)]
 
@@ -106,17 +122,17 @@ class Tool:
 
     def ray(self, tooth, r, behind):
         """At a distance along the tooth's radius, and one at right angles to it."""
-        return numpy.hypot(r, behind), self.angles[tooth] + numpy.arctan2(behind, r)
+        return numpy.hypot(r, behind), self.angles[tooth] + self.hand * numpy.arctan2(behind, r)
 
     def helix(self, tooth, x):
         """The angle from a tooth's to its flute's edge on the periphery, at X."""
-        low, high = -1.0, 1.0
+        low, high = -1.0, 2.0
         for _ in range(5):
             behind = numpy.linspace(low, high, 41)
-            ray = numpy.full(41, self.radius), self.angles[tooth] + behind
-            last = self.is_removed(self.of(tooth, 'flute'), ray, x).nonzero()[0][-1]
+            ray = numpy.full(41, self.radius), self.angles[tooth] + self.hand * behind
+            last = self.is_removed([self.flutes[tooth]], ray, x).nonzero()[0][-1]
             low, high = behind[last], behind[last + 1]
-        return high
+        return self.hand * high
 
     @staticmethod
     def is_removed(strokes, ray, x):
@@ -156,12 +172,14 @@ class Tool:
         return numpy.where(found, high, math.nan), numpy.where(found, x, math.nan)
 
 
-class EndByForce(unittest.TestCase):
+class RightHandEndByForce(unittest.TestCase):
+    FILE = 'jobs/end_mill_d10_t4.yaml'
+
     @classmethod
     def setUpClass(cls):
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
-        cls.tool = Tool(folder)
+        cls.tool = Tool(gc.package_file(cls.FILE), folder)
         cls.end, cls.chamfer = cls.tool.cutter['end'], cls.tool.cutter['chamfer']
         cls.dish, cls.clearance = (math.tan(math.radians(cls.end[key])) for key in ('dish_deg', 'clearance_deg'))
         cls.corner = cls.tool.radius - cls.chamfer['width_mm']
@@ -224,7 +242,7 @@ class EndByForce(unittest.TestCase):
             # Behind the chamfer; in front of that it has taken them.
             x = numpy.concatenate([[0.1], numpy.linspace(0.23, self.tool.radius, 30)])
             angles = numpy.array([self.tool.angles[tooth] + self.tool.helix(tooth, at) for at in x])
-            behind = 0.005 / self.tool.radius
+            behind = self.tool.hand * 0.005 / self.tool.radius
             ray = numpy.full(len(x), self.tool.radius - 1e-5), angles + behind
             self.assertEqual(self.tool.is_removed(strokes, ray, x).tolist(), [True] + 30 * [False])
 
@@ -247,6 +265,10 @@ class EndByForce(unittest.TestCase):
             normal, of_surface = numpy.cross(along, [fall, 0, 1]), numpy.array([-1, rise, 0])
             cosine = abs(normal @ of_surface) / numpy.linalg.norm(normal) / numpy.linalg.norm(of_surface)
             self.near(tooth, 'clearance', math.degrees(math.acos(cosine)), self.chamfer['clearance_deg'], 0.3)
+
+
+class LeftHandEndByForce(RightHandEndByForce):
+    FILE = 'jobs/left_hand_end_mill_d8_t3.yaml'
 
 
 if __name__ == '__main__':

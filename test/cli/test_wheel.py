@@ -57,7 +57,7 @@ class TestShow(WheelTest):
         reported, _ = self.json(0, 'wheel', 'show', WORN)
         self.assertEqual(reported, {'profile': 'straight', 'diameter_mm': 124.76, 'set_diameter_mm': 125, 'wear_mm': 0.12,
                                 'width_mm': 2, 'new_width_mm': 2, 'angle_deg': None, 'side': None,
-                                'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5, 'dressed': None,
+                                'rim_mm': None, 'corner_radius_mm': [0, 0], 'points_mm': None, 'flange_mm': 2.5, 'dressed': None,
                                 'measured': {'date': '2026-11-20', 'by': 'tool room'}})
         reported, _ = self.json(0, 'wheel', 'show', ANGLED)
         self.assertAlmostEqual(reported.pop('angle_deg'), 20, delta=1e-12)

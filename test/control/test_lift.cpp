@@ -314,6 +314,89 @@ TEST(AfterARestart, WithoutTheReferenceTheWholeLiftIsDueOnceThePowerWasOff) {
   EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
 }
 
+/// A wheel whose rim is round the work, as the journal knows it: 4 mm of X from where it may be lifted.
+class RoundTheWork {
+ public:
+  static constexpr double kClearX = 0.002, kBack = 0.005, kHeight = 0.011;
+
+  explicit RoundTheWork(bool homed, double back = kBack)
+      : rig(machineConfig(), Wheel{true, kClearanceHeight, kHeight, false, true, kClearX, back}) {
+    rig.drive.status.homed = homed;
+    rig.drive.position = {kClearX + 0.004, -0.008, 0, 0};
+    rig.enable();
+    from = rig.last().command;
+  }
+
+  /// Runs until the lift ends, and expects that it went along X, and then along Y.
+  void expectLifted(double x, double y) {
+    rig.keepLast();
+    ASSERT_NO_FATAL_FAILURE(rig.lift());
+    for (const CycleSample& sample : rig.log) {
+      const Axes& at = sample.command;
+      ASSERT_TRUE(at[kY] == from[kY] || at[kX] == x) << at.transpose();
+      ASSERT_TRUE(sameBits(at, Axes(at[kX], at[kY], from[kZ], from[kA])));
+    }
+    EXPECT_TRUE(sameBits(rig.last().command, Axes(x, y, from[kZ], from[kA]))) << rig.last().command.transpose();
+    EXPECT_FALSE(rig.last().wheel_in_work);
+    EXPECT_TRUE(smooth(rig.log));
+  }
+
+  Rig<FakeDrive> rig;
+  Axes from;
+};
+
+TEST(AWheelRoundTheWork, BacksOffAlongXBeforeItIsLifted) {
+  RoundTheWork wheel(true);
+  auto& rig = wheel.rig;
+  for (const auto& [axis, way] : {std::pair(kX, 1e-3), std::pair(kY, 1e-3), std::pair(kY, -1e-3)}) {
+    EXPECT_EQ(rig.jog({axis, false, way, 0.01}).text, "jog refused: the wheel is in the work; lift it first");
+  }
+  EXPECT_TRUE(rig.jog({kX, false, -1e-3, 0.01}).accepted) << "the way out";
+  rig.runUntil(S::kReady);
+  wheel.expectLifted(RoundTheWork::kClearX, kClearanceHeight);
+}
+
+TEST(AWheelRoundTheWork, ThatHasBackedOffMayBeLiftedByHand) {
+  RoundTheWork wheel(true);
+  auto& rig = wheel.rig;
+  ASSERT_TRUE(rig.jog({kX, false, -4e-3, 0.01}).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_FALSE(rig.jog({kX, false, -1e-3, 0.01}).accepted);
+  EXPECT_TRUE(rig.jog({kY, false, 1e-3, 0.01}).accepted);
+}
+
+TEST(AWheelRoundTheWork, WithoutTheReferenceBacksOffByTheDistanceOfTheJob) {
+  RoundTheWork wheel(false);
+  wheel.expectLifted(wheel.from[kX] - RoundTheWork::kBack, wheel.from[kY] + RoundTheWork::kHeight);
+}
+
+TEST(AWheelRoundTheWork, IsNotLiftedOnceAStopCameWhileItBackedOff) {
+  for (const double stopped_after : {0.2e-3, 2e-3}) {  // the second comes to rest where it would have anyway
+    for (const bool homed : {true, false}) {
+      for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
+        RoundTheWork wheel(homed);
+        auto& rig = wheel.rig;
+        const double x = homed ? RoundTheWork::kClearX : wheel.from[kX] - RoundTheWork::kBack;
+        ASSERT_TRUE(rig.ask(E::kLift).accepted);
+        while (rig.last().command[kX] > wheel.from[kX] - stopped_after) rig.cycle();
+        ASSERT_TRUE(rig.ask(stop).accepted);
+        rig.runUntil(stop == E::kDisable ? S::kDisabled : S::kReady);
+        EXPECT_EQ(rig.last().command[kX] > x, stopped_after < 1e-3);
+        EXPECT_EQ(rig.last().command[kY], wheel.from[kY]);
+        EXPECT_TRUE(rig.last().wheel_in_work);
+        if (stop == E::kDisable) continue;
+        wheel.expectLifted(x, homed ? kClearanceHeight : wheel.from[kY] + RoundTheWork::kHeight);
+      }
+    }
+  }
+}
+
+TEST(AWheelRoundTheWork, IsNotBackedOffBeyondTheAxis) {
+  const double lowest = machineConfig().machine.limits.min_position[kX];
+  RoundTheWork wheel(false, RoundTheWork::kClearX + 0.004 - lowest + 1e-3);
+  EXPECT_EQ(wheel.rig.ask(E::kLift).text, "lift refused: it would lead axis X to -101 mm; allowed: down to -100 mm");
+}
+
 TEST(AfterARestart, ItIsLiftedFromBeyondTheLimitsOfTheOtherAxes) {
   Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift});
   const AxisLimits& limits = machineConfig().machine.limits;

@@ -155,7 +155,7 @@ GrindJob allowedJob(Dice& dice) {
   p.finish_infeed = dice.once(3) ? p.depth * dice.within(0, 1) : 0;
   p.clearance = dice.scaled(0.1e-3, 2e-3);
   p.depth_end = dice.once(3) ? p.depth * dice.within(0.1, 2) : 0;
-  p.wheel_angle = p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
+  p.wheel_angle = p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = p.wheel_rim = 0;
   p.wheel_diameter = 0.1;
   p.wheel_wear = 0;
   p.wheel_wear_per_pass = dice.once(3) ? dice.scaled(1e-9, 1e-6) : 0;

@@ -244,7 +244,7 @@ TEST(WheelFile, ReportsAMistakeWithFileLineKeyAndWhatIsAllowed) {
        "measured.width_mm, measured.by"},
       {"angle_deg: 20\n", "angle_deg: 20\nwear_mm: 0.1\n",
        "6: wear_mm is not a key of a wheel file; allowed: diameter_mm, width_mm, angle_deg, corner_radius_mm[0], "
-       "corner_radius_mm[1], profile, side, flange_mm, measured.date, measured.diameter_mm, measured.width_mm, "
+       "corner_radius_mm[1], rim_mm, profile, side, flange_mm, measured.date, measured.diameter_mm, measured.width_mm, "
        "measured.by, dressed"},
       {"angle_deg: 20\n", "angle_deg: 20\ndressed: yesterday\n",
        "6: dressed = yesterday; allowed: YYYY-MM-DD, YYYY-MM-DDThh:mm:ssZ"},

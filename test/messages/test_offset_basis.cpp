@@ -60,7 +60,7 @@ TEST(OffsetBasis, EveryFigureOfTheWheelIsInItsDigestButWearAndWidth) {
     of_wheel += counts ? 1 : 0;
     EXPECT_EQ(wheelDigest(other) != digest, counts) << path;
   });
-  EXPECT_EQ(of_wheel, 4) << "diameter, angle, two corners";
+  EXPECT_EQ(of_wheel, 5) << "diameter, angle, two corners, rim";
   const std::function<void(GrindProcess&)> choices[]{[](GrindProcess& p) { p.wheel_profile = WheelShape::kFullRadius; },
                                                      [](GrindProcess& p) { p.wheel_side = WheelFace::kLower; },
                                                      [](GrindProcess& p) {

@@ -29,6 +29,8 @@ Progress someProgress() {
   p.wheel.in_work = true;
   p.wheel.clear_y = 0.0125;
   p.wheel.lift = 0.005;
+  p.wheel.clear_x = -0.002;
+  p.wheel.back = 0.003;
   p.wheel.y_doubted = true;
   p.offset << 0.11, -0.0225, 1.0 / 7, -3;
   p.mounting = 5;
@@ -43,7 +45,8 @@ void expectSame(const Progress& a, const Progress& b) {
     return std::tie(p.job_digest, p.job_name, p.operation, p.cutter.end_diameter, p.cutter.cone_angle,
                     p.cutter.spiral_angle, p.cutter.rake_angle, p.cutter.flute_length, p.tooth_angles, p.finished,
                     p.next.tooth, p.next.pass, p.x, p.end, p.feed_override, p.wheel.in_work, p.wheel.clear_y,
-                    p.wheel.lift, p.wheel.y_doubted, p.mounting, p.clamping, p.tool_digest, p.kind);
+                    p.wheel.lift, p.wheel.clear_x, p.wheel.back, p.wheel.y_doubted, p.mounting, p.clamping,
+                    p.tool_digest, p.kind);
   };
   EXPECT_TRUE(all(a) == all(b));
   EXPECT_TRUE((a.offset == b.offset).all()) << a.offset.transpose() << " and " << b.offset.transpose();

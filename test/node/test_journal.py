@@ -20,7 +20,7 @@ from test_diagnostics import Reports
 CUTTER = ['end_diameter', 'cone_angle', 'spiral_angle', 'rake_angle', 'flute_length', 'tooth_angles']
 CUTTER_KEYS = ['end_diameter_m', 'cone_angle_rad', 'spiral_angle_rad', 'rake_angle_rad', 'flute_length_m',
                'tooth_angles_rad']
-KEYS = {'job_digest', 'job_name', 'operation', 'finished', 'tooth', 'pass', 'x_m', 'wheel_in_work', 'clear_y_m', 'lift_m',
+KEYS = {'job_digest', 'job_name', 'operation', 'finished', 'tooth', 'pass', 'x_m', 'wheel_in_work', 'clear_y_m', 'lift_m', 'clear_x_m', 'back_m',
         'y_doubted', 'offset_x_m', 'offset_y_m', 'offset_z_m', 'offset_a_rad', 'mounting', 'clamping', 'tool_digest', 'kind',
         'end', 'feed_override', 'checksum', *CUTTER_KEYS}
 JOB_NAME = 'mill "10°".yaml'

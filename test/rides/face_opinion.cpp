@@ -110,6 +110,48 @@ Real nearest(Real u, Real v, const std::array<std::array<Real, 2>, 2>& line) {
   return std::hypot(u - line[0][0] - at * du, v - line[0][1] - at * dv);
 }
 
+struct NextTooth {
+  std::array<std::array<Real, 2>, 2> edge, below;  ///< its edge, and what is under that on the plane
+};
+
+/// The next tooth as seen along the spindle: (across, Y).
+NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
+  const Vector axis{f.radius * std::tan(f.dish), 0, 0};
+  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth + (f.left_hand ? -f.pitch : f.pitch));
+  const auto seen = [&](const Vector& place) { return std::array<Real, 2>{dot(place, pose.across), place[1]}; };
+  const auto under = [&](const Vector& place) {
+    const Vector turned = inMachine(f, plane.normal, pose.tooth);
+    const Real off = dot(turned, less(place, inMachine(f, plane.through, pose.tooth)));
+    return seen({place[0] - off / turned[0], place[1], place[2]});
+  };
+  return {{seen(axis), seen(corner)}, {under(axis), under(corner)}};
+}
+
+/// The inner edge of a cup's rim round the next tooth, of which all is within it by the gap.
+void judgeRimRound(const Face& f, const Plane& plane, const Pose& pose, const Vector& face) {
+  const Real inner = f.wheel_radius - f.rim - f.gap, turn = std::acos(Real(-1));
+  if (std::abs(f.pitch - turn) < turn / 6) {
+    requireSame("centre of the face, Y", face[1], inner);
+    return requireSame("centre of the face, Z", face[2], 0);
+  }
+  const NextTooth next = nextTooth(f, plane, pose);
+  Real farthest = 0;
+  for (const auto& line : {next.edge, next.below}) {
+    for (const auto& [u, v] : line) farthest = std::max(farthest, std::hypot(u - dot(face, pose.across), v - face[1]));
+  }
+  requireSame("farthest of the next tooth", farthest, inner, kNear);
+}
+
+/// A cup comes along X from where its face is clear of all of the blank's end.
+void judgeWayIn(const Face& f, const Pose& pose, const Pass& pass) {
+  requireSame("begin, Y", pass.from[1], pass.to[1], 0);
+  requireSame("begin, Z", pass.from[2], pass.to[2], 0);
+  const Real nearest = -f.stock * pose.spindle[0] + f.radius * std::abs(pose.spindle[2]);
+  const Real clear = dot(pose.spindle, faceAt(f, pose, pass.from)) - nearest;
+  require(clear >= f.clear - kExact && clear <= f.clear + 4 * f.radius * std::abs(pose.spindle[2]) + kExact,
+          "distance from the blank", clear, f.clear);
+}
+
 /// The rim beside the next tooth: as seen along the spindle, neither its edge nor what is under it on the plane may be
 /// nearer than the gap, and one of them is not farther.
 void judgeRimOfEnd(const Face& f, const Plane& plane, const Pose& pose, const Vector& face, Real rim) {
@@ -118,18 +160,10 @@ void judgeRimOfEnd(const Face& f, const Plane& plane, const Pose& pose, const Ve
     requireSame("centre of the face, Y", face[1], rim + f.gap);
     return requireSame("centre of the face, Z", face[2], 0);
   }
-  const Vector& n = plane.normal;
-  const Vector axis{f.radius * std::tan(f.dish), 0, 0};
-  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth + f.pitch);
-  const auto seen = [&](const Vector& place) { return std::array<Real, 2>{dot(place, pose.across), place[1]}; };
-  const auto under = [&](const Vector& place) {
-    const Vector turned = inMachine(f, n, pose.tooth);
-    const Real off = dot(turned, less(place, inMachine(f, plane.through, pose.tooth)));
-    return seen({place[0] - off / turned[0], place[1], place[2]});
-  };
+  const NextTooth next = nextTooth(f, plane, pose);
   const Real u = dot(face, pose.across), v = face[1];
-  const Real edge = nearest(u, v, {seen(axis), seen(corner)}), below = nearest(u, v, {under(axis), under(corner)});
-  requireSame("gap to the next tooth", std::min(edge, below) - rim, f.gap, kNear);
+  requireSame("gap to the next tooth", std::min(nearest(u, v, next.edge), nearest(u, v, next.below)) - rim, f.gap,
+              kNear);
 }
 
 void judgeRimOfChamfer(const Face& f, const Plane& plane, const Pose& pose, const Vector& face, Real rim) {
@@ -169,18 +203,24 @@ void judge(const Face& f, const Pass& pass) {
   const Pose pose = poseOf(f, plane);
   const Vector place = inMachine(f, plane.through, pose.tooth);
   const Real left = f.kind == Face::Kind::kGash ? 0 : pass.stock;
-  for (const Point& at : {pass.from, pass.to}) {
-    requireSame("A", at[3], f.a - pose.tooth);
-    requireSame("face above the plane", dot(pose.spindle, less(faceAt(f, pose, at), place)), left);
+  const bool round = f.kind == Face::Kind::kEnd && f.left_hand;
+  for (const Point* at : {&pass.from, &pass.to}) {
+    requireSame("A", (*at)[3], f.a - pose.tooth);
+    if (round && at == &pass.from) continue;
+    requireSame("face above the plane", dot(pose.spindle, less(faceAt(f, pose, *at), place)), left);
   }
   const Real rim = f.wheel_radius - pass.wear;
   if (f.kind == Face::Kind::kGash) return judgeGash(f, plane, pose, pass, rim);
-  requireSame("begin, X", pass.from[0], pass.to[0], 0);
-  requireSame("begin, Y", pass.from[1], f.clear - pass.wear);
-  requireSame("begin, Z", pass.from[2], pass.to[2], 0);
   // The passes step along X: the last one's place is where the rim is judged.
   Vector face = faceAt(f, pose, pass.to);
   face[0] += pass.stock / -pose.spindle[0];
+  if (round) {
+    judgeWayIn(f, pose, pass);
+    return judgeRimRound(f, plane, pose, face);
+  }
+  requireSame("begin, X", pass.from[0], pass.to[0], 0);
+  requireSame("begin, Y", pass.from[1], f.clear - pass.wear);
+  requireSame("begin, Z", pass.from[2], pass.to[2], 0);
   f.kind == Face::Kind::kEnd ? judgeRimOfEnd(f, plane, pose, face, rim) : judgeRimOfChamfer(f, plane, pose, face, rim);
 }
 

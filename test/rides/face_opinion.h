@@ -25,6 +25,7 @@ struct Face {
   Real past = 0;              ///< of a gash's bottom [m]
   Real swivel = 0;            ///< of the set-up [rad]
   Real height = 0, wheel_radius = 0, wheel_width = 0;  ///< of the set-up, and of the wheel without wear [m]
+  Real rim = 0;                                        ///< width of a cup's rim [m]
   Real gap = 0;                                        ///< between rim and next tooth [m]
   Real clear = 0;                                      ///< between wheel and blank where a stroke begins [m]
   Real stock = 0;                                      ///< by which the blank is too long [m]

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -143,13 +144,19 @@ ValidJob withEnd(Random& random, GrindJob job) {
   // A chamfer is over the soonest, and so drawn less often.
   constexpr OperationKind kinds[]{OperationKind::kChamfer, OperationKind::kGash, OperationKind::kGash,
                                   OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd};
-  p.kind = kinds[static_cast<std::size_t>(fraction(random) * (left ? 3 : 5))];
+  p.kind = kinds[static_cast<std::size_t>(fraction(random) * 5)];
   p.wheel_diameter = between(random, 30e-3, 150e-3);
   p.wheel_width = between(random, 1e-3, 10e-3);
   p.stock = flip(random, 0.5) ? 0 : between(random, 0, 0.5e-3);
   if (p.kind == OperationKind::kGash) {
     p.gash_angle = between(random, 0.3, 1.2);
     p.gash_past = c.end_diameter * between(random, -0.3, 0.1);
+  }
+  if (isEndFlank(p.kind) && left) {
+    p.wheel_profile = WheelShape::kCup;
+    p.wheel_side = WheelFace::kLower;
+    p.wheel_diameter = std::max(p.wheel_diameter, 3 * c.end_diameter);
+    p.wheel_rim = c.end_diameter * between(random, 0.5, 0.9);
   }
   p.infeed = c.end_diameter * (p.kind == OperationKind::kGash ? between(random, 0.2, 0.6) : between(random, 0.05, 0.4));
   p.feed = acrossDecades(random, 10e-3, 150e-3);
@@ -201,7 +208,10 @@ second_opinion::Face faceOf(const ValidJob& job, int tooth) {
   f.radius = second_opinion::Real(c.end_diameter) / 2;
   const std::vector<double>& angles = job->tooth_angles;
   const auto i = static_cast<std::size_t>(tooth);
-  f.pitch = i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + units::kTurn - angles[i];
+  // Behind a right-hand edge is the next tooth, behind a left-hand one the tooth before.
+  const std::size_t behind = (i + (f.left_hand ? angles.size() - 1 : 1)) % angles.size();
+  const double way = f.left_hand ? angles[i] - angles[behind] : angles[behind] - angles[i];
+  f.pitch = way > 0 ? way : way + units::kTurn;
   f.a = angles[i] + job.edges()[i].at_end;
   f.dish = c.end_dish;
   f.rake = c.end_rake;
@@ -217,6 +227,7 @@ second_opinion::Face faceOf(const ValidJob& job, int tooth) {
   f.height = p.setup_height;
   f.wheel_radius = second_opinion::Real(p.wheel_diameter) / 2;
   f.wheel_width = p.wheel_width;
+  f.rim = p.wheel_rim;
   f.gap = kEndGap;
   f.clear = p.clearance;
   f.stock = p.stock;
@@ -246,6 +257,9 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
   if (asked.straight) {
     asked.teeth.resize(static_cast<std::size_t>(job.teeth()));
     asked.passes = straightPassesOf(job);
+    asked.round_work = isEndFlank(job->process().kind) && job->cutter.cut == CutDirection::kLeftHand;
+    asked.clear_x = std::numeric_limits<Real>::infinity();
+    for (const second_opinion::Pass& pass : asked.passes) asked.clear_x = std::min<Real>(asked.clear_x, pass.from[0]);
   }
   for (int i = 0; i < job.teeth() && !asked.straight; ++i) {
     const StrokeLaw& law = job.strokeLaw(i);
@@ -273,6 +287,7 @@ second_opinion::Asked askedOf(const ValidJob& job, const Machine& machine, const
     asked.to = job.strokeLaw(0).to;
   }
   asked.clearance = job->process().clearance;
+  asked.offset_x = offset[kX];
   asked.offset_y = offset[kY];
   asked.deviation = job->interpolation.tolerance;
   asked.radius = Real(job->cutter.end_diameter) / 2;
@@ -341,6 +356,7 @@ bool limitToPath(Random& random, RideJob& ride) {
   }
   // Without the reference, a lift is as long again once the power was off, and higher.
   limits.max_position[kY] += 0.5;
+  if (ride.asked.round_work) limits.min_position[kX] -= 0.5;
   // As a plan does, for what Z's bends rise between two setpoints.
   const double rise = limits.max_acceleration[kZ] * ride.machine.period * ride.machine.period / 8;
   const Axes least(0, 0, ride.asked.teeth[0].coefficients.empty() ? 0 : rise, 0);

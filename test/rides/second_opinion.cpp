@@ -82,7 +82,9 @@ void Watch::see(const Row& row) {
   } else {
     ends_.fill(row.at);
   }
-  if (row.moves && row.rises && !risesFrom(last_.at, row.at)) throw Violation("a lift moves another axis, or down");
+  if (row.moves && row.rises && !goesOut(last_.at, row.at, asked_.offset_x)) {
+    throw Violation("a lift moves another axis, or the wrong way");
+  }
   if (row.of_job) {
     checkPlace(row);
     if (row.in_stroke) checkStroke(row);
@@ -154,19 +156,20 @@ Real Watch::clearHeight() const {
   return std::max(asked_.from * growth, asked_.to * growth) + asked_.clearance;
 }
 
-/// Whatever a job leaves in the work goes up, and nowhere else.
+/// Whatever a job leaves in the work goes out of it, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
   if (!row.moves && !row.free) return;
   // An axis may rest a little below where it was lifted to.
   constexpr Real rest = 10e-6L;
   const Real y = row.free ? row.y + rest : row.at[1] - row.y_off;
   if (y - asked_.offset_y >= clearHeight() - noiseOf(1)) {
-    progress_.in_work = false;
+    progress_.in_work = progress_.entered = false;
   } else if (row.of_job) {
     const auto [low, high] = std::minmax(asked_.from, asked_.to);
     progress_.in_work = asked_.straight || (row.work[0] >= low && row.work[0] <= high);
-  } else if (progress_.in_work && row.moves && !risesFrom(last_.at, row.at)) {
-    throw Violation("the wheel leaves the work another way than up");
+    progress_.entered = progress_.entered || row.in_stroke;
+  } else if (progress_.in_work && row.moves && !goesOut(last_.at, row.at, asked_.offset_x)) {
+    throw Violation("the wheel leaves the work another way than out");
   }
 }
 
@@ -174,11 +177,18 @@ bool Watch::risesFrom(const Point& from, const Point& to) const {
   return to[0] == from[0] && to[2] == from[2] && to[3] == from[3] && to[1] >= from[1] - noiseOf(1);
 }
 
+/// Up; or back along X, before it rises from round the work.
+bool Watch::goesOut(const Point& from, const Point& to, Real offset_x) const {
+  const bool is_round = asked_.round_work && progress_.entered;
+  if (risesFrom(from, to)) return !is_round || to[1] == from[1] || from[0] - offset_x <= asked_.clear_x + noiseOf(0);
+  return asked_.round_work && to[0] <= from[0] && to[1] == from[1] && to[2] == from[2] && to[3] == from[3];
+}
+
 void Watch::checkPlace(const Row& row) {
   if (row.lifts) {
     // A run begins wherever the axes are.
-    if (row.cycle == 0 || !last_.of_job || risesFrom(last_.work, row.work)) return;
-    throw Violation("a lift moves another axis, or down");
+    if (row.cycle == 0 || !last_.of_job || goesOut(last_.work, row.work, 0)) return;
+    throw Violation("a lift moves another axis, or the wrong way");
   }
   if (asked_.straight) return checkStraightPlace(row);
   const Real x = row.work[0], y = row.work[1];
@@ -208,18 +218,20 @@ void Watch::checkPlace(const Row& row) {
   if (across && !row.in_stroke) throw Violation("the wheel goes across in the work without a stroke");
 }
 
-/// Beside the work a wheel goes up, or comes down to where a stroke begins; only strokes go elsewhere.
+/// Beside the work a wheel goes out, or comes down to where a stroke begins; only strokes go elsewhere.
 void Watch::checkStraightPlace(const Row& row) {
   if (row.in_stroke || row.work[1] >= clearHeight() - noiseOf(1)) return;
-  if (risesFrom(last_.work, row.work) || beginsPass(row)) return;
-  throw Violation("the wheel is beside the work without a stroke, and goes not up");
+  if (goesOut(last_.work, row.work, 0) || beginsPass(row)) return;
+  throw Violation("the wheel is beside the work without a stroke, and goes not out");
 }
 
 bool Watch::beginsPass(const Row& row) const {
   return std::any_of(asked_.passes.begin(), asked_.passes.end(), [&](const Pass& pass) {
     const Point& from = pass.from;
-    return pass.tooth == row.tooth && pass.pass == row.pass && row.work[0] == from[0] && row.work[1] >= from[1] &&
-           row.work[2] == from[2] && row.work[3] == from[3];
+    // A wheel that goes round the work is clear of it all along its way in front.
+    const bool in_front = asked_.round_work && row.work[0] <= from[0];
+    return pass.tooth == row.tooth && pass.pass == row.pass && (row.work[0] == from[0] || in_front) &&
+           row.work[1] >= from[1] && row.work[2] == from[2] && row.work[3] == from[3];
   });
 }
 

@@ -35,13 +35,16 @@ struct Asked {
   std::vector<Tooth> teeth;
   std::vector<Pass> passes;
   Real from = 0, to = 0;  ///< X of a stroke's ends
-  Real clearance = 0;     ///< above the surface, at which only strokes go across
-  Real offset_y = 0;      ///< of the machine's Y from the work's [m]
-  Real deviation = 0;     ///< of A at the surface, across the helix [m]
-  Real radius = 0;        ///< of the surface at X = shift
-  Real feed = 0;          ///< the fastest along the edge [m/s]
-  Real period = 0;        ///< [s]
-  Point low{}, high{};    ///< of the machine's axes
+  /// The wheel of straight strokes goes round the work: it may rise out of it only where X is no more than that.
+  bool round_work = false;
+  Real clear_x = 0;
+  Real clearance = 0;               ///< above the surface, at which only strokes go across
+  Real offset_x = 0, offset_y = 0;  ///< of the machine's axes from the work's [m]
+  Real deviation = 0;               ///< of A at the surface, across the helix [m]
+  Real radius = 0;                  ///< of the surface at X = shift
+  Real feed = 0;                    ///< the fastest along the edge [m/s]
+  Real period = 0;                  ///< [s]
+  Point low{}, high{};              ///< of the machine's axes
   std::array<double, 4> velocity{}, acceleration{}, jerk{};
 };
 
@@ -59,7 +62,7 @@ struct Row {
   std::uint64_t cycle = 0;
   bool in_stroke = false;
   bool ends_stroke = false;  ///< in the loop's opinion, which may differ by rounding
-  bool lifts = false;        ///< a move of Y alone, up
+  bool lifts = false;        ///< a move out of the work
   int tooth = 0, pass = 0;
 };
 
@@ -81,6 +84,7 @@ class Watch {
     std::size_t ground = 0;
     Real reached = 0;      ///< X up to which the next pass has been ground without a gap
     bool in_work = false;  ///< a job has left the wheel there
+    bool entered = false;  ///< a stroke has begun since the wheel was above the work
     bool again = false;    ///< the last stroke was of a pass that is ground, or is but for rounding
   };
   const Progress& progress() const { return progress_; }
@@ -99,6 +103,7 @@ class Watch {
   void checkPlace(const Row& row);
   void checkWayOut(const Row& row);
   bool risesFrom(const Point& from, const Point& to) const;
+  bool goesOut(const Point& from, const Point& to, Real offset_x) const;
   void checkStraightPlace(const Row& row);
   bool beginsPass(const Row& row) const;
   void checkStroke(const Row& row);

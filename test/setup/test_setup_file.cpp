@@ -63,6 +63,7 @@ TEST(SetupFile, IsRefusedForAnyOtherCutterOrWheel) {
                                      "cutter.core_tolerance_mm",
                                      "cutter.spiral_tolerance_deg",
                                      "process.wheel.wear_mm",
+                                     "process.wheel.rim_mm",
                                      "cutter.clearance_tolerance_deg",
                                      "cutter.chordal_rake_tolerance_deg",
                                      "process.feed_mm_min",

@@ -166,8 +166,21 @@ TEST(StraightSetup, OfALeftHandToolHasTheSameSwivelOrTheMirroredOne) {
             -solved(endJob(OperationKind::kGash)).job.process().setup_swivel);
   const GrindJob end = endJob(OperationKind::kPrimaryEnd);
   EXPECT_EQ(swivelOfPlane(leftHand(end)), swivelOfPlane(end));
-  EXPECT_NE(refused(leftHand(end), kMachine).find("cutter.cut = 1; allowed: 0, right_hand, for flanks of the end"),
+  GrindJob left = leftHand(end);
+  EXPECT_NE(refused(left, kMachine).find("process.wheel.profile = 0; allowed: 3, cup, for flanks of a left-hand end"),
             std::string::npos);
+  left.process().wheel_profile = WheelShape::kCup;
+  EXPECT_NE(refused(left, kMachine).find("process.wheel.side = 0; allowed: the lower face, which grinds the flank"),
+            std::string::npos);
+  left.process().wheel_side = WheelFace::kLower;
+  EXPECT_NE(refused(left, kMachine).find("process.wheel.rim_mm = 0 mm; allowed: more than 0 for flanks of a left-hand"),
+            std::string::npos);
+  left.process().wheel_rim = 45 * kMillimetre;  // of 50, with a cutter of 12
+  EXPECT_NE(refused(left, kMachine).find("rim_mm = 45 mm; allowed: less than 44 mm, what leaves a recess"),
+            std::string::npos)
+      << refused(left, kMachine);
+  left.process().wheel_rim = 9 * kMillimetre;
+  EXPECT_EQ(solved(left).job.process().setup_swivel, solved(end).job.process().setup_swivel);
 }
 
 TEST(StraightSetup, IsRefusedWithWhatTheMachineSwivels) {
@@ -217,7 +230,8 @@ TEST(StraightSetup, ItsFileIsForItsPlaneAndItsWheelAlone) {
       const bool of_plane =
           begins_with("cutter.end") || begins_with("cutter.chamfer.") ||
           ((key == "cutter.spiral_angle_deg" || key == "cutter.rake_angle_deg") && kind == OperationKind::kChamfer) ||
-          (begins_with("process.wheel.") && key.find("wear") == std::string::npos) ||
+          (begins_with("process.wheel.") && key.find("wear") == std::string::npos && key != "process.wheel.rim_mm") ||
+          (key == "process.wheel.rim_mm" && isEndFlank(kind)) ||
           ((key == "process.angle_deg" || key == "process.past_mm") && kind == OperationKind::kGash);
       GrindJob other = job;
       of(other) += 0.001 * shopScale(field.unit);

@@ -95,7 +95,9 @@ class ControlLoop : public RequestBox {
   Refusal reset();
   Refusal home();
   Refusal lift();
-  double liftTarget() const;
+  /// Continues a lift along one of its axes.
+  void beginLiftAlong(int axis);
+  LiftTarget liftTarget() const;
   Refusal setSwivel(double angle);
   Refusal switchByHand(MachineEvent event);
 

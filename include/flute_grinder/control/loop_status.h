@@ -32,6 +32,9 @@ struct Wheel {
   /// Y was read where the axis cannot have been: the reading is not trusted until the axis is homed.
   bool y_doubted = false;
   bool known = true;  ///< if false, `in_work` means that the wheel may be in the workpiece
+  /// X to which the wheel backs off before it is lifted, and the largest distance to it; a distance of 0 means that the
+  /// wheel is lifted straight up [m].
+  double clear_x = 0, back = 0;
 };
 
 /// The wheel before the first move of a program, with the lift that clears its workpiece.

@@ -3,9 +3,15 @@
 #include "flute_grinder/control/loop_requests.h"
 #include "flute_grinder/control/loop_status.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace grinder {
+
+/// Where a lift ends: first along X, then along Y.
+struct LiftTarget {
+  double x = 0, y = 0;  ///< [m]
+};
 
 /// Tracks whether the wheel is in the workpiece. Real-time safe.
 class WheelWatch {
@@ -47,22 +53,30 @@ class WheelWatch {
   /// To be called with true when Y was read where the axis cannot have been, and with false when it is trusted again.
   void doubtY(bool doubted) noexcept { wheel_.y_doubted = doubted; }
   /// To be called when a lift without a job begins.
-  /// @param target Y at the end of the lift, see liftTarget() [m].
-  void beginLift(double target) noexcept { last_target_ = target; }
+  void beginLift(const LiftTarget& target) noexcept { last_target_ = target; }
   /// To be called when a lift without a job is complete.
   void finishLift() noexcept { clear(); }
-  /// To be called when the zero of Y may have changed since the last lift began: without power, or when the reference
+  /// To be called when the zeros may have changed since the last lift began: without power, or when the reference
   /// is found.
   void forgetLift() noexcept { last_target_.reset(); }
 
-  /// Target Y for lifting the wheel [m].
-  /// @param homed whether Y refers to the machine's reference; otherwise only the distance of the lift is known, and a
-  ///        lift that was stopped continues.
-  /// @param y current Y of the wheel [m].
-  double liftTarget(bool homed, double y) const noexcept {
+  /// Target for lifting the wheel.
+  /// @param homed whether X and Y refer to the machine's reference; otherwise only the distances of the lift are known,
+  ///        and a lift that was stopped continues.
+  /// @param at commanded position of the axes [m], A [rad].
+  LiftTarget liftTarget(bool homed, const Axes& at) const noexcept {
     // For an unknown job the target is the top of the travel, unless the wheel is already above it.
-    const bool to_top = !wheel_.known && y < wheel_.clear_y;
-    return homed ? wheel_.clear_y : last_target_.value_or(to_top ? wheel_.clear_y : y + wheel_.lift);
+    const bool to_top = !wheel_.known && at[kY] < wheel_.clear_y;
+    if (homed) return {wheel_.back > 0 ? std::min(at[kX], wheel_.clear_x) : at[kX], wheel_.clear_y};
+    if (last_target_) return {std::min(at[kX], last_target_->x), last_target_->y};
+    return {at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
+  }
+
+  /// Whether a motion of a single axis takes the wheel out of the work as a lift does.
+  /// @param x commanded X, relative to the machine's reference [m].
+  bool isWayOut(int axis, bool upward, double x) const noexcept {
+    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x;
+    return backs_off ? axis == kX && !upward : axis == kY && upward;
   }
 
  private:
@@ -78,7 +92,7 @@ class WheelWatch {
   Wheel wheel_;
   double seen_clear_ = 0;     ///< time for which Y has read clear [s]
   bool left_by_job_ = false;  ///< a job left the wheel where it is, and it was not moved with power since
-  std::optional<double> last_target_;
+  std::optional<LiftTarget> last_target_;
 };
 
 }  // namespace grinder

@@ -83,12 +83,13 @@ struct GrindProcess {
   ZLaw z_law = ZLaw::kPublished;
   bool incomplete_ok = false;  ///< the stroke may be too short for a complete flute
   WheelShape wheel_profile = WheelShape::kStraight;
-  double wheel_diameter = 0;                 ///< largest diameter, to which Y = 0 is set [m]
-  double wheel_width = 0;                    ///< width of the wheel [m]
-  double wheel_angle = 0;                    ///< angle of a tapered wheel's surface to its axis; otherwise 0 [rad]
+  double wheel_diameter = 0;  ///< largest diameter, to which Y = 0 is set [m]
+  double wheel_width = 0;     ///< width of the wheel [m]
+  double wheel_angle = 0;     ///< angle of a tapered wheel's surface to its axis, for a cup from 0; otherwise 0 [rad]
   WheelFace wheel_side = WheelFace::kUpper;  ///< the larger face of a tapered wheel
   double wheel_corner_radius_lower = 0;      ///< corner radius between surface and lower face; 0 for a sharp edge [m]
   double wheel_corner_radius_upper = 0;      ///< corner radius between surface and upper face; 0 for a sharp edge [m]
+  double wheel_rim = 0;                      ///< width of a cup's rim on its larger face; 0: it does not matter [m]
   double wheel_wear = 0;                     ///< wear of the radius, from wheel_diameter / 2, compensated in Y [m]
   double wheel_wear_per_pass = 0;  ///< wear added by each pass of any tooth, compensated before the next pass [m]
   double setup_swivel = 0;  ///< angle of the wheel's plane to the cutter's axis; positive for right-hand flutes [rad]

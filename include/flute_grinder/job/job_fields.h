@@ -130,6 +130,8 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_lower; });
   visit(F{"process.wheel_corner_radius_upper", "process.wheel.corner_radius_mm[1]", mm, 0, 50, "between surface and upper face", "0, sharp"},
         [](auto& j) -> auto& { return processOf(j).wheel_corner_radius_upper; });
+  visit(F{"process.wheel_rim", "process.wheel.rim_mm", mm, 0, 100, "width of a cup's rim, from the largest diameter inward, on its larger face; the flanks of a left-hand end need it", "0: the cup's recess does not matter"},
+        [](auto& j) -> auto& { return processOf(j).wheel_rim; });
   visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100, "by which the radius is below half of `process.wheel.diameter_mm`; compensated by Y"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear; });
   visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed", "0"},

@@ -52,9 +52,9 @@ struct Helix {
 
 /// The ordered moves of all teeth and passes of a job. If the wheel is lower than the park position, it first rises to
 /// that height. Then, for each pass, A is indexed, and the wheel moves above the start, descends to the clearance,
-/// plunges at feed, makes its stroke with overtravel, and retracts radially. At the end the wheel returns to the park
-/// position. The plunge compensates for wheel wear, so the compensation never changes within a pass. All positions are
-/// in work coordinates.
+/// plunges at feed, makes its stroke with overtravel, and retracts radially. A straight stroke along X backs off first.
+/// At the end the wheel returns to the park position. The plunge compensates for wheel wear, so the compensation never
+/// changes within a pass. All positions are in work coordinates.
 class GrindProgram {
  public:
   /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
@@ -88,6 +88,9 @@ class GrindProgram {
 
   /// Y at which the wheel is clear of the workpiece over the whole stroke [m].
   double clearanceHeight() const noexcept { return clearance_y_; }
+  /// X to which the wheel backs off before it is lifted to that height: the rim of a cup may be round the work.
+  /// Infinite where it is lifted straight up [m].
+  double clearX() const noexcept { return clear_x_; }
 
  private:
   void append(MoveKind kind, const ToothPass& pass, const Axes& to, double wear = 0, double taper = 0);
@@ -101,7 +104,7 @@ class GrindProgram {
   std::vector<Helix> helices_;
   std::vector<std::size_t> helix_of_tooth_;
   Axes terms_;
-  double clearance_y_;
+  double clearance_y_, clear_x_;
   std::vector<Move> moves_;
 };
 

@@ -71,8 +71,8 @@ class SetpointStream {
   /// point where it left it, by the distance needed to reach the feed. Real-time safe.
   void resume() noexcept;
 
-  /// Lifts the wheel radially off the workpiece, where it stays. Ignored unless the axes are at rest before the end of
-  /// the program. Real-time safe.
+  /// Lifts the wheel radially off the workpiece, where it stays; before that it backs off to GrindProgram::clearX().
+  /// Ignored unless the axes are at rest before the end of the program. Real-time safe.
   void retract() noexcept;
 
   /// Takes over a setpoint from another source of motion, and numbers it as the stream's own. Such setpoints must come
@@ -106,12 +106,13 @@ class SetpointStream {
 
  private:
   /// The part of the motion: the program's path, or a part of the detour off the workpiece and back.
-  enum class Leg : std::uint8_t { kPath, kLift, kBack, kPlunge };
+  enum class Leg : std::uint8_t { kPath, kBackOff, kLift, kBack, kPlunge };
 
   const Helix* helixOf(const Move& move) const noexcept;
   const Axes& strokeBegin() const noexcept;
   bool beginPair() noexcept;
   void beginNext() noexcept;
+  bool isBehind(const Move& move) const noexcept;
   void beginMove(const Move& move) noexcept;
   void beginWayBack() noexcept;
   void beginReturn() noexcept;
@@ -119,6 +120,7 @@ class SetpointStream {
   void beginStroke(double s) noexcept;
   /// Whether the current move is a stroke along a helix.
   bool onHelix() const noexcept { return current_.move == MoveKind::kStroke && helix_ != nullptr; }
+  void beginLift() noexcept;
   void beginLaw(const MotionLimits& limits, double distance, double feed_speed) noexcept;
   double targetSpeed() const noexcept;
   double strokeParameter() const noexcept;

@@ -24,6 +24,7 @@ constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not
 constexpr std::size_t kMostSteps = 4000;    ///< maximum number of steps of a flute's strip
 constexpr std::size_t kEndSteps = 200;      ///< number of steps of a strip on the end
 constexpr double kOnLine = 1e-6;            ///< part of a line on the end by which its ends are beyond it
+constexpr double kMinAspect = 4;            ///< least length of a line on the end, per width
 constexpr std::size_t kMaxArrows = 200;
 constexpr std::size_t kMaxExecutedPoints = 2000;
 
@@ -42,6 +43,15 @@ bool isNear(const geometry_msgs::Point& p) {
 
 /// Scale of line widths: thinner on a small cutter, so that they do not cover it.
 double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
+
+/// The same of a job; a chamfer's line is short.
+double fineness(const ValidJob& job) {
+  double scale = fineness(ConicalCutter(job->cutter));
+  for (const EndLine& line : deepestLines(job)) {
+    scale = std::min(scale, (line.at(1) - line.at(0)).norm() / (kMinAspect * kPathWidth));
+  }
+  return scale;
+}
 
 /// The maximum axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
@@ -103,6 +113,7 @@ ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& e
     : formed_(formedEdgeOf(program.job())),
       straight_(straightOf(program.job())),
       tolerance_(program.job()->interpolation.tolerance),
+      fineness_(fineness(program.job())),
       steps_(stepsOf(program)),
       measured_(steps_ + 1, -1) {
   const ValidJob& job = program.job();
@@ -185,7 +196,7 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   if (!isShown(flute)) return;
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(formed_.cutter));
+    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness_);
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
@@ -202,7 +213,10 @@ MarkerArray ToolPath::markers() const {
 }
 
 ExecutedPath::ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges)
-    : cutter_(program.job()->cutter), straight_(straightOf(program.job())), edges_(std::move(edges)) {
+    : cutter_(program.job()->cutter),
+      fineness_(fineness(program.job())),
+      straight_(straightOf(program.job())),
+      edges_(std::move(edges)) {
   for (const Move& move : program.moves()) wear_of_move_.push_back(move.wear);
 }
 
@@ -238,7 +252,7 @@ void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
 
 void ExecutedPath::append(MarkerArray& array) const {
   if (points_.empty()) return;
-  Marker& m = appendLines(array, "executed_path", Marker::LINE_STRIP, kFrame, kExecutedWidth * fineness(cutter_));
+  Marker& m = appendLines(array, "executed_path", Marker::LINE_STRIP, kFrame, kExecutedWidth * fineness_);
   m.color = colour(0.3, 1, 1);
   m.points = points_;
   m.points.push_back(last_);

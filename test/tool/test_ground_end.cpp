@@ -81,7 +81,7 @@ TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
       const bool removed = sweep.removes(ray, x);
       const std::optional<double> to = sweep.removedTo(ray, x);
       ASSERT_EQ(to.has_value(), removed);
-      if (to) EXPECT_TRUE(*to >= x && sweep.removes(ray, *to - 1e-9) && !sweep.removes(ray, *to + 1e-9)) << *to;
+      EXPECT_TRUE(!to || (*to >= x && sweep.removes(ray, *to - 1e-9) && !sweep.removes(ray, *to + 1e-9))) << i;
       const bool near = sweep.removes(ray, x - kNear) != removed || sweep.removes(ray, x + kNear) != removed;
       if (near) continue;
       (removed ? removed_places : left_places)++;

@@ -76,6 +76,7 @@ class ToolPath {
   FormedEdge formed_;
   std::optional<EndStrokes> straight_;  ///< of an operation on the end
   double tolerance_;                    ///< error at the end of the colour scale [m]
+  double fineness_;                     ///< scale of line widths
   std::size_t steps_;                   ///< number of steps between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
@@ -100,6 +101,7 @@ class ExecutedPath {
   std::optional<geometry_msgs::Point> placeOf(const Setpoint& setpoint, const Axes& actual);
 
   ConicalCutter cutter_;
+  double fineness_;                     ///< scale of line widths
   std::optional<EndStrokes> straight_;  ///< of an operation on the end
   std::vector<GroundEdge> edges_;
   std::vector<double> wear_of_move_;  ///< wear of the wheel's radius, by the program's moves [m]

@@ -42,18 +42,19 @@ EndLine::EndLine(const ValidJob& job, int tooth, double depth, double wear)
   zero_ = Vector3d(0, job->cutter.end_diameter / 2 + wheel.nominal_radius, wheel.height) +
           up * (wheel.width / 2 - wheel.face_wear) * spindle_;
   if (is_gash_) {
-    takeBottom(job, stroke);
+    takeBottom(job, depth, stroke);
   } else {
     takeEdge(job, tooth, stroke);
   }
 }
 
-void EndLine::takeBottom(const ValidJob& job, const FaceStroke& stroke) {
+void EndLine::takeBottom(const ValidJob& job, double depth, const FaceStroke& stroke) {
   const Vector3d out = (stroke.from - stroke.to).head<3>().matrix().normalized();
   outward_ = spindle_.cross(out);
   zero_ -= rim_ * outward_;
   to_ = inWork(stroke.to);
-  const Eigen::Vector2d at = to_.tail<2>(), way = out.tail<2>();
+  const Vector3d deepest = inWork(stroke.to - (job.deepest() - depth) * stroke.per_stock);
+  const Eigen::Vector2d at = deepest.tail<2>(), way = out.tail<2>();
   const double radius = job->cutter.end_diameter / 2, toward = at.dot(way), square = way.squaredNorm();
   const double root = std::sqrt(std::max(0.0, toward * toward + square * (radius * radius - at.squaredNorm())));
   from_ = to_ + (root - toward) / square * out;

@@ -72,8 +72,8 @@ FormedEdge formedEdgeOf(const ValidJob& job) {
   return {ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).x_shift};
 }
 
-std::optional<EndStrokes> straightOf(const ValidJob& job) {
-  return job.isStraight() ? std::optional<EndStrokes>(job) : std::nullopt;
+std::optional<EndPasses> straightOf(const ValidJob& job) {
+  return job.isStraight() ? std::optional<EndPasses>(job) : std::nullopt;
 }
 
 /// Number of steps between the points of a strip.
@@ -97,7 +97,7 @@ double roundDown(double value) {
 
 }  // namespace
 
-std::optional<EndLine::Place> EndStrokes::placeOf(const Setpoint& setpoint, const Axes& actual) {
+std::optional<EndLine::Place> EndPasses::placeOf(const Setpoint& setpoint, const Axes& actual) {
   const ToothPass pass{setpoint.tooth, setpoint.pass};
   if (!(pass_ == pass)) {
     const auto is_this = [&](const JobPass& other) { return other.place == pass; };

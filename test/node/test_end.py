@@ -4,8 +4,11 @@ kept as what it is; and that its records are of a tool that passes."""
 import csv
 import glob
 import json
+import math
 import os
 
+import rospy
+import tf2_ros
 import yaml
 from flute_grinder import job as job_file
 from flute_grinder.msg import GrinderState
@@ -90,6 +93,17 @@ class TestEnd(JournalTest):
         self.assertTrue(self.client.hold().success)
         self.client.wait_state(GrinderState.HELD)
         self.client.wait_rest()
+        self.check_contact()
+
+    def check_contact(self):
+        """That tf has the contact on the rim of the wheel's lower face, 100 x 6 mm."""
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        gc.poll(lambda: buffer.can_transform('wheel', 'contact', rospy.Time()), 'the contact')
+        at = buffer.lookup_transform('wheel', 'contact', rospy.Time()).transform.translation
+        self.assertAlmostEqual(math.hypot(at.x, at.y), 50 * MM, delta=1e-9)
+        self.assertAlmostEqual(at.z, -3 * MM, delta=1e-9)
+        listener.unregister()
 
     def check_begun_again(self, setpoints):
         """That the wheel was lifted once out of a stroke, along Y, and that the stroke was begun again where it begins."""

@@ -104,7 +104,7 @@ TEST(EndLine, HasTheRimOfTheWheelOverItAllAlongTheStroke) {
   constexpr double kWear = 0.1 * kMillimetre;
   for (const ValidJob& job : allJobs()) {
     SCOPED_TRACE(toString(job->process().kind));
-    for (const double stock : {0.0, 0.05 * kMillimetre}) {
+    for (const double stock : {0.0, 0.05 * kMillimetre, job.deepest()}) {
       const double depth = job.deepest() - stock;
       const EndLine line(job, 2, depth, kWear);
       const FaceStroke stroke = job.faceStroke(2, depth, kWear);
@@ -127,6 +127,8 @@ TEST(EndLine, HasTheRimOfTheWheelOverItAllAlongTheStroke) {
         const Vector3d rim = place->at - centre - (upper ? 0.5 : -0.5) * job->process().wheel_width * spindle;
         EXPECT_NEAR(rim.norm(), kWheel - kWear, 1e-12);
         EXPECT_NEAR(rim.dot(spindle), 0, 1e-12);
+        const bool gash = job->process().kind == OperationKind::kGash;
+        expectNear(line.outward(), gash ? Vector3d(-rim.normalized()) : spindle, 1e-9);
       }
       EXPECT_GT(on_line, 3);
       EXPECT_GT(before, 0.8);

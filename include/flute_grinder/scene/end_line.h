@@ -9,9 +9,9 @@
 
 namespace grinder {
 
-/// The line on an end tooth along which the rim of the wheel grinds in a straight stroke: the bottom of a gash, within
-/// the tool's diameter, or the edge before a flank, as far as the rim comes along it. The rim is taken as sharp.
-/// Lengths in the frame `work`, while the cutter is at the stroke's A.
+/// The line on an end tooth along which the rim of the wheel grinds in a straight stroke: the bottom of a gash, as long
+/// as the deepest is within the tool's diameter, or the edge before a flank, as far as the rim comes along it. The rim
+/// is taken as sharp. Lengths in the frame `work`, while the cutter is at the stroke's A.
 class EndLine {
  public:
   /// Where the rim is.
@@ -37,7 +37,7 @@ class EndLine {
   std::optional<Place> placeOf(const Axes& position) const;
 
  private:
-  void takeBottom(const ValidJob& job, const FaceStroke& stroke);
+  void takeBottom(const ValidJob& job, double depth, const FaceStroke& stroke);
   void takeEdge(const ValidJob& job, int tooth, const FaceStroke& stroke);
   Eigen::Vector3d inWork(const Axes& position) const;
 

@@ -13,9 +13,9 @@
 namespace grinder {
 
 /// The straight strokes of a job on the end, by the passes of its teeth.
-class EndStrokes {
+class EndPasses {
  public:
-  explicit EndStrokes(const ValidJob& job) : job_(job) {}
+  explicit EndPasses(const ValidJob& job) : job_(job) {}
 
   /// Where the rim is in a stroke; nothing unless it is on the stroke's line.
   /// @param actual position read from the drive [m], A [rad].
@@ -74,10 +74,10 @@ class ToolPath {
   void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
   FormedEdge formed_;
-  std::optional<EndStrokes> straight_;  ///< of an operation on the end
-  double tolerance_;                    ///< error at the end of the colour scale [m]
-  double fineness_;                     ///< scale of line widths
-  std::size_t steps_;                   ///< number of steps between the points of a strip
+  std::optional<EndPasses> straight_;  ///< of an operation on the end
+  double tolerance_;                   ///< error at the end of the colour scale [m]
+  double fineness_;                    ///< scale of line widths
+  std::size_t steps_;                  ///< number of steps between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
   std::vector<float> measured_;  ///< errors measured in the current pass, as in Flute; negative where not yet measured
@@ -101,8 +101,8 @@ class ExecutedPath {
   std::optional<geometry_msgs::Point> placeOf(const Setpoint& setpoint, const Axes& actual);
 
   ConicalCutter cutter_;
-  double fineness_;                     ///< scale of line widths
-  std::optional<EndStrokes> straight_;  ///< of an operation on the end
+  double fineness_;                    ///< scale of line widths
+  std::optional<EndPasses> straight_;  ///< of an operation on the end
   std::vector<GroundEdge> edges_;
   std::vector<double> wear_of_move_;  ///< wear of the wheel's radius, by the program's moves [m]
   std::optional<std::uint32_t> move_;

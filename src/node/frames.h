@@ -7,9 +7,9 @@
 #include "flute_grinder/scene/end_line.h"
 #include "flute_grinder/tool/ground_edge.h"
 
-#include <Eigen/Geometry>
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
+#include <Eigen/Geometry>
 
 #include <memory>
 #include <optional>

@@ -31,11 +31,13 @@ import grinder_client as gc  # noqa: E402
 BUILD = ROOT / 'build/bench'
 PAGE = ROOT / 'docs/performance.md'
 NODE = '/grinder'
-COMMANDS = ('--version', 'status', 'offsets', 'hold', 'resume', 'cancel', 'lift', 'jog x 1')
+SIMULATE = 'simulate --operation chamfer jobs/end_mill_d10_t4.yaml'
+COMMANDS = ('--version', 'status', 'offsets', 'hold', 'resume', 'cancel', 'lift', 'jog x 1', SIMULATE)
 COMMAND_RUNS = 10
 
 REPETITIONS = 9
-BENCHMARKS = r'^(setpointFloor|step/[0-9]|next/[0-9]|cycle|plan/0/real_time|planTool/real_time|checkCutter/[02]|collision)$'
+BENCHMARKS = (r'^(setpointFloor|step/[0-9]|next/[0-9]|cycle|plan/0/real_time|planTool/real_time|checkCutter/[02]|collision|'
+              r'planEnd/[0-9]/real_time)$')
 
 
 def origin():
@@ -93,6 +95,10 @@ def of_benchmarks():
     yield 'check_cutter', of_value("check of the ground cutter, the paper's job", 'ms', 1e3 * time('checkCutter/0'))
     yield 'check_reliefs', of_value("check of the ground cutter, the reamer's with both reliefs", 'ms', 1e3 * time('checkCutter/2'))
     yield 'collision', of_value("check for collisions, the paper's job", 'ms', 1e3 * time('collision'))
+    for i in range(4):
+        name = 'planEnd/%d/real_time' % i
+        yield 'plan/' + found[name]['label'], of_value("plan with all checks, the end mill's %s" % found[name]['label'], 'ms',
+                                                       1e3 * time(name))
 
 
 @contextlib.contextmanager

@@ -3,10 +3,8 @@
 /// Figures per setpoint or per cycle are the item rates: 10M items/s are 100 ns each.
 
 #include "drive/simulated_drive.h"
-#include "flute_grinder/check/job_collision.h"
+#include "flute_grinder/check/planned_job.h"
 #include "flute_grinder/control/control_loop.h"
-#include "flute_grinder/motion/job_plan.h"
-#include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/z_law.h"
 #include "jobs.h"
 
@@ -135,6 +133,25 @@ void checkCutter(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(checkGroundCutter(job));
 }
 BENCHMARK(checkCutter)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+
+/// All that a plan does for an operation on the end of a whole tool: the edges of its flutes, the program, the check of
+/// the end, and that for collisions.
+void planEnd(benchmark::State& state) {
+  const char* const operations[]{"gash", "end_primary", "end_secondary", "chamfer"};
+  const char* operation = operations[state.range(0)];
+  std::ostringstream urdf;
+  urdf << std::ifstream("urdf/grinder.urdf").rdbuf();
+  const MachineShapes shapes{MachineModel(urdf.str())};
+  const ValidJob job(readJobFile("jobs/end_mill_d10_t4.yaml", operation));
+  Machine clear = machine();
+  clear.collision_clearance = 1e-3;
+  for (auto _ : state) {
+    const PlannedJob plan = planWholeJob(job, clear, shapes, clear.park);
+    if (!plan.good()) state.SkipWithError(text(plan.reasons).c_str());
+  }
+  state.SetLabel(operation);
+}
+BENCHMARK(planEnd)->DenseRange(0, 3)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// One cycle of the control loop: read, checks, next, check, write and sample, with the simulated drive.
 void cycle(benchmark::State& state) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace grinder {
 
@@ -40,13 +41,19 @@ bool Frames::SetUp::operator==(const SetUp& other) const {
 
 Frames::Frames(const MachineModel& model, const FirstView& first_view) : model_(model), first_view_(first_view) {}
 
+void Frames::show(std::shared_ptr<const GrindProgram> program, std::vector<GroundEdge> edges) {
+  program_ = std::move(program);
+  edges_ = std::move(edges);
+  lines_ = deepestLines(program_->job());
+}
+
 void Frames::publish(const Axes& position, const Axes& offset, int tooth, const ros::Time& stamp) {
   const SetUp set_up = setUpFor(offset.isFinite().select(offset, 0));
   if (!published_ || !(*published_ == set_up)) {
     published_ = set_up;
     publishSetUp(stamp);
   }
-  if (program_) publishContact(position[kX] - set_up.offset[kX], tooth, stamp);
+  if (program_) publishContact(position - set_up.offset, tooth, stamp);
 }
 
 Frames::SetUp Frames::setUpFor(const Axes& offset) const {
@@ -80,22 +87,40 @@ void Frames::publishSetUp(const ros::Time& stamp) {
   set_up_frames_.sendTransform(frames);
 }
 
-void Frames::publishContact(double x, int tooth, const ros::Time& stamp) {
-  // A faulty drive may report NaN. tf warns of a repeated stamp, which a stalled loop gives.
-  if (edges_.empty()) return;
-  const GroundEdge& edge = edges_[static_cast<std::size_t>(tooth)];
-  if (!std::isfinite(x) || stamp == contact_stamp_ || edge.empty()) return;
-  contact_stamp_ = stamp;
+std::optional<Eigen::Isometry3d> Frames::contactAt(const Axes& position, int tooth) const {
+  const auto i = static_cast<std::size_t>(tooth);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  const auto turn = [&pose](const Eigen::Vector3d& along, const Eigen::Vector3d& outward) {
+    Eigen::Matrix3d axes;
+    axes << along, outward, along.cross(outward);
+    pose.rotate(axes);
+  };
+  if (!lines_.empty()) {
+    const EndLine& line = lines_[i];
+    const std::optional<EndLine::Place> place = line.placeOf(position);
+    if (!place || !std::isfinite(place->part)) return std::nullopt;
+    pose.translate(line.at(std::clamp(place->part, 0.0, 1.0)));
+    turn((line.at(0) - line.at(1)).normalized(), line.outward());
+    return pose;
+  }
+  const double x = position[kX];
+  if (edges_.empty() || edges_[i].empty() || !std::isfinite(x)) return std::nullopt;
+  const GroundEdge& edge = edges_[i];
   const GroundEdge::Place at = edge.at(std::clamp(edge.formedAt(x).x, edge.from(), edge.to()));
   const ConicalCutter& cutter = program_->cutter(tooth);
-  Eigen::Matrix3d unturned;
-  unturned.col(0) = Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized();
-  unturned.col(1) = Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized();
-  unturned.col(2) = unturned.col(0).cross(unturned.col(1));
-  Eigen::Isometry3d pose(Eigen::AngleAxisd(at.turn, Eigen::Vector3d::UnitX()) *
-                         Eigen::Translation3d(at.x, cutter.radius(at.x), 0));
-  pose.rotate(unturned);
-  moving_frames_.sendTransform(transformMessage(kWork, kContact, pose, stamp));
+  pose = Eigen::AngleAxisd(at.turn, Eigen::Vector3d::UnitX()) * Eigen::Translation3d(at.x, cutter.radius(at.x), 0);
+  turn(Eigen::Vector3d(1, cutter.tanCone(), cutter.tanSpiral()).normalized(),
+       Eigen::Vector3d(-cutter.tanCone(), 1, 0).normalized());
+  return pose;
+}
+
+void Frames::publishContact(const Axes& position, int tooth, const ros::Time& stamp) {
+  // A faulty drive may report NaN. tf warns of a repeated stamp, which a stalled loop gives.
+  if (stamp == contact_stamp_) return;
+  const std::optional<Eigen::Isometry3d> pose = contactAt(position, tooth);
+  if (!pose) return;
+  contact_stamp_ = stamp;
+  moving_frames_.sendTransform(transformMessage(kWork, kContact, *pose, stamp));
 }
 
 }  // namespace grinder

@@ -4,14 +4,15 @@
 #include "flute_grinder/machine/first_view.h"
 #include "flute_grinder/machine/machine_model.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/scene/end_line.h"
 #include "flute_grinder/tool/ground_edge.h"
 
 #include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_broadcaster.h>
+#include <Eigen/Geometry>
 
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -23,7 +24,7 @@ namespace grinder {
 /// - `cutter` in the chuck: it turns in `work` by -A.
 /// - the child links of the robot description's joints y_zero, z_zero and wheel_swivel, the last of which is `wheel`.
 /// And, on `tf`, `contact` in `work`: where the wheel forms the edge, at the X of the axes, with X along the edge and Y
-/// away from the cutter.
+/// away from the cutter; on the end, where its rim is along the line of the tooth's deepest stroke (EndLine).
 /// Not thread safe; not for the control thread.
 class Frames {
  public:
@@ -33,10 +34,7 @@ class Frames {
   /// Shows the frames of a job. Without a job the frames show the blank and wheel of the first view, not swivelled and
   /// without a contact.
   /// @param edges edges of the teeth; a tooth with an empty edge has no contact.
-  void show(std::shared_ptr<const GrindProgram> program, std::vector<GroundEdge> edges) {
-    program_ = std::move(program);
-    edges_ = std::move(edges);
-  }
+  void show(std::shared_ptr<const GrindProgram> program, std::vector<GroundEdge> edges);
 
   /// Publishes what has changed, and the contact.
   /// @param position positions of the axes in machine coordinates [m], A [rad].
@@ -58,7 +56,8 @@ class Frames {
 
   SetUp setUpFor(const Axes& offset) const;
   void publishSetUp(const ros::Time& stamp);
-  void publishContact(double x, int tooth, const ros::Time& stamp);
+  std::optional<Eigen::Isometry3d> contactAt(const Axes& position, int tooth) const;
+  void publishContact(const Axes& position, int tooth, const ros::Time& stamp);
 
   const MachineModel model_;
   const FirstView first_view_;
@@ -66,6 +65,7 @@ class Frames {
   tf2_ros::TransformBroadcaster moving_frames_;
   std::shared_ptr<const GrindProgram> program_;
   std::vector<GroundEdge> edges_;
+  std::vector<EndLine> lines_;  ///< of the teeth, for an operation on the end
   std::optional<SetUp> published_;
   ros::Time contact_stamp_;  ///< stamp of the latest contact published
 };

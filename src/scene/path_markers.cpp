@@ -22,11 +22,19 @@ constexpr double kMaxArrow = 3e-3;          ///< [m]
 constexpr double kMinDrawn = 1e-3;          ///< minimum error for an arrow of full length, per tolerance
 constexpr double kFarthest = 1;             ///< points beyond, and NaN, are not shown [m]
 constexpr std::size_t kMostSteps = 4000;    ///< maximum number of steps of a flute's strip
+constexpr std::size_t kEndSteps = 200;      ///< number of steps of a strip on the end
+constexpr double kOnLine = 1e-6;            ///< part of a line on the end by which its ends are beyond it
+constexpr double kMinAspect = 4;            ///< least length of a line on the end, per width
 constexpr std::size_t kMaxArrows = 200;
 constexpr std::size_t kMaxExecutedPoints = 2000;
 
 /// A point of the cutter at the radius r.
 geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
+
+/// A place of the frame `work` on the cutter.
+geometry_msgs::Point onCutter(const Eigen::Vector3d& at, double a) {
+  return atRadius(at[0], std::hypot(at[1], at[2]), std::atan2(at[2], at[1]) + a);
+}
 
 /// Whether a point can be shown.
 bool isNear(const geometry_msgs::Point& p) {
@@ -35,6 +43,15 @@ bool isNear(const geometry_msgs::Point& p) {
 
 /// Scale of line widths: thinner on a small cutter, so that they do not cover it.
 double fineness(const ConicalCutter& cutter) { return std::min(1.0, cutter.radius(0) / 2.5e-3); }
+
+/// The same of a job; a chamfer's line is short.
+double fineness(const ValidJob& job) {
+  double scale = fineness(ConicalCutter(job->cutter));
+  for (const EndLine& line : deepestLines(job)) {
+    scale = std::min(scale, (line.at(1) - line.at(0)).norm() / (kMinAspect * kPathWidth));
+  }
+  return scale;
+}
 
 /// The maximum axial distance between points of a strip that stays within kPathTolerance of the helix: the chord
 /// error is step^2 / 8 times the second derivative by X, which is tan^2 S / R inward and tan S tan C / R around.
@@ -55,6 +72,19 @@ FormedEdge formedEdgeOf(const ValidJob& job) {
   return {ConicalCutter(job.strokeLaw(0).cutter), job.strokeLaw(0).x_shift};
 }
 
+std::optional<EndPasses> straightOf(const ValidJob& job) {
+  return job.isStraight() ? std::optional<EndPasses>(job) : std::nullopt;
+}
+
+/// Number of steps between the points of a strip.
+std::size_t stepsOf(const GrindProgram& program) {
+  if (program.isStraight()) return kEndSteps;
+  return std::min(kMostSteps,
+                  static_cast<std::size_t>(std::ceil(program.job()->cutter.flute_length / pathStep(program))));
+}
+
+double xOf(const GroundEdge& edge, double part) { return edge.from() + (edge.to() - edge.from()) * part; }
+
 /// Whether a place is on an edge; beyond the edge's ends the overtravel forms none.
 bool isOn(const GroundEdge& edge, double x) { return x >= edge.from() && x <= edge.to(); }
 
@@ -67,47 +97,82 @@ double roundDown(double value) {
 
 }  // namespace
 
+std::optional<EndLine::Place> EndPasses::placeOf(const Setpoint& setpoint, const Axes& actual) {
+  const ToothPass pass{setpoint.tooth, setpoint.pass};
+  if (!(pass_ == pass)) {
+    const auto is_this = [&](const JobPass& other) { return other.place == pass; };
+    const JobPass& found = *std::find_if(job_.passes().begin(), job_.passes().end(), is_this);
+    line_.emplace(job_, pass.tooth, found.depth, found.wear);
+    pass_ = pass;
+  }
+  const std::optional<EndLine::Place> place = line_->placeOf(actual);
+  return place && place->part >= -kOnLine && place->part <= 1 + kOnLine ? place : std::nullopt;
+}
+
 ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& edges)
     : formed_(formedEdgeOf(program.job())),
+      straight_(straightOf(program.job())),
       tolerance_(program.job()->interpolation.tolerance),
-      steps_(std::min(kMostSteps,
-                      static_cast<std::size_t>(std::ceil(program.job()->cutter.flute_length / pathStep(program))))),
+      fineness_(fineness(program.job())),
+      steps_(stepsOf(program)),
       measured_(steps_ + 1, -1) {
-  for (std::size_t i = 0; i < edges.size() && !program.isStraight(); ++i) {
+  const ValidJob& job = program.job();
+  for (EndLine& line : deepestLines(job)) flutes_.push_back({std::move(line), {}});
+  for (std::size_t i = 0; i < edges.size() && !straight_; ++i) {
     const int tooth = static_cast<int>(i);
-    flutes_.push_back({program.job().strokeLaw(tooth).a, program.helix(tooth).curve, edges[i], {}});
+    flutes_.push_back({Edge{job.strokeLaw(tooth).a, program.helix(tooth).curve, edges[i]}, {}});
   }
 }
 
-double ToolPath::x(const GroundEdge& edge, std::size_t i) const {
-  return edge.from() + (edge.to() - edge.from()) * (static_cast<double>(i) / static_cast<double>(steps_));
+bool ToolPath::isShown(const Flute& flute) {
+  const Edge* edge = std::get_if<Edge>(&flute.line);
+  return edge == nullptr || !edge->edge.empty();
+}
+
+geometry_msgs::Point ToolPath::pointOf(const Flute& flute, std::size_t i) const {
+  const double part = static_cast<double>(i) / static_cast<double>(steps_);
+  if (const EndLine* line = std::get_if<EndLine>(&flute.line)) return onCutter(line->at(part), line->a());
+  const auto& [angle, curve, edge] = std::get<Edge>(flute.line);
+  const GroundEdge::Place at = edge.at(xOf(edge, part));
+  return atRadius(at.x, formed_.cutter.radius(at.x), angle + curve.a(at.wheel_x) + at.turn);
 }
 
 bool ToolPath::add(const Setpoint& p, const Axes& actual) {
   if (flutes_.empty()) return false;
+  // The last setpoints of a straight stroke may all be at its end, but for rounding.
+  if (p.move == MoveKind::kStroke && p.move_fraction == 1 && !active_) return false;
   const std::optional<std::size_t> before = active_;
   const PassPhase phase = phaseOf(p.move);
   if (phase == PassPhase::kBefore || phase == PassPhase::kStroke) active_ = p.tooth;
   if (p.move != MoveKind::kStroke) return active_ != before;
-  if (p.step != StepKind::kNone) measure(p, actual);
+  if (straight_ || p.step != StepKind::kNone) measure(p, actual);
   if (p.move_fraction < 1) return active_ != before;
   finishPass(flutes_[p.tooth]);
   deactivate();
   return true;
 }
 
+std::optional<ToolPath::Measured> ToolPath::measured(const Setpoint& p, const Axes& actual) {
+  if (straight_) {
+    const std::optional<EndLine::Place> place = straight_->placeOf(p, actual);
+    return place ? std::optional(Measured{std::clamp(place->part, 0.0, 1.0), place->error}) : std::nullopt;
+  }
+  const auto& [angle, curve, edge] = std::get<Edge>(flutes_[p.tooth].line);
+  Measured measured{{}, formed_.deviation(actual[kX], std::abs(angle + curve.a(actual[kX]) - actual[kA]))};
+  if (edge.empty()) return measured;
+  const double x = edge.formedAt(actual[kX]).x;
+  if (isOn(edge, x)) measured.part = (x - edge.from()) / (edge.to() - edge.from());
+  return measured;
+}
+
 void ToolPath::measure(const Setpoint& p, const Axes& actual) {
-  const Flute& flute = flutes_[p.tooth];
-  const double error = formed_.deviation(actual[kX], std::abs(flute.angle + flute.curve.a(actual[kX]) - actual[kA]));
+  const std::optional<Measured> now = measured(p, actual);
   // A faulty drive may report NaN, or a position beyond the cone's apex.
-  if (!(error <= kFarthest)) return;
-  max_ = std::max(max_, error);
-  if (flute.edge.empty()) return;
-  const double x = flute.edge.formedAt(actual[kX]).x;
-  if (!isOn(flute.edge, x)) return;
-  const double at = (x - flute.edge.from()) / (flute.edge.to() - flute.edge.from()) * static_cast<double>(steps_);
-  float& max = measured_[static_cast<std::size_t>(std::lround(at))];
-  max = std::max(max, static_cast<float>(error));
+  if (!now || !(now->error <= kFarthest)) return;
+  max_ = std::max(max_, now->error);
+  if (!now->part) return;
+  float& max = measured_[static_cast<std::size_t>(std::lround(*now->part * static_cast<double>(steps_)))];
+  max = std::max(max, static_cast<float>(now->error));
 }
 
 void ToolPath::finishPass(Flute& flute) {
@@ -118,7 +183,7 @@ void ToolPath::finishPass(Flute& flute) {
   for (std::size_t i = steps_; i-- > 0;) {
     if (measured_[i] < 0) measured_[i] = measured_[i + 1];
   }
-  flute.errors = measured_;
+  if (measured_.front() >= 0) flute.errors = measured_;
 }
 
 void ToolPath::deactivate() {
@@ -128,16 +193,14 @@ void ToolPath::deactivate() {
 
 void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
-  if (flute.edge.empty()) return;
+  if (!isShown(flute)) return;
   const bool active = active_ == tooth;
   for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness(formed_.cutter));
+    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness_);
     m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
-      const GroundEdge::Place at = flute.edge.at(x(flute.edge, i));
-      m.points.push_back(
-          atRadius(at.x, formed_.cutter.radius(at.x), flute.angle + flute.curve.a(at.wheel_x) + at.turn));
+      m.points.push_back(pointOf(flute, i));
       if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
     }
   }
@@ -150,23 +213,35 @@ MarkerArray ToolPath::markers() const {
 }
 
 ExecutedPath::ExecutedPath(const GrindProgram& program, std::vector<GroundEdge> edges)
-    : cutter_(program.job()->cutter), edges_(std::move(edges)) {
+    : cutter_(program.job()->cutter),
+      fineness_(fineness(program.job())),
+      straight_(straightOf(program.job())),
+      edges_(std::move(edges)) {
   for (const Move& move : program.moves()) wear_of_move_.push_back(move.wear);
 }
 
+std::optional<geometry_msgs::Point> ExecutedPath::placeOf(const Setpoint& p, const Axes& actual) {
+  if (straight_) {
+    const std::optional<EndLine::Place> place = straight_->placeOf(p, actual);
+    return place ? std::optional(onCutter(place->at, actual[kA])) : std::nullopt;
+  }
+  if (edges_.empty() || edges_[p.tooth].empty()) return std::nullopt;
+  const GroundEdge::Place place = edges_[p.tooth].formedAt(actual[kX]);
+  const double height = actual[kY] + wear_of_move_[p.move_index] - actual[kX] * cutter_.tanCone();
+  return atRadius(place.x, cutter_.radius(place.x) + height, actual[kA] + place.turn);
+}
+
 void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
-  if (p.move != MoveKind::kStroke || edges_.empty() || edges_[p.tooth].empty()) return;
+  if (p.move != MoveKind::kStroke) return;
   if (move_ != p.move_index) {
     move_ = p.move_index;
     points_.clear();
     taken_ = 0;
     every_ = 1;
   }
-  const GroundEdge::Place place = edges_[p.tooth].formedAt(actual[kX]);
-  const double height = actual[kY] + wear_of_move_[p.move_index] - actual[kX] * cutter_.tanCone();
-  const geometry_msgs::Point at = atRadius(place.x, cutter_.radius(place.x) + height, actual[kA] + place.turn);
-  if (!isNear(at)) return;
-  last_ = at;
+  const std::optional<geometry_msgs::Point> at = placeOf(p, actual);
+  if (!at || !isNear(*at)) return;
+  last_ = *at;
   if (taken_++ % every_ != 0) return;
   points_.push_back(last_);
   if (points_.size() < kMaxExecutedPoints) return;
@@ -177,7 +252,7 @@ void ExecutedPath::add(const Setpoint& p, const Axes& actual) {
 
 void ExecutedPath::append(MarkerArray& array) const {
   if (points_.empty()) return;
-  Marker& m = appendLines(array, "executed_path", Marker::LINE_STRIP, kFrame, kExecutedWidth * fineness(cutter_));
+  Marker& m = appendLines(array, "executed_path", Marker::LINE_STRIP, kFrame, kExecutedWidth * fineness_);
   m.color = colour(0.3, 1, 1);
   m.points = points_;
   m.points.push_back(last_);

@@ -17,8 +17,6 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kNothing{kInfinity, -kInfinity};
-constexpr int kGoldenSteps = 50;
-constexpr double kGolden = 0.6180339887498949;
 constexpr int kRootSteps = 60, kRootBits = 50;
 constexpr double kParallel = 1e-9;  ///< change along the spindle for each metre of a ray, below which there is none
 
@@ -43,25 +41,6 @@ Range chord(const Vector2d& centre, double radius, double along) {
   return {centre[0] - std::sqrt(square), centre[0] + std::sqrt(square)};
 }
 
-/// A place where a concave function is 0 or more; if there is none, about where it is largest.
-template <typename Function>
-double placeInside(const Function& f, Range range) {
-  double low = range.to - kGolden * (range.to - range.from), high = range.from + range.to - low;
-  double at_low = f(low), at_high = f(high);
-  for (int i = 0; i < kGoldenSteps && !(at_low >= 0 || at_high >= 0); ++i) {
-    if (at_low > at_high) {
-      range.to = high;
-      high = low, at_high = at_low;
-      low = range.to - kGolden * (range.to - range.from), at_low = f(low);
-    } else {
-      range.from = low;
-      low = high, at_low = at_high;
-      high = range.from + kGolden * (range.to - range.from), at_high = f(high);
-    }
-  }
-  return at_low > at_high ? low : high;
-}
-
 /// Where a function that has another sign at `from` than at `to` is 0.
 template <typename Function>
 double boundary(const Function& f, double from, double at_from, double to, double at_to) {
@@ -79,7 +58,8 @@ FaceSweep::FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProf
                      double tooth_angle)
     : profile_(std::move(profile)),
       inner_radius_(wheel.inner_radius),
-      a_(stroke.to[kA] + tooth_angle),
+      cos_a_(std::cos(stroke.to[kA] + tooth_angle)),
+      sin_a_(std::sin(stroke.to[kA] + tooth_angle)),
       spindle_(-std::sin(stroke.swivel), 0, std::cos(stroke.swivel)),
       across_(std::cos(stroke.swivel), 0, std::sin(stroke.swivel)) {
   const auto centre = [&](const Axes& at) {
@@ -94,19 +74,36 @@ FaceSweep::FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProf
   legs_.push_back({Vector2d::Zero(), begin, false});
 }
 
-void FaceSweep::addRemoved(double r, double angle, std::vector<Range>& ranges) const {
-  const double turn = angle - a_;
-  const Vector3d at = Vector3d(0, r * std::cos(turn), r * std::sin(turn)) - end_;
-  const Ray ray{at.dot(spindle_), spindle_[0], {at.dot(across_), at[1]}, {across_[0], 0}};
-  if (plunges_) return addPlunged(ray, ranges);
-  for (const Leg& leg : legs_) {
-    const Range range = removed(ray, leg);
-    if (!isEmpty(range)) ranges.push_back(range);
+FaceSweep::Ray FaceSweep::inWheel(const OnRay& ray) const {
+  const Vector3d at = Vector3d(0, ray[0] * cos_a_ + ray[1] * sin_a_, ray[1] * cos_a_ - ray[0] * sin_a_) - end_;
+  return {at.dot(spindle_), spindle_[0], {at.dot(across_), at[1]}, {across_[0], 0}};
+}
+
+bool FaceSweep::removes(const OnRay& on_ray, double x) const {
+  const Ray ray = inWheel(on_ray);
+  if (plunges_) return x <= plungedTo(ray);
+  return std::any_of(legs_.begin(), legs_.end(), [&](const Leg& leg) { return covers(ray, leg, x); });
+}
+
+std::optional<double> FaceSweep::removedTo(const OnRay& on_ray, double x) const {
+  const Ray ray = inWheel(on_ray);
+  if (plunges_) {
+    const double to = plungedTo(ray);
+    return x <= to ? std::optional(to) : std::nullopt;
   }
+  // From one leg the ray may go on into another, and back.
+  const Leg* last = nullptr;
+  for (std::size_t i = 0; i < 2 * legs_.size() - 1; ++i) {
+    const Leg& leg = legs_[i % legs_.size()];
+    if (&leg == last || !covers(ray, leg, x)) continue;
+    x = coveredTo(ray, leg, x);
+    last = &leg;
+  }
+  return last != nullptr ? std::optional(x) : std::nullopt;
 }
 
 double FaceSweep::Leg::distance(const Vector2d& at) const noexcept {
-  if (endless) return std::hypot(at[0] - to[0], std::min(0.0, at[1] - to[1]));
+  if (endless) return Vector2d(at[0] - to[0], std::min(0.0, at[1] - to[1])).norm();
   const Vector2d way = to - from;
   const double part = std::clamp((at - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
   return (at - from - part * way).norm();
@@ -137,32 +134,30 @@ double FaceSweep::depth(const Ray& ray, const Leg& leg, double x) const {
   return profile_.radius(ray.w + x * ray.w_per_x) - leg.distance(ray.at + x * ray.at_per_x);
 }
 
-Range FaceSweep::removed(const Ray& ray, const Leg& leg) const {
+bool FaceSweep::covers(const Ray& ray, const Leg& leg, double x) const {
+  const double w = ray.w + x * ray.w_per_x;
+  return w >= profile_.lowerFace() && w <= profile_.upperFace() && depth(ray, leg, x) >= 0;
+}
+
+/// The depth is concave along the ray: there is one end, beyond any place that is covered.
+double FaceSweep::coveredTo(const Ray& ray, const Leg& leg, double x) const {
   const Range reach = common(where(ray.w, ray.w_per_x, {profile_.lowerFace(), profile_.upperFace()}),
                              where(ray.at[0], ray.at_per_x[0], leg.within(profile_.maxRadius(), ray.at[1])));
-  if (isEmpty(reach)) return kNothing;
-  const auto depth_at = [&](double x) { return depth(ray, leg, x); };
-  const double at_from = depth_at(reach.from), at_to = depth_at(reach.to);
-  if (at_from >= 0 && at_to >= 0) return reach;
-  // The depth is concave along the ray: there is one range, about any place that is inside.
-  const Range cylinder = common(reach, where(ray.w, ray.w_per_x, profile_.maxPlace()));
-  const double inside = isEmpty(cylinder) ? placeInside(depth_at, reach) : (cylinder.from + cylinder.to) / 2;
-  const double at_inside = depth_at(inside);
-  if (!(at_inside >= 0)) return kNothing;
-  return {at_from >= 0 ? reach.from : boundary(depth_at, reach.from, at_from, inside, at_inside),
-          at_to >= 0 ? reach.to : boundary(depth_at, inside, at_inside, reach.to, at_to)};
+  if (!(reach.to > x)) return x;
+  const auto depth_at = [&](double at) { return depth(ray, leg, at); };
+  const double at_end = depth_at(reach.to);
+  return at_end >= 0 ? reach.to : boundary(depth_at, x, depth_at(x), reach.to, at_end);
 }
 
 /// Fed along the ray, the wheel removes all up to where its rim is at last.
-void FaceSweep::addPlunged(const Ray& ray, std::vector<Range>& ranges) const {
+double FaceSweep::plungedTo(const Ray& ray) const {
   const Leg end{Vector2d::Zero(), Vector2d::Zero(), false};
   const auto disc = [&](double radius) { return where(ray.at[0], ray.at_per_x[0], chord(end.to, radius, ray.at[1])); };
   const Range faces = where(ray.w, ray.w_per_x, {profile_.lowerFace(), profile_.upperFace()});
   const Range wheel = common(faces, disc(profile_.maxRadius())), hollow = disc(inner_radius_);
-  if (isEmpty(wheel)) return;
-  double to = wheel.to;
-  if (to > hollow.from && to < hollow.to) to = hollow.from;
-  if (to >= wheel.from) ranges.push_back({-kInfinity, to});
+  if (isEmpty(wheel)) return -kInfinity;
+  const double to = wheel.to > hollow.from && wheel.to < hollow.to ? hollow.from : wheel.to;
+  return to >= wheel.from ? to : -kInfinity;
 }
 
 }  // namespace grinder

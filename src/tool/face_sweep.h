@@ -3,12 +3,13 @@
 #include "flute_grinder/curve/face_stroke.h"
 #include "flute_grinder/tool/wheel_profile.h"
 
+#include <optional>
 #include <vector>
 
 namespace grinder {
 
-/// The volume that a wheel removes in a FaceStroke, as ranges of X on rays parallel to the cutter's axis, found on the
-/// continuous stroke. A wheel that comes in its face's plane goes out along Y, and one that is fed along X goes back;
+/// The volume that a wheel removes in a FaceStroke, on rays parallel to the cutter's axis, found on the continuous
+/// stroke. A wheel that comes in its face's plane goes out along Y, and one that is fed along X goes back;
 /// the rim of such a cup is taken as sharp.
 class FaceSweep {
  public:
@@ -18,9 +19,13 @@ class FaceSweep {
   FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProfile profile, double end_radius,
             double tooth_angle);
 
-  /// Adds the ranges of X that the wheel passes through on a ray. They may overlap.
-  /// @param r,angle the ray: distance from the axis [m], angle in the sense of A [rad].
-  void addRemoved(double r, double angle, std::vector<Range>& ranges) const;
+  /// A ray, by its place at right angles to the axis, which turns with A [m].
+  using OnRay = Eigen::Vector2d;
+
+  /// Whether the wheel passes through a place. @param x of the place on the ray [m].
+  bool removes(const OnRay& ray, double x) const;
+  /// How far it passes through the ray from a place toward +X [m]; nothing if not through the place.
+  std::optional<double> removedTo(const OnRay& ray, double x) const;
 
  private:
   /// A convex part of the path of the wheel's centre in the face's plane, seen from its end.
@@ -39,12 +44,14 @@ class FaceSweep {
     Eigen::Vector2d at, at_per_x;
   };
 
-  Range removed(const Ray& ray, const Leg& leg) const;
-  void addPlunged(const Ray& ray, std::vector<Range>& ranges) const;
+  Ray inWheel(const OnRay& ray) const;
+  bool covers(const Ray& ray, const Leg& leg, double x) const;
+  double coveredTo(const Ray& ray, const Leg& leg, double x) const;
+  double plungedTo(const Ray& ray) const;
   double depth(const Ray& ray, const Leg& leg, double x) const;
 
   WheelProfile profile_;
-  double inner_radius_, a_;
+  double inner_radius_, cos_a_, sin_a_;
   Eigen::Vector3d end_, spindle_, across_;  ///< of the wheel's centre at the stroke's end, and its directions
   bool plunges_;                            ///< whether the stroke is along X rather than within the face's plane
   std::vector<Leg> legs_;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace grinder {
@@ -40,51 +41,48 @@ GroundEnd::GroundEnd(double radius, CutDirection cut, std::vector<double> tooth_
       blank_x_(blank_x),
       flutes_(std::move(flutes)) {}
 
+GroundEnd::Ray GroundEnd::rayAt(double r, double angle) {
+  return {r, angle, {r * std::cos(angle), r * std::sin(angle)}};
+}
+
 GroundEnd::Ray GroundEnd::rayAt(std::size_t tooth, double r, double behind) const {
-  return {std::hypot(r, behind), tooth_angles_[tooth] + hand_ * std::atan2(behind, r)};
+  return rayAt(std::hypot(r, behind), tooth_angles_[tooth] + hand_ * std::atan2(behind, r));
 }
 
 GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind) const {
   const Ray ray = rayAt(tooth, r, behind);
-  struct Piece {
-    Range range;
-    const EndCut* cut;
-  };
-  std::vector<Piece> pieces;
-  std::vector<Range> ranges;
-  for (const EndCut& cut : cuts_) {
-    ranges.clear();
-    cut.sweep.addRemoved(ray.r, ray.angle, ranges);
-    for (const Range& range : ranges) pieces.push_back({range, &cut});
-  }
-  ranges.clear();
-  for (std::size_t i = 0; i < flutes_.teeth(); ++i) flutes_.addRemoved(i, ray.r, ray.angle, ranges);
-  for (const Range& range : ranges) pieces.push_back({range, nullptr});
-  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.range.from < b.range.from; });
+  std::vector<Range> flutes;
+  for (std::size_t i = 0; i < flutes_.teeth(); ++i) flutes_.addRemoved(i, ray.r, ray.angle, flutes);
   Surface left{blank_x_, nullptr};
-  for (const Piece& piece : pieces) {
-    if (piece.range.from > left.x) break;
-    if (piece.range.to > left.x) left = {piece.range.to, piece.cut};
+  for (double before = -std::numeric_limits<double>::infinity(); left.x > before;) {
+    before = left.x;
+    for (const EndCut& cut : cuts_) {
+      if (&cut == left.cut) continue;
+      const std::optional<double> to = cut.sweep.removedTo(ray.at, left.x);
+      if (to && *to > left.x) left = {*to, &cut};
+    }
+    for (const Range& range : flutes) {
+      if (range.from <= left.x && range.to > left.x) left = {range.to, nullptr};
+    }
   }
   return left;
 }
 
 bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, By by) const {
   const Ray ray = rayAt(tooth, r, behind);
-  std::vector<Range> ranges;
   for (const EndCut& cut : cuts_) {
-    if (by == By::kAny || isOf(&cut, tooth, EndFace::kGash)) cut.sweep.addRemoved(ray.r, ray.angle, ranges);
+    if ((by == By::kAny || isOf(&cut, tooth, EndFace::kGash)) && cut.sweep.removes(ray.at, x)) return true;
   }
+  std::vector<Range> flutes;
   for (std::size_t i = 0; i < flutes_.teeth() && by != By::kOwnGash; ++i) {
-    if (by == By::kAny || i == tooth) flutes_.addRemoved(i, ray.r, ray.angle, ranges);
+    if (by == By::kAny || i == tooth) flutes_.addRemoved(i, ray.r, ray.angle, flutes);
   }
-  return holds(ranges, x);
+  return holds(flutes, x);
 }
 
 bool GroundEnd::isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const {
-  std::vector<Range> ranges;
-  for (const EndCut& cut : cuts_) cut.sweep.addRemoved(r, tooth_angles_[tooth] + turn, ranges);
-  return holds(ranges, x);
+  const Ray ray = rayAt(r, tooth_angles_[tooth] + turn);
+  return std::any_of(cuts_.begin(), cuts_.end(), [&](const EndCut& cut) { return cut.sweep.removes(ray.at, x); });
 }
 
 bool GroundEnd::isFlank(std::size_t tooth, EndFace face, double r, double behind) const {

@@ -69,10 +69,12 @@ class GroundEnd {
   std::optional<ChamferFigures> chamfer(std::size_t tooth) const;
 
  private:
-  /// A ray by its distance from the axis [m] and its angle in the sense of A [rad].
+  /// A ray by its distance from the axis [m], its angle in the sense of A [rad], and by its place.
   struct Ray {
     double r, angle;
+    FaceSweep::OnRay at;
   };
+  static Ray rayAt(double r, double angle);
   Ray rayAt(std::size_t tooth, double r, double behind) const;
   /// The surface that is left on a ray: its X, and the cut that formed it, or none.
   struct Surface {

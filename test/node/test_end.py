@@ -4,8 +4,11 @@ kept as what it is; and that its records are of a tool that passes."""
 import csv
 import glob
 import json
+import math
 import os
 
+import rospy
+import tf2_ros
 import yaml
 from flute_grinder import job as job_file
 from flute_grinder.msg import GrinderState
@@ -90,6 +93,21 @@ class TestEnd(JournalTest):
         self.assertTrue(self.client.hold().success)
         self.client.wait_state(GrinderState.HELD)
         self.client.wait_rest()
+        self.check_contact()
+
+    def check_contact(self):
+        """That tf has the contact on the rim of the wheel's lower face, of 100 x 6 mm; the tool has 10 mm."""
+        buffer = tf2_ros.Buffer()
+        listener = tf2_ros.TransformListener(buffer)
+        gc.poll(lambda: buffer.can_transform('work', 'contact', rospy.Time()), 'the contact')
+        at = buffer.lookup_transform('work', 'contact', rospy.Time()).transform.translation
+        listener.unregister()
+        process, axes = gc.process_of(self.goal), self.client.positions()
+        from_centre = at.x - axes[X], at.y - axes[Y] - 55 * MM, at.z - axes[Z] - process.setup_height
+        down = math.sin(process.setup_swivel) * from_centre[0] - math.cos(process.setup_swivel) * from_centre[2]
+        rounded = 1e-7  # the swivel of the set-up
+        self.assertAlmostEqual(down, 3 * MM, delta=rounded)
+        self.assertAlmostEqual(math.hypot(*from_centre), math.hypot(3 * MM, 50 * MM), delta=rounded)
 
     def check_begun_again(self, setpoints):
         """That the wheel was lifted once out of a stroke, along Y, and that the stroke was begun again where it begins."""

@@ -7,6 +7,7 @@
 #include "flute_grinder/tool/z_law.h"
 
 #include "motion/generators.h"
+#include "scene/end_job.h"
 
 #include <gtest/gtest.h>
 
@@ -50,6 +51,10 @@ void expectFinite(const MarkerArray& array) {
     }
     for (const std_msgs::ColorRGBA& c : m.colors) ASSERT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.b >= 0) << m.ns;
   }
+}
+
+double distance(const geometry_msgs::Point& a, const geometry_msgs::Point& b) {
+  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
 /// The maximum error measured and all markers of the paper's job, with every so-many-th position of an axis replaced.
@@ -193,8 +198,63 @@ geometry_msgs::Point groundAt(const GroundCutter& cutter, double x) {
   return point(x, r * std::cos(a), r * std::sin(a));
 }
 
-double distance(const geometry_msgs::Point& a, const geometry_msgs::Point& b) {
-  return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
+// The wheel's face is ever farther off the flank, up to twice the tolerance where the rim ends.
+TEST(PathMarkers, OfStrokesOnTheEndAreTheirLinesWithTheColoursOfTheirErrors) {
+  for (const char* operation : {"gash", "end_primary", "end_secondary", "chamfer"}) {
+    SCOPED_TRACE(operation);
+    const ValidJob job = test_support::endJob(operation);
+    const Machine machine = test_support::roomyMachine();
+    const GrindProgram of_job(job, machine, machine.park);
+    const double tolerance = job->interpolation.tolerance;
+    const Eigen::Vector3d spindle(-std::sin(of_job.swivel()), 0, std::cos(of_job.swivel()));
+    std::vector<EndLine> lines;
+    for (int tooth = 0; tooth < job.teeth(); ++tooth) lines.emplace_back(job, tooth, job.deepest(), 0);
+    ToolPath flutes(of_job, {});
+    EXPECT_EQ(looksOf(flutes), "pppp");
+    ExecutedPath executed(of_job, {});
+    SetpointStream stream(of_job);
+    int active = 0;
+    for (Setpoint p; stream.next(p);) {
+      Axes actual = p.position;
+      const auto place = lines[p.tooth].placeOf(p.position);
+      if (place) actual.head<3>() += (std::clamp(place->part, 0.0, 1.0) * 2 * tolerance * spindle).array();
+      flutes.add(p, actual);
+      executed.add(p, actual);
+      if (p.move == MoveKind::kStroke && p.pass == 0 && p.cycle % 100 == 0)
+        active += flutes.markers().markers[1 + p.tooth].color.r == 1;
+    }
+    EXPECT_EQ(looksOf(flutes), "mmmm");
+    EXPECT_GT(active, 4);
+    EXPECT_NEAR(flutes.maxMeasured(), 2 * tolerance, 0.2 * tolerance);  // few cycles along the short chamfer
+    const MarkerArray strips = flutes.markers();
+    for (std::size_t tooth = 0; tooth < lines.size(); ++tooth) {
+      const Marker& strip = strips.markers[1 + tooth];
+      EXPECT_EQ(strip.header.frame_id, "cutter");
+      const auto on_cutter = [&](double part) {
+        const Eigen::Vector3d at = lines[tooth].at(part);
+        const double r = std::hypot(at[1], at[2]), a = std::atan2(at[2], at[1]) + lines[tooth].a();
+        return point(at[0], r * std::cos(a), r * std::sin(a));
+      };
+      EXPECT_LT(distance(strip.points.front(), on_cutter(0)), 1e-12);
+      EXPECT_LT(distance(strip.points.back(), on_cutter(1)), 1e-12);
+      EXPECT_TRUE(strip.colors.front().b > 0.9 && strip.colors.front().r < 0.2);
+      EXPECT_TRUE(strip.colors.back().b < 0.2 && strip.colors.back().r > 0.9);
+    }
+    MarkerArray path;
+    executed.append(path);
+    ASSERT_EQ(path.markers.size(), 1u);
+    const std::vector<geometry_msgs::Point>& last = path.markers[0].points;
+    EXPECT_GT(last.size(), 5u);
+    EXPECT_LE(last.size(), 2001u);
+    const std::vector<geometry_msgs::Point>& strip = strips.markers.back().points;
+    const double length = distance(strip.front(), strip.back()), to_end = distance(last.back(), strip.back());
+    EXPECT_LT(distance(last.front(), strip.front()), 0.2 * length);
+    EXPECT_LT(to_end, 0.2 * length + 2 * tolerance);
+    for (const geometry_msgs::Point& p : last) {
+      const double off = distance(p, strip.front()) + distance(p, strip.back()) - length;
+      EXPECT_LT(off, 0.01 * length) << "along the line";
+    }
+  }
 }
 
 // From one end of the cutter to the other, and nothing beyond.

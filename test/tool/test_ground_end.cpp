@@ -76,17 +76,16 @@ TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
     for (int k = 0; k < 300; ++k) {
       const double r = tooth.radius * between(0.01, 1), angle = between(0, 2 * kPi);
       const double x = tooth.radius * between(-0.2, 1);
-      std::vector<Range> ranges;
-      sweep.addRemoved(r, angle, ranges);
-      bool removed = false, near = false;
+      const Eigen::Vector2d ray(r * std::cos(angle), r * std::sin(angle));
       constexpr double kNear = 0.02 * kMillimetre;
-      for (const Range& range : ranges) {
-        removed = removed || (x >= range.from && x <= range.to);
-        near = near || std::abs(x - range.from) < kNear || std::abs(x - range.to) < kNear;
-      }
+      const bool removed = sweep.removes(ray, x);
+      const std::optional<double> to = sweep.removedTo(ray, x);
+      ASSERT_EQ(to.has_value(), removed);
+      EXPECT_TRUE(!to || (*to >= x && sweep.removes(ray, *to - 1e-9) && !sweep.removes(ray, *to + 1e-9))) << i;
+      const bool near = sweep.removes(ray, x - kNear) != removed || sweep.removes(ray, x + kNear) != removed;
       if (near) continue;
       (removed ? removed_places : left_places)++;
-      EXPECT_EQ(isInWheel(stroke, wheel, profile, tooth.radius, {x, r * std::cos(angle), r * std::sin(angle)}), removed)
+      EXPECT_EQ(isInWheel(stroke, wheel, profile, tooth.radius, {x, ray[0], ray[1]}), removed)
           << i << ": " << x << ' ' << r << ' ' << angle;
     }
   }
@@ -102,10 +101,7 @@ TEST(FaceSweep, HasAStraightBottomInAGash) {
   const FaceStroke stroke = gashStroke(tooth, gashNormal(0, 0), angle, past, wheel, 1 * kMillimetre);
   const FaceSweep sweep(stroke, wheel, WheelProfile::straight(2 * wheel.radius, wheel.width), tooth.radius, 0);
   for (double r = 0.2 * kMillimetre; r < tooth.radius; r += 0.1 * kMillimetre) {
-    std::vector<Range> ranges;
-    sweep.addRemoved(r, -1e-9, ranges);
-    double bottom = 0;
-    for (const Range& range : ranges) bottom = std::max(bottom, range.to);
+    const double bottom = sweep.removedTo({r, -1e-9 * r}, 0).value_or(0);
     EXPECT_NEAR(bottom, (r + past) / std::tan(angle), 1e-9);
   }
 }

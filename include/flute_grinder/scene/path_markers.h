@@ -2,17 +2,34 @@
 
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/motion/grind_program.h"
+#include "flute_grinder/scene/end_line.h"
 #include "flute_grinder/scene/markers.h"
 #include "flute_grinder/tool/ground_edge.h"
 
 #include <optional>
+#include <variant>
 #include <vector>
 
 namespace grinder {
 
-/// The ground edges of all teeth as line strips in the frame `cutter`, so that they turn with A: a planned edge is
-/// grey, the one being ground bright, and a finished one coloured point by point by the error measured in its last
-/// pass, red at the job's tolerance.
+/// The straight strokes of a job on the end, by the passes of its teeth.
+class EndPasses {
+ public:
+  explicit EndPasses(const ValidJob& job) : job_(job) {}
+
+  /// Where the rim is in a stroke; nothing unless it is on the stroke's line.
+  /// @param actual position read from the drive [m], A [rad].
+  std::optional<EndLine::Place> placeOf(const Setpoint& setpoint, const Axes& actual);
+
+ private:
+  ValidJob job_;
+  std::optional<ToothPass> pass_;
+  std::optional<EndLine> line_;  ///< of the pass
+};
+
+/// The ground edges of all teeth, or the lines of the deepest strokes on the end (EndLine), as line strips in the frame
+/// `cutter`, so that they turn with A: a planned edge is grey, the one being ground bright, and a finished one coloured
+/// point by point by the error measured in its last pass, red at the job's tolerance.
 class ToolPath {
  public:
   /// @param edges edges of the teeth, none of an operation on the end; an empty edge and its measurements are not
@@ -28,28 +45,39 @@ class ToolPath {
   /// Ends the active state of a tooth; measurements of an unfinished pass are discarded.
   void deactivate();
 
-  /// The maximum error measured so far, normal to the helix on the cutter's surface [m].
+  /// The maximum error measured so far, normal to the helix on the cutter's surface, or EndLine::Place::error [m].
   double maxMeasured() const { return max_; }
 
   /// @return markers of namespace "tool_path", one or more per tooth, in order; the first deletes the earlier ones.
   visualization_msgs::MarkerArray markers() const;
 
  private:
-  struct Flute {
+  struct Edge {
     double angle;    ///< angle that the strokes add to the curve [rad]
     LogCurve curve;  ///< A over X
     GroundEdge edge;
+  };
+  struct Flute {
+    std::variant<Edge, EndLine> line;
     std::vector<float> errors;  ///< error per point of the strip [m]; empty until a pass is finished
   };
+  struct Measured {
+    std::optional<double> part;  ///< of the strip, from 0 to 1; nothing beyond it
+    double error;                ///< [m]
+  };
 
-  double x(const GroundEdge& edge, std::size_t i) const;  ///< X of a point of the edge's strip [m]
+  static bool isShown(const Flute& flute);
+  geometry_msgs::Point pointOf(const Flute& flute, std::size_t i) const;
+  std::optional<Measured> measured(const Setpoint& setpoint, const Axes& actual);
   void measure(const Setpoint& setpoint, const Axes& actual);
   void finishPass(Flute& flute);
   void appendFlute(visualization_msgs::MarkerArray& array, std::size_t tooth) const;
 
   FormedEdge formed_;
-  double tolerance_;   ///< error at the end of the colour scale [m]
-  std::size_t steps_;  ///< number of steps between the points of a strip
+  std::optional<EndPasses> straight_;  ///< of an operation on the end
+  double tolerance_;                   ///< error at the end of the colour scale [m]
+  double fineness_;                    ///< scale of line widths
+  std::size_t steps_;                  ///< number of steps between the points of a strip
   std::vector<Flute> flutes_;
   std::optional<std::size_t> active_;
   std::vector<float> measured_;  ///< errors measured in the current pass, as in Flute; negative where not yet measured
@@ -57,7 +85,7 @@ class ToolPath {
 };
 
 /// The measured path of the wheel along the edge in the current stroke, as a line strip in the frame `cutter`, below
-/// the edge by the depth of the pass. Thinned out as it grows.
+/// the edge by the depth of the pass; on the end, where the rim was along the stroke's line. Thinned out as it grows.
 class ExecutedPath {
  public:
   /// @param edges edges of the teeth.
@@ -70,7 +98,11 @@ class ExecutedPath {
   void append(visualization_msgs::MarkerArray& array) const;
 
  private:
+  std::optional<geometry_msgs::Point> placeOf(const Setpoint& setpoint, const Axes& actual);
+
   ConicalCutter cutter_;
+  double fineness_;                    ///< scale of line widths
+  std::optional<EndPasses> straight_;  ///< of an operation on the end
   std::vector<GroundEdge> edges_;
   std::vector<double> wear_of_move_;  ///< wear of the wheel's radius, by the program's moves [m]
   std::optional<std::uint32_t> move_;
@@ -81,7 +113,7 @@ class ExecutedPath {
 };
 
 /// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up and
-/// coloured by size, red at the job's tolerance. Thinned out as setpoints are added.
+/// coloured by size, red at the job's tolerance. Thinned out as setpoints are added. Straight strokes have none.
 class PathErrorMarkers {
  public:
   /// @param edges edges of the teeth.

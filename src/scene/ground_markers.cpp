@@ -3,11 +3,13 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/cutter_solid.h"
+#include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/ground_job.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace grinder {
@@ -25,7 +27,7 @@ constexpr std::size_t kErrorColours = 16;  ///< number of colours; markers are l
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 /// The cut seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the
 /// flutes.
-constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
+constexpr double kCutFrom = 35 * units::kDegree, kCutTo = 120 * units::kDegree;
 
 /// The strokes of each tooth: the deepest finished one, if any, and the running one.
 std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Reached& reached) {
@@ -53,6 +55,24 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Re
     if (strokes[i].empty()) strokes[i].push_back(at(i, -job->process().clearance));
   }
   return strokes;
+}
+
+/// What is taken from the end so far; the running stroke counts once it has ended.
+EndVolumes endSoFar(const ValidJob& job, const std::optional<Reached>& reached) {
+  if (!job.isStraight() || !reached) return endVolumesOf(job);
+  std::map<int, double> deepest;
+  for (const JobPass& pass : job.passes()) {
+    const bool runs = pass.place == reached->pass;
+    if (runs && reached->phase != PassPhase::kAfter) break;
+    deepest[pass.place.tooth] = std::max(deepest[pass.place.tooth], pass.depth);
+    if (runs) break;
+  }
+  const std::vector<double> wear = job.wearOfTeeth();
+  EndStrokes strokes;
+  for (const auto& [tooth, depth] : deepest) {
+    strokes.emplace(tooth, job.faceStroke(tooth, depth, wear[static_cast<std::size_t>(tooth)]));
+  }
+  return endVolumesOf(job, strokes);
 }
 
 bool isSame(const std::vector<GrindStroke>& a, const std::vector<GrindStroke>& b) {
@@ -183,6 +203,9 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
   switch (kind) {
     case SurfaceKind::kRakeFace: return colour(0.55, 0.57, 0.62);
     case SurfaceKind::kFluteBack: return colour(0.45, 0.50, 0.60);
+    case SurfaceKind::kGash: return colour(0.50, 0.60, 0.55);
+    case SurfaceKind::kEndFlank: return colour(0.66, 0.70, 0.76);
+    case SurfaceKind::kChamfer: return colour(0.80, 0.74, 0.62);
     case SurfaceKind::kLand:
     case SurfaceKind::kPrimary:
     case SurfaceKind::kEndFace:
@@ -283,8 +306,12 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
       appendBlank(array, job, ns);
       return array;
     }
-    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), Deviations(cutter, job, reached),
-                ns);
+    EndVolumes end = endSoFar(job, reached);
+    end.removed.push_back(wedge(kCutFrom, kCutTo));
+    SolidExtent extent = extentOf(job);
+    extent.from = end.blank_x;
+    const CutterSolid solid = cutterSolid(cutter, extent, resolutionOf(job), end.removed);
+    appendSolid(array, solid, Deviations(cutter, job, reached), ns);
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/face_stroke.h"
+#include "flute_grinder/tool/removed_volume.h"
 #include "flute_grinder/tool/wheel_profile.h"
 
 #include <vector>
@@ -22,6 +23,11 @@ class FaceSweep {
   /// @param r,angle the ray: distance from the axis [m], angle in the sense of A [rad].
   void addRemoved(double r, double angle, std::vector<Range>& ranges) const;
 
+  /// What is removed of the tool, in its frame at A = 0, as between planes that touch the wheel on its way. Its face is
+  /// exact, its rim and rounded corners at most about `error` too large [m].
+  /// Kind and tooth of its faces are left to the caller.
+  RemovedVolume volume(double error) const;
+
  private:
   /// A convex part of the path of the wheel's centre in the face's plane, seen from its end.
   struct Leg {
@@ -42,6 +48,9 @@ class FaceSweep {
   Range removed(const Ray& ray, const Leg& leg) const;
   void addPlunged(const Ray& ray, std::vector<Range>& ranges) const;
   double depth(const Ray& ray, const Leg& leg, double x) const;
+  Plane touching(const Eigen::Vector3d& outward, const Eigen::Vector3d& at) const;
+  void addPlanes(double error, RemovedVolume& volume) const;
+  void addPlunged(double error, RemovedVolume& volume) const;
 
   WheelProfile profile_;
   double inner_radius_, a_;

@@ -139,7 +139,7 @@ TEST(CutterSolid, CutOpenIsClosedAndLacksTheWedge) {
     double rest = 0;
     for (int third = 0; third < 3; ++third) {
       const double from = (third * 120 + 17) * kDegree;
-      const CutterSolid open = cutterSolid(c.ground, extent, coarse, Wedge{from, from + 120 * kDegree});
+      const CutterSolid open = cutterSolid(c.ground, extent, coarse, {wedge(from, from + 120 * kDegree)});
       EXPECT_EQ(openEdges(open), 0u);
       rest += open.volume();
       for (const SolidTriangle& t : open.triangles) {
@@ -200,7 +200,7 @@ TEST(CutterSolid, RefusesWhatCannotBeShown) {
     EXPECT_THROW(cutterSolid(ground, {0, 0.01}, resolution), std::invalid_argument) << resolution.sections;
   }
   for (const double to : {1.0, 5.0}) {
-    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{1, to}), std::invalid_argument) << to;
+    EXPECT_THROW(wedge(1, to), std::invalid_argument) << to;
   }
 }
 

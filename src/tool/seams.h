@@ -1,0 +1,11 @@
+#pragma once
+
+#include "flute_grinder/tool/cutter_solid.h"
+
+namespace grinder {
+
+/// Joins the pieces of a cut surface: corners that differ by rounding become one, and a corner on another triangle's
+/// edge divides that triangle. Corners of no triangle go.
+void closeSeams(CutterSolid& solid);
+
+}  // namespace grinder

@@ -15,18 +15,37 @@ constexpr std::size_t kSides = 63;                 ///< planes of a volume that 
 constexpr std::uint64_t kOthers = 1ull << kSides;  ///< the bit of all other planes
 constexpr double kSamePlane = 1e-11;               ///< difference between planes that are the same [m], [1]
 
-/// The part of a volume in a box, with the planes that it needs there; nothing if there is no part.
-std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box, double& reach) {
-  ConvexPart part(box);
-  RemovedVolume result = volume;
-  result.body.clear();
-  for (const Plane& plane : volume.body) {
-    if (part.cut(plane)) result.body.push_back(plane);
-    if (part.isEmpty()) return std::nullopt;
+/// The planes that bound a convex part of a box.
+/// @param part gets the part in front of all planes.
+std::vector<Plane> needed(const std::vector<Plane>& planes, ConvexPart& part) {
+  std::vector<Plane> result;
+  for (const Plane& plane : planes) {
+    if (!part.isEmpty() && part.cut(plane)) result.push_back(plane);
   }
   const auto is_idle = [&](const Plane& plane) { return !part.hasFaceOn(plane); };
-  result.body.erase(std::remove_if(result.body.begin(), result.body.end(), is_idle), result.body.end());
-  reach = std::max(reach, part.bounds().most[0]);
+  result.erase(std::remove_if(result.begin(), result.end(), is_idle), result.end());
+  return result;
+}
+
+std::vector<Plane> turned(std::vector<Plane> planes) {
+  for (Plane& plane : planes) plane = {-plane.normal, -plane.offset};
+  return planes;
+}
+
+/// The part of a volume in a box, with the planes that it needs there; nothing if there is no part.
+std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box, double& reach) {
+  ConvexPart body(box);
+  RemovedVolume result{needed(volume.body, body), {}, volume.kind, volume.tooth};
+  if (body.isEmpty()) return std::nullopt;
+  reach = std::max(reach, body.bounds().most[0]);
+  if (volume.hollow.empty()) return result;
+  ConvexPart hollow(body.bounds());
+  result.hollow = turned(needed(turned(volume.hollow), hollow));
+  if (hollow.isEmpty()) {
+    result.hollow.clear();
+  } else if (result.hollow.empty()) {
+    return std::nullopt;
+  }
   return result;
 }
 

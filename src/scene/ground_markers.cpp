@@ -21,6 +21,7 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
 constexpr double kMaxTriangles = 17000;    ///< maximum number of triangles, of 72 bytes each, before the cut adds some
+constexpr double kMaxWithEnd = 13000;      ///< the same where the end adds some, too
 constexpr double kLabelHeight = 0.03;      ///< height of letters, as a fraction of the flute's length
 constexpr std::size_t kPlaces = 13;        ///< places over the flute's length where rake and clearance are measured
 constexpr std::size_t kErrorColours = 16;  ///< number of colours; markers are lit only if they have one colour each
@@ -96,8 +97,8 @@ SolidExtent extentOf(const ValidJob& job) {
   return {0, std::min(*shank, stroke_end + run_out), job->cutter.shank_diameter, 0};
 }
 
-/// The finest resolution that fits a message.
-SolidResolution resolutionOf(const ValidJob& job) {
+/// The finest resolution with this number of triangles.
+SolidResolution resolutionOf(const ValidJob& job, double max_triangles) {
   const SolidExtent extent = extentOf(job);
   double turns = 0;
   for (std::size_t i = 0; i < job->tooth_angles.size(); ++i) {
@@ -114,13 +115,13 @@ SolidResolution resolutionOf(const ValidJob& job) {
     const double layers = std::max(sections, turns * around) + sections * shank / extent.to;
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
-  while (triangles() > kMaxTriangles && r.rings > 8) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 48) --r.around;
-  while (triangles() > kMaxTriangles && r.rings > 6) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 24) --r.around;
-  while (triangles() > kMaxTriangles && r.rings > 4) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 6) --r.around;
-  while (triangles() > kMaxTriangles && r.sections > 12) --r.sections;
+  while (triangles() > max_triangles && r.rings > 8) --r.rings;
+  while (triangles() > max_triangles && r.around > 48) --r.around;
+  while (triangles() > max_triangles && r.rings > 6) --r.rings;
+  while (triangles() > max_triangles && r.around > 24) --r.around;
+  while (triangles() > max_triangles && r.rings > 4) --r.rings;
+  while (triangles() > max_triangles && r.around > 6) --r.around;
+  while (triangles() > max_triangles && r.sections > 12) --r.sections;
   return r;
 }
 
@@ -307,10 +308,11 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
       return array;
     }
     EndVolumes end = endSoFar(job, reached);
+    const SolidResolution resolution = resolutionOf(job, end.removed.empty() ? kMaxTriangles : kMaxWithEnd);
     end.removed.push_back(wedge(kCutFrom, kCutTo));
     SolidExtent extent = extentOf(job);
     extent.from = end.blank_x;
-    const CutterSolid solid = cutterSolid(cutter, extent, resolutionOf(job), end.removed);
+    const CutterSolid solid = cutterSolid(cutter, extent, resolution, end.removed);
     appendSolid(array, solid, Deviations(cutter, job, reached), ns);
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {

@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -86,19 +88,31 @@ Edge sorted(std::uint32_t a, std::uint32_t b) { return a < b ? Edge(a, b) : Edge
 
 /// The edges that are not passed as often in one direction as in the other, in order.
 std::vector<Edge> openEdges(const CutterSolid& solid) {
-  std::vector<Edge> passed;
-  passed.reserve(3 * solid.triangles.size());
-  for (const SolidTriangle& t : solid.triangles) {
-    for (std::size_t i = 0; i < 3; ++i) passed.emplace_back(t.vertices[i], t.vertices[(i + 1) % 3]);
-  }
-  const auto order = [](const Edge& a, const Edge& b) { return sorted(a.first, a.second) < sorted(b.first, b.second); };
-  std::sort(passed.begin(), passed.end(), order);
+  // The passed edges, by their lower corner: it has the other corner, and the direction in the lowest bit.
+  std::vector<std::size_t> end(solid.vertices.size() + 1);
+  const auto visit = [&](const auto& take) {
+    for (const SolidTriangle& t : solid.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) take(t.vertices[i], t.vertices[(i + 1) % 3]);
+    }
+  };
+  visit([&](std::uint32_t a, std::uint32_t b) { ++end[std::min(a, b) + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::size_t> next(end.begin(), std::prev(end.end()));
+  std::vector<std::uint64_t> passed(end.back());
+  visit([&](std::uint32_t a, std::uint32_t b) {
+    passed[next[std::min(a, b)]++] = std::uint64_t{std::max(a, b)} << 1 | (a < b ? 1u : 0u);
+  });
   std::vector<Edge> open;
-  for (auto i = passed.begin(); i != passed.end();) {
-    const Edge edge = sorted(i->first, i->second);
-    int times = 0;
-    for (; i != passed.end() && sorted(i->first, i->second) == edge; ++i) times += *i == edge ? 1 : -1;
-    if (times != 0) open.push_back(edge);
+  for (std::uint32_t corner = 0; corner + 1 < end.size(); ++corner) {
+    const auto begin = passed.begin() + static_cast<std::ptrdiff_t>(end[corner]);
+    const auto last = passed.begin() + static_cast<std::ptrdiff_t>(end[corner + 1]);
+    std::sort(begin, last);
+    for (auto i = begin; i != last;) {
+      const std::uint64_t other = *i >> 1;
+      int times = 0;
+      for (; i != last && *i >> 1 == other; ++i) times += (*i & 1) != 0 ? 1 : -1;
+      if (times != 0) open.emplace_back(corner, static_cast<std::uint32_t>(other));
+    }
   }
   return open;
 }

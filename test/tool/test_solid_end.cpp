@@ -236,7 +236,12 @@ TEST(SolidEnd, OfAJobHasTheFacesOfItsOperations) {
     SCOPED_TRACE(operation);
     const EndVolumes end = endVolumesOf(withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation))));
     std::map<SurfaceKind, int> count;
-    for (const RemovedVolume& volume : end.removed) ++count[volume.kind];
+    std::map<int, std::size_t> of_tooth;
+    for (const RemovedVolume& volume : end.removed) {
+      ++count[volume.kind];
+      ++of_tooth[volume.tooth];
+    }
+    EXPECT_EQ(of_tooth[3], end.removed.size() / 4);
     EXPECT_EQ(count, faces);
     EXPECT_EQ(end.blank_x, 0);
   }

@@ -201,6 +201,25 @@ bool divide(CutterSolid& solid) {
   return any;
 }
 
+/// Leaves what hangs together with the end of the shank: elsewhere, cuts can leave a chip that falls off.
+void dropChips(CutterSolid& solid) {
+  std::vector<std::uint32_t> parent(solid.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const SolidTriangle& t : solid.triangles) {
+    for (std::size_t i = 1; i < 3; ++i) parent[root(t.vertices[i])] = root(t.vertices[0]);
+  }
+  const auto farther = [](const Vector3d& a, const Vector3d& b) { return a.x() < b.x(); };
+  const auto shank = std::max_element(solid.vertices.begin(), solid.vertices.end(), farther);
+  if (shank == solid.vertices.end()) return;
+  const std::uint32_t whole = root(static_cast<std::uint32_t>(shank - solid.vertices.begin()));
+  const auto is_chip = [&](const SolidTriangle& t) { return root(t.vertices[0]) != whole; };
+  solid.triangles.erase(std::remove_if(solid.triangles.begin(), solid.triangles.end(), is_chip), solid.triangles.end());
+}
+
 }  // namespace
 
 void closeSeams(CutterSolid& solid) {
@@ -221,6 +240,7 @@ void closeSeams(CutterSolid& solid) {
   solid.triangles = std::move(triangles);
   for (int i = 0; i < kRounds && divide(solid); ++i) {
   }
+  dropChips(solid);
 }
 
 }  // namespace grinder

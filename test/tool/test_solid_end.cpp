@@ -247,6 +247,17 @@ TEST(SolidEnd, OfAJobHasTheFacesOfItsOperations) {
   }
 }
 
+TEST(SolidEnd, AChipThatIsCutOffIsNotShown) {
+  const GroundCutter ground = test_support::cylinder().ground(4);
+  const double from = 2 * kMillimetre, to = 3 * kMillimetre;
+  const RemovedVolume slot{{{{1, 0, 0}, from}, {{-1, 0, 0}, -to}}, {}, SurfaceKind::kGash, 0};
+  const CutterSolid solid = cutterSolid(ground, kExtent, kCoarse, {slot});
+  EXPECT_EQ(openEdges(solid), 0u);
+  for (const SolidTriangle& t : solid.triangles) {
+    for (const std::uint32_t v : t.vertices) EXPECT_GT(solid.vertices[v].x(), to - 1e-9);
+  }
+}
+
 /// Of two volumes that end in the same plane, one leaves the face.
 TEST(SolidEnd, ASharedPlaneHasOneFace) {
   const GroundCutter ground = test_support::cylinder().ground(4);

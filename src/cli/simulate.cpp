@@ -62,8 +62,9 @@ void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindProcess& p = job.process();
   const double length = job.cutter.flute_length;
   const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
-  const SolidExtent extent{0, length, job.cutter.shank_diameter, length + run_out + job.cutter.shank_diameter};
-  const CutterSolid solid = cutterSolid(tool.cutter, extent);
+  const SolidExtent extent{tool.end.blank_x, length, job.cutter.shank_diameter,
+                           length + run_out + job.cutter.shank_diameter};
+  const CutterSolid solid = cutterSolid(tool.cutter, extent, {}, tool.end.removed);
   std::ostringstream stl;
   writeStl(stl, solid);
   const std::string bytes = stl.str();

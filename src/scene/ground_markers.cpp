@@ -3,11 +3,13 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/cutter_solid.h"
+#include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/ground_job.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace grinder {
@@ -19,13 +21,14 @@ using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
 constexpr double kMaxTriangles = 17000;    ///< maximum number of triangles, of 72 bytes each, before the cut adds some
+constexpr double kMaxWithEnd = 13000;      ///< the same where the end adds some, too
 constexpr double kLabelHeight = 0.03;      ///< height of letters, as a fraction of the flute's length
 constexpr std::size_t kPlaces = 13;        ///< places over the flute's length where rake and clearance are measured
 constexpr std::size_t kErrorColours = 16;  ///< number of colours; markers are lit only if they have one colour each
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 /// The cut seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the
 /// flutes.
-constexpr Wedge kCutOut{35 * units::kDegree, 120 * units::kDegree};
+constexpr double kCutFrom = 35 * units::kDegree, kCutTo = 120 * units::kDegree;
 
 /// The strokes of each tooth: the deepest finished one, if any, and the running one.
 std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Reached& reached) {
@@ -55,6 +58,24 @@ std::vector<std::vector<GrindStroke>> strokesSoFar(const ValidJob& job, const Re
   return strokes;
 }
 
+/// What is taken from the end so far; the running stroke counts once it has ended.
+EndVolumes endSoFar(const ValidJob& job, const std::optional<Reached>& reached) {
+  if (!job.isStraight() || !reached) return endVolumesOf(job);
+  std::map<int, double> deepest;
+  for (const JobPass& pass : job.passes()) {
+    const bool runs = pass.place == reached->pass;
+    if (runs && reached->phase != PassPhase::kAfter) break;
+    deepest[pass.place.tooth] = std::max(deepest[pass.place.tooth], pass.depth);
+    if (runs) break;
+  }
+  const std::vector<double> wear = job.wearOfTeeth();
+  EndStrokes strokes;
+  for (const auto& [tooth, depth] : deepest) {
+    strokes.emplace(tooth, job.faceStroke(tooth, depth, wear[static_cast<std::size_t>(tooth)]));
+  }
+  return endVolumesOf(job, strokes);
+}
+
 bool isSame(const std::vector<GrindStroke>& a, const std::vector<GrindStroke>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const GrindStroke& s, const GrindStroke& t) { return s.to == t.to && s.y == t.y; });
@@ -76,8 +97,8 @@ SolidExtent extentOf(const ValidJob& job) {
   return {0, std::min(*shank, stroke_end + run_out), job->cutter.shank_diameter, 0};
 }
 
-/// The finest resolution that fits a message.
-SolidResolution resolutionOf(const ValidJob& job) {
+/// The finest resolution with this number of triangles.
+SolidResolution resolutionOf(const ValidJob& job, double max_triangles) {
   const SolidExtent extent = extentOf(job);
   double turns = 0;
   for (std::size_t i = 0; i < job->tooth_angles.size(); ++i) {
@@ -94,13 +115,13 @@ SolidResolution resolutionOf(const ValidJob& job) {
     const double layers = std::max(sections, turns * around) + sections * shank / extent.to;
     return 2 * layers * (2 * rings * teeth + around) + 4 * rings * around;
   };
-  while (triangles() > kMaxTriangles && r.rings > 8) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 48) --r.around;
-  while (triangles() > kMaxTriangles && r.rings > 6) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 24) --r.around;
-  while (triangles() > kMaxTriangles && r.rings > 4) --r.rings;
-  while (triangles() > kMaxTriangles && r.around > 6) --r.around;
-  while (triangles() > kMaxTriangles && r.sections > 12) --r.sections;
+  while (triangles() > max_triangles && r.rings > 8) --r.rings;
+  while (triangles() > max_triangles && r.around > 48) --r.around;
+  while (triangles() > max_triangles && r.rings > 6) --r.rings;
+  while (triangles() > max_triangles && r.around > 24) --r.around;
+  while (triangles() > max_triangles && r.rings > 4) --r.rings;
+  while (triangles() > max_triangles && r.around > 6) --r.around;
+  while (triangles() > max_triangles && r.sections > 12) --r.sections;
   return r;
 }
 
@@ -183,6 +204,9 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
   switch (kind) {
     case SurfaceKind::kRakeFace: return colour(0.55, 0.57, 0.62);
     case SurfaceKind::kFluteBack: return colour(0.45, 0.50, 0.60);
+    case SurfaceKind::kGash: return colour(0.50, 0.60, 0.55);
+    case SurfaceKind::kEndFlank: return colour(0.66, 0.70, 0.76);
+    case SurfaceKind::kChamfer: return colour(0.80, 0.74, 0.62);
     case SurfaceKind::kLand:
     case SurfaceKind::kPrimary:
     case SurfaceKind::kEndFace:
@@ -283,8 +307,13 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
       appendBlank(array, job, ns);
       return array;
     }
-    appendSolid(array, cutterSolid(cutter, extentOf(job), resolutionOf(job), kCutOut), Deviations(cutter, job, reached),
-                ns);
+    EndVolumes end = endSoFar(job, reached);
+    const SolidResolution resolution = resolutionOf(job, end.removed.empty() ? kMaxTriangles : kMaxWithEnd);
+    end.removed.push_back(wedge(kCutFrom, kCutTo));
+    SolidExtent extent = extentOf(job);
+    extent.from = end.blank_x;
+    const CutterSolid solid = cutterSolid(cutter, extent, resolution, end.removed);
+    appendSolid(array, solid, Deviations(cutter, job, reached), ns);
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();

@@ -3,6 +3,8 @@
 #include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
+#include "tool/seams.h"
+#include "tool/solid_cut.h"
 
 #include <Eigen/Geometry>
 
@@ -87,9 +89,8 @@ std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& exten
   return layers;
 }
 
-/// Corners of a triangle or a tetrahedron, as indices of vertices.
+/// Corners of a triangle, as indices of vertices.
 using Triangle = std::array<std::uint32_t, 3>;
-using Tetrahedron = std::array<std::uint32_t, 4>;
 
 /// A section divided into triangles. Each body between two flutes has rings and columns, since an undercut wall hides
 /// the axis from some of its points. There are points inside the outline, too.
@@ -148,26 +149,30 @@ class SectionMesh {
   std::vector<std::uint16_t> tooth_;  ///< tooth of each body
 };
 
-/// Joins layers into a solid.
+/// Joins layers into a solid, less what a cut removes.
 class Joiner {
  public:
   /// @param turns_on whether the outlines turn toward higher indices from layer to layer.
-  /// @param with_inside whether the inside is divided into tetrahedra, too.
-  Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, bool with_inside)
-      : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), with_inside_(with_inside) {}
+  Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, const SolidCut& cut)
+      : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), cut_(cut) {}
 
-  void add(const Layer& layer, bool is_end) {
+  /// @param with_inside whether the points inside are needed.
+  void add(const Layer& layer, bool with_inside) {
+    sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>((end_ - begin_) * cut_.volumes()));
     begin_ = end_;
     end_ = static_cast<std::uint32_t>(solid_.vertices.size());
-    for (const PolarPoint& p : with_inside_ || is_end ? mesh_.points(layer.outline) : layer.outline) {
+    for (const PolarPoint& p : with_inside ? mesh_.points(layer.outline) : layer.outline) {
       const double angle = units::kTurn * (p.turns - std::floor(p.turns));
       solid_.vertices.emplace_back(layer.x, p.radius * std::cos(angle), p.radius * std::sin(angle));
+      sides_.resize(sides_.size() + cut_.volumes());
+      cut_.findSides(solid_.vertices.back(), sides_.data() + sides_.size() - cut_.volumes());
     }
   }
 
   /// Joins the two layers added last.
   /// @param is_step whether they are at the same X.
-  void joinLayers(bool is_step) {
+  /// @param with_inside whether volumes are removed between them.
+  void joinLayers(bool is_step, bool with_inside) {
     const auto n = static_cast<std::uint32_t>(grid_.size());
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t next = (i + 1) % n;
@@ -179,7 +184,7 @@ class Joiner {
       addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
       addTriangle({begin_ + from, end_ + next, end_ + i}, kind, tooth);
     }
-    if (!with_inside_) return;
+    if (!with_inside) return;
     for (const Triangle& t : mesh_.triangles()) addPrism(t);
   }
 
@@ -192,40 +197,40 @@ class Joiner {
     }
   }
 
-  CutterSolid take() { return std::move(solid_); }
-
-  /// The solid without a wedge.
-  CutterSolid takeWithout(const Wedge& wedge) const {
-    const WedgeCut cut(wedge);
-    CutterSolid rest;
-    const auto& at = solid_.vertices;
-    for (const SolidTriangle& t : solid_.triangles) {
-      const auto& v = t.vertices;
-      for (const WedgeCut::Polygon& p : cut.outside({at[v[0]], at[v[1]], at[v[2]]})) append(rest, p, t.kind, t.tooth);
+  CutterSolid take() {
+    if (cut_.isEmpty()) return std::move(solid_);
+    const auto first = static_cast<std::uint32_t>(solid_.vertices.size());
+    for (SolidTriangle& t : cut_part_.triangles) {
+      for (std::uint32_t& v : t.vertices) v += first;
     }
-    for (const Tetrahedron& v : inside_) {
-      for (const WedgeCut::Polygon& p : cut.faces({at[v[0]], at[v[1]], at[v[2]], at[v[3]]})) {
-        append(rest, p, SurfaceKind::kCut, 0);
-      }
-    }
-    return rest;
+    const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+    append(solid_.vertices, cut_part_.vertices);
+    append(solid_.triangles, cut_part_.triangles);
+    closeSeams(solid_);
+    return std::move(solid_);
   }
 
  private:
-  /// Adds the prism between a triangle of the last layer but one and the same triangle of the last layer. The diagonals
+  /// Cuts the prism between a triangle of the last layer but one and the same triangle of the last layer. The diagonals
   /// of its sides all run from the lower index to the higher, or all the other way, so that they match the neighbours'
   /// diagonals.
   void addPrism(Triangle t) {
-    const auto tetrahedron = [&, odd = isOdd(t) != turns_on_](std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                                                              std::uint32_t d) {
-      inside_.push_back(odd ? Tetrahedron{b, a, c, d} : Tetrahedron{a, b, c, d});
-    };
+    const bool odd = isOdd(t) != turns_on_;
     std::sort(t.begin(), t.end());
     if (turns_on_) std::reverse(t.begin(), t.end());
     const auto [a, b, c] = t;
-    tetrahedron(begin_ + a, begin_ + b, begin_ + c, end_ + c);
-    tetrahedron(begin_ + a, begin_ + b, end_ + c, end_ + b);
-    tetrahedron(begin_ + a, end_ + a, end_ + b, end_ + c);
+    const auto touched = cut_.touched({sidesOf(begin_ + a), sidesOf(begin_ + b), sidesOf(begin_ + c), sidesOf(end_ + a),
+                                       sidesOf(end_ + b), sidesOf(end_ + c)});
+    if (!touched || touched->empty()) return;
+    std::vector<CutFace> faces;
+    const auto cut = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
+      if (odd) std::swap(i, j);
+      cut_.addFaces(*touched, {solid_.vertices[i], solid_.vertices[j], solid_.vertices[k], solid_.vertices[l]}, faces);
+    };
+    cut(begin_ + a, begin_ + b, begin_ + c, end_ + c);
+    cut(begin_ + a, begin_ + b, end_ + c, end_ + b);
+    cut(begin_ + a, end_ + a, end_ + b, end_ + c);
+    for (const CutFace& face : faces) append(face.polygon, face.kind, face.tooth);
   }
 
   /// Whether sorting the corners turns the triangle over.
@@ -235,29 +240,49 @@ class Joiner {
     return !(a == b || b == c || c == a);
   }
 
-  static void append(CutterSolid& solid, const WedgeCut::Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
-    const auto first = static_cast<std::uint32_t>(solid.vertices.size());
-    solid.vertices.insert(solid.vertices.end(), polygon.begin(), polygon.end());
+  /// Of a vertex of the two layers added last.
+  const std::uint64_t* sidesOf(std::uint32_t vertex) const {
+    return sides_.data() + (vertex - begin_) * cut_.volumes();
+  }
+
+  void append(const Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
+    const auto first = static_cast<std::uint32_t>(cut_part_.vertices.size());
+    cut_part_.vertices.insert(cut_part_.vertices.end(), polygon.begin(), polygon.end());
     for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i) {
       if (!hasArea(polygon[0], polygon[i], polygon[i + 1])) continue;
-      solid.triangles.push_back({{first, first + i, first + i + 1}, kind, tooth});
+      cut_part_.triangles.push_back({{first, first + i, first + i + 1}, kind, tooth});
     }
   }
 
   void addTriangle(const Triangle& v, SurfaceKind kind, std::uint16_t tooth) {
     if (!hasArea(solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]])) return;
-    solid_.triangles.push_back({v, kind, tooth});
+    const auto touched = cut_.touched({sidesOf(v[0]), sidesOf(v[1]), sidesOf(v[2])});
+    if (!touched) return;
+    if (touched->empty()) return solid_.triangles.push_back({v, kind, tooth});
+    for (const Polygon& p :
+         cut_.outside(*touched, {solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]]}))
+      append(p, kind, tooth);
   }
 
   OutlineGrid grid_;
   CutDirection direction_;
   bool turns_on_;
   SectionMesh mesh_;
-  bool with_inside_;
-  CutterSolid solid_;
-  std::vector<Tetrahedron> inside_;
-  std::uint32_t begin_ = 0, end_ = 0;  ///< first vertices of the two layers added last
+  const SolidCut& cut_;
+  CutterSolid solid_;                  ///< of the points of the layers
+  CutterSolid cut_part_;               ///< the pieces of what is cut
+  std::vector<std::uint64_t> sides_;   ///< SolidCut::findSides() of the two layers added last
+  std::uint32_t begin_ = 0, end_ = 0;  ///< first points of the two layers added last
 };
+
+/// The box about a solid.
+Box boxOf(const std::vector<Layer>& layers) {
+  double radius = 0;
+  for (const Layer& layer : layers) {
+    for (const PolarPoint& p : layer.outline) radius = std::max(radius, p.radius);
+  }
+  return {{layers.front().x, -radius, -radius}, {layers.back().x, radius, radius}};
+}
 
 void check(const SolidExtent& extent, const SolidResolution& resolution) {
   require(std::isfinite(extent.from), "solid: from", extent.from, "a finite X [m]");
@@ -280,20 +305,22 @@ double CutterSolid::volume() const {
 }
 
 CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
-                        const std::optional<Wedge>& cut_out) {
+                        const std::vector<RemovedVolume>& removed) {
   check(extent, resolution);
   const OutlineGrid grid = gridOf(cutter, resolution);
   const std::vector<Layer> layers = layersOf(cutter, extent, resolution, grid);
   const bool turns_on = layers.front().outline.front().turns < layers.back().outline.front().turns;
-  Joiner joiner(grid, cutter.direction(), turns_on, cut_out.has_value());
+  const SolidCut cut(removed, boxOf(layers));
+  Joiner joiner(grid, cutter.direction(), turns_on, cut);
   joiner.add(layers.front(), true);
   joiner.close(false);
   for (std::size_t i = 1; i < layers.size(); ++i) {
-    joiner.add(layers[i], i + 1 == layers.size());
-    joiner.joinLayers(layers[i].x == layers[i - 1].x);
+    const bool is_cut = layers[i - 1].x <= cut.reach();
+    joiner.add(layers[i], is_cut || i + 1 == layers.size());
+    joiner.joinLayers(layers[i].x == layers[i - 1].x, is_cut);
   }
   joiner.close(true);
-  return cut_out ? joiner.takeWithout(*cut_out) : joiner.take();
+  return joiner.take();
 }
 
 }  // namespace grinder

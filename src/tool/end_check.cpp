@@ -1,12 +1,11 @@
 #include "tool/end_check.h"
 
 #include "flute_grinder/curve/log_curve.h"
-#include "tool/ground_end.h"
+#include "tool/end_cuts.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
 #include <utility>
 
 namespace grinder {
@@ -74,37 +73,6 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry& c) { return c.chamfer_clearance; }, clearanceTolerance},
 };
 
-EndFace faceOf(OperationKind kind) {
-  switch (kind) {
-    case OperationKind::kPrimaryEnd: return EndFace::kPrimary;
-    case OperationKind::kSecondaryEnd: return EndFace::kSecondary;
-    case OperationKind::kChamfer: return EndFace::kChamfer;
-    default: return EndFace::kGash;
-  }
-}
-
-using EndStrokes = std::multimap<int, FaceStroke>;
-
-/// The deepest strokes of a job, by the number of the tooth.
-EndStrokes strokesOf(const ValidJob& job) {
-  const std::vector<double> wear = job.wearOfTeeth();
-  EndStrokes strokes;
-  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    strokes.emplace(tooth, job.faceStroke(tooth, job.deepest(), wear[static_cast<std::size_t>(tooth)]));
-  }
-  return strokes;
-}
-
-void addCuts(const ValidJob& job, const EndStrokes& strokes, std::vector<EndCut>& cuts) {
-  const std::vector<double> wear = job.wearOfTeeth();
-  for (const auto& [tooth, stroke] : strokes) {
-    const auto i = static_cast<std::size_t>(tooth);
-    cuts.push_back(
-        {i, faceOf(job->process().kind),
-         FaceSweep(stroke, job.faceWheel(wear[i]), wheelOf(*job).worn(wear[i]), job->cutter.end_diameter / 2, 0)});
-  }
-}
-
 /// The job of the primary flank after a gash; nothing if there is none that can be ground yet.
 std::optional<ValidJob> flankAfter(const ValidJob& job) {
   const GrindProcess* next = job->next();
@@ -121,24 +89,12 @@ std::optional<ValidJob> flankAfter(const ValidJob& job) {
 /// The end of a tool after all operations of the list up to a job's, and a next one if it is given.
 /// @param own the job's strokes; those of the operations before are as planned.
 GroundEnd groundEndOf(const ValidJob& job, const EndStrokes& own, const std::optional<ValidJob>& next) {
-  std::vector<EndCut> cuts;
-  double stock = 0;
-  for (int i = 1; i <= job->operation; ++i) {
-    const GrindProcess& process = job->operations[static_cast<std::size_t>(i)];
-    if (!isStraight(process.kind)) continue;
-    stock = std::max(stock, process.stock);
-    if (i == job->operation) {
-      addCuts(job, own, cuts);
-      continue;
-    }
-    const ValidJob before = job.ofOperation(i);
-    addCuts(before, strokesOf(before), cuts);
-  }
-  if (next) addCuts(*next, strokesOf(*next), cuts);
+  EndCuts end = endCutsOf(job, own);
+  if (next) addCuts(*next, plannedStrokes(*next), end.cuts);
   std::vector<double> angles = job->tooth_angles;
   for (std::size_t i = 0; i < angles.size(); ++i) angles[i] += job.edges()[i].at_end;
-  return {job->cutter.end_diameter / 2,           job->cutter.cut, std::move(angles), std::move(cuts), -stock,
-          EndFlutes(groundCutterOf(job.flutes()))};
+  return {job->cutter.end_diameter / 2, job->cutter.cut, std::move(angles),
+          std::move(end.cuts),          end.blank_x,     EndFlutes(groundCutterOf(job.flutes()))};
 }
 
 /// Whether edges of end teeth are measured: they are there, or a primary flank will make them.
@@ -275,7 +231,7 @@ CutterCheck checkGroundEnd(const RunStrokes& run) {
 }
 
 CutterCheck checkGroundEnd(const ValidJob& job) {
-  EndCheck check(job, strokesOf(job));
+  EndCheck check(job, plannedStrokes(job));
   const std::size_t teeth = areAlike(job) ? 1 : job->tooth_angles.size();
   for (std::size_t tooth = 0; tooth < teeth; ++tooth) check.measure(tooth);
   return check.result();

@@ -1,5 +1,7 @@
 #include "tool/face_sweep.h"
 
+#include "flute_grinder/base/units.h"
+
 #include <boost/math/tools/toms748_solve.hpp>
 
 #include <algorithm>
@@ -18,6 +20,7 @@ using Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kNothing{kInfinity, -kInfinity};
 constexpr int kRootSteps = 60, kRootBits = 50;
+constexpr double kEndless = 1e-12;  ///< part of a normal along an endless way, beyond which no plane touches the wheel
 constexpr double kParallel = 1e-9;  ///< change along the spindle for each metre of a ray, below which there is none
 
 bool isEmpty(const Range& range) { return !(range.from <= range.to); }
@@ -158,6 +161,79 @@ double FaceSweep::plungedTo(const Ray& ray) const {
   if (isEmpty(wheel)) return -kInfinity;
   const double to = wheel.to > hollow.from && wheel.to < hollow.to ? hollow.from : wheel.to;
   return to >= wheel.from ? to : -kInfinity;
+}
+
+RemovedVolume FaceSweep::volume(double error) const {
+  RemovedVolume volume;
+  if (plunges_) {
+    addPlunged(error, volume);
+  } else {
+    addPlanes(error, volume);
+  }
+  return volume;
+}
+
+/// The plane that touches the wheel on its way at a place of the wheel in its pose at the stroke's end, seen from the
+/// wheel, in the tool's frame.
+/// @param at from the wheel's centre.
+Plane FaceSweep::touching(const Vector3d& outward, const Vector3d& at) const {
+  double offset = outward.dot(end_ + at);
+  for (const Leg& leg : legs_) {
+    if (!leg.endless && !plunges_)
+      offset += std::max(0.0, outward.dot(leg.to[0] * across_ + leg.to[1] * Vector3d::UnitY()));
+  }
+  const Vector3d inward = -outward;
+  const double cos = cos_a_, sin = sin_a_;
+  return {{inward[0], inward[1] * cos - inward[2] * sin, inward[1] * sin + inward[2] * cos}, -offset};
+}
+
+/// The planes of a wheel that comes in its face's plane and goes out along Y. Between the two legs they leave out
+/// nothing that is nearer to the rim than the wheel's radius, so that no tool is there.
+void FaceSweep::addPlanes(double error, RemovedVolume& volume) const {
+  const std::vector<ProfilePoint> outline = profile_.outline(error);
+  const Vector3d up = Vector3d::UnitY();
+  volume.body = {touching(spindle_, profile_.upperFace() * spindle_),
+                 touching(-spindle_, profile_.lowerFace() * spindle_)};
+  const auto add = [&](double angle) {
+    const Vector3d radial = std::cos(angle) * across_ + std::sin(angle) * up;
+    for (std::size_t i = 1; i < outline.size(); ++i) {
+      const ProfilePoint &from = outline[i - 1], &to = outline[i];
+      const Vector3d outward = ((to.w - from.w) * radial - (to.radius - from.radius) * spindle_).normalized();
+      if (outward[1] > kEndless) continue;
+      volume.body.push_back(touching(outward, to.w * spindle_ + to.radius * radial));
+    }
+  };
+  // First the bottom, square to the way in.
+  const Vector2d way = legs_.back().endless ? Vector2d(1, 0) : legs_.back().to;
+  const double bottom = way[0] > 0 ? std::atan2(-way[0], way[1]) : std::atan2(way[0], -way[1]);
+  const double step = std::sqrt(8 * error / profile_.maxRadius());
+  add(bottom);
+  for (int i = 1; i * step < units::kPi; ++i) {
+    if (bottom - i * step > -units::kPi) add(bottom - i * step);
+    if (bottom + i * step < 0) add(bottom + i * step);
+  }
+  add(0);
+  add(-units::kPi);
+}
+
+/// The planes of a cup that is fed along X, in front of its lower face.
+void FaceSweep::addPlunged(double error, RemovedVolume& volume) const {
+  const Vector3d low = profile_.lowerFace() * spindle_, high = profile_.upperFace() * spindle_;
+  volume.body.push_back(touching(-spindle_, low));
+  const double step = std::sqrt(8 * error / profile_.maxRadius());
+  for (double angle = 0; angle < units::kTurn; angle += step) {
+    const Vector3d radial = std::cos(angle) * across_ + std::sin(angle) * Vector3d::UnitY();
+    // The planes along X that touch an edge of the rim.
+    const Vector3d along = (radial - radial[0] / spindle_[0] * spindle_).normalized();
+    const Vector3d& edge = along.dot(spindle_) > 0 ? high : low;
+    volume.body.push_back(touching(along, edge + profile_.maxRadius() * radial));
+    if (radial[0] > 0) volume.body.push_back(touching(radial, profile_.maxRadius() * radial));
+    if (!(inner_radius_ > 0)) continue;
+    for (const Vector3d& outward : {along, radial}) {
+      const Plane plane = touching(outward, low + inner_radius_ * radial);
+      volume.hollow.push_back({-plane.normal, -plane.offset});
+    }
+  }
 }
 
 }  // namespace grinder

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/curve/face_stroke.h"
+#include "flute_grinder/tool/removed_volume.h"
 #include "flute_grinder/tool/wheel_profile.h"
 
 #include <optional>
@@ -27,6 +28,11 @@ class FaceSweep {
   /// How far it passes through the ray from a place toward +X [m]; nothing if not through the place.
   std::optional<double> removedTo(const OnRay& ray, double x) const;
 
+  /// What is removed of the tool, in its frame at A = 0, as between planes that touch the wheel on its way. Its face is
+  /// exact, its rim and rounded corners at most about `error` too large [m].
+  /// Kind and tooth of its faces are left to the caller.
+  RemovedVolume volume(double error) const;
+
  private:
   /// A convex part of the path of the wheel's centre in the face's plane, seen from its end.
   struct Leg {
@@ -49,6 +55,9 @@ class FaceSweep {
   double coveredTo(const Ray& ray, const Leg& leg, double x) const;
   double plungedTo(const Ray& ray) const;
   double depth(const Ray& ray, const Leg& leg, double x) const;
+  Plane touching(const Eigen::Vector3d& outward, const Eigen::Vector3d& at) const;
+  void addPlanes(double error, RemovedVolume& volume) const;
+  void addPlunged(double error, RemovedVolume& volume) const;
 
   WheelProfile profile_;
   double inner_radius_, cos_a_, sin_a_;

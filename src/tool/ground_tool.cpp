@@ -35,7 +35,7 @@ std::optional<Reason> reasonOf(const ValidJob& job, const std::vector<Gouge>& go
 /// A cutter with its sections, not checked.
 GroundTool withSections(const ValidJob& job, const std::string& source, GroundCutter cutter,
                         const std::vector<double>& at) {
-  GroundTool tool{job, source, std::move(cutter), {}, {}, 0, false, false, {}, {}};
+  GroundTool tool{job, source, std::move(cutter), {}, {}, {}, 0, false, false, {}, {}};
   for (const double x : at) {
     const GroundSection section = tool.cutter.section(x);
     tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
@@ -63,12 +63,14 @@ std::vector<double> evenSections(const GrindJob& job, int count) {
 GroundTool measure(const ValidJob& job, const std::string& source, GroundCutter cutter, const std::vector<double>& at) {
   GroundTool tool = withSections(job, source, std::move(cutter), at);
   tool.check = checkGroundCutter(job, tool.cutter);
+  tool.end = endVolumesOf(job);
   return tool;
 }
 
 GroundTool measure(const std::string& source, const RunStrokes& strokes, const std::vector<double>& at) {
   GroundTool tool = withSections(strokes.job(), source, strokes.cutter(), at);
   tool.check = strokes.job().isStraight() ? checkGroundEnd(strokes) : checkGroundCutter(tool.job, tool.cutter);
+  tool.end = endVolumesOf(strokes.job(), strokes.straightStrokes());
   tool.of_run = true;
   tool.on_planned = strokes.isOnPlanned();
   tool.strokes = strokes.strokes();

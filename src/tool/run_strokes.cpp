@@ -180,8 +180,9 @@ PathDeviation RunStrokes::Path::deviation(double place, const Axes& at) const {
           at[kZ] - (cutter_.z(place) + stroke_.z_correction.at(place).z), at[kA] - angle_ - curve_.a(place)};
 }
 
-std::multimap<int, FaceStroke> RunStrokes::straightStrokes() const {
-  std::multimap<int, FaceStroke> ground;
+EndStrokes RunStrokes::straightStrokes() const {
+  EndStrokes ground;
+  if (!job_.isStraight()) return ground;
   for (const RunStroke& run : strokes_) {
     if (depthOf(run) < job_.deepest()) continue;
     PathDeviation mean;

@@ -1,6 +1,7 @@
 #include "flute_grinder/tool/wheel_profile.h"
 
 #include "flute_grinder/base/require.h"
+#include "flute_grinder/base/units.h"
 
 #include <algorithm>
 #include <cmath>
@@ -94,6 +95,34 @@ WheelProfile::Fillet WheelProfile::fillet(bool upper, double size) const {
   require(upper ? touch >= next.w : touch <= next.w, "wheel.corner_radius", size, "within the profile's first line",
           " m");
   return upper ? Fillet{touch, corner.w + 1, w, radius, size} : Fillet{corner.w - 1, touch, w, radius, size};
+}
+
+std::vector<ProfilePoint> WheelProfile::outline(double error) const {
+  std::vector<ProfilePoint> outline;
+  addEnd(false, error, outline);
+  outline.insert(outline.end(), corners_.begin() + 1, corners_.end() - 1);
+  addEnd(true, error, outline);
+  return outline;
+}
+
+/// Adds the corner at a face, or those of a polygon about its circle.
+void WheelProfile::addEnd(bool upper, double error, std::vector<ProfilePoint>& outline) const {
+  const Fillet& circle = fillets_[upper ? 1 : 0];
+  const ProfilePoint& corner = upper ? corners_.back() : corners_.front();
+  if (circle.size == 0) {
+    outline.push_back(corner);
+    return;
+  }
+  // The directions of the normal where the circle begins and ends, from the radius toward the upper face.
+  const ProfilePoint& next = upper ? corners_[corners_.size() - 2] : corners_[1];
+  const double line = std::atan2(-(next.radius - corner.radius) / (next.w - corner.w), 1);
+  const double from = upper ? line : -units::kPi / 2, to = upper ? units::kPi / 2 : line;
+  const double parts = std::ceil((to - from) / std::sqrt(8 * error / circle.size));
+  const double step = (to - from) / parts, size = circle.size / std::cos(step / 2);
+  for (double part = 0; part < parts; ++part) {
+    const double at = from + (part + 0.5) * step;
+    outline.push_back({circle.w + size * std::sin(at), circle.radius + size * std::cos(at)});
+  }
 }
 
 void WheelProfile::findMax() {

@@ -14,7 +14,9 @@
 #include <ros/serialization.h>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <cmath>
+#include <map>
 
 namespace grinder {
 namespace test_ground_markers {
@@ -315,6 +317,45 @@ TEST(GroundMarkers, WithoutANeckTheShankBeginsWhereTheStrokeEnds) {
   EXPECT_LT(maxRadius(solid, 0, stroke_end - 1e-9), 9 * kMillimetre);
   EXPECT_NEAR(maxRadius(solid, stroke_end - 1e-9, stroke_end + 1e-9), 10 * kMillimetre, 1e-9);
   EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), 10 * kMillimetre, 1e-9);
+}
+
+/// The number of points of each colour of what is shown of the end mill.
+std::map<std::array<float, 3>, std::size_t> pointsByColour(const MarkerArray& array) {
+  std::map<std::array<float, 3>, std::size_t> points;
+  for (const Marker& m : array.markers) points[{m.color.r, m.color.g, m.color.b}] += m.points.size();
+  return points;
+}
+
+TEST(GroundMarkers, OfTheEndShowEachOfItsOperationsAndFitAMessage) {
+  std::size_t colours = 0;
+  for (const char* operation : {"secondary", "gash", "end_primary", "chamfer"}) {
+    SCOPED_TRACE(operation);
+    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation)));
+    const MarkerArray planned = groundMarkers(groundCutterOf(job), job, "planned");
+    EXPECT_LT(ros::serialization::serializationLength(planned), kMaxBytes);
+    const std::size_t shown = pointsByColour(planned).size();
+    EXPECT_TRUE(colours == 0 || shown == colours + 1);
+    colours = shown;
+  }
+}
+
+TEST(GroundMarkers, ShowTheStrokesOnTheEndThatHaveEnded) {
+  const ValidJob job = withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", "gash")));
+  const auto shown = [&](const ToothPass& pass, PassPhase phase) {
+    return pointsByColour(markersSoFar(job, {pass, phase, 0}));
+  };
+  const std::vector<JobPass>& passes = job.passes();
+  // Halfway, two teeth are done: the job is ground tooth by tooth.
+  const std::size_t half = passes.size() / 2;
+  const auto before = shown(passes.front().place, PassPhase::kStroke),
+             all = shown(passes.back().place, PassPhase::kAfter);
+  const auto done = shown(passes[half - 1].place, PassPhase::kAfter);
+  EXPECT_EQ(all.size(), before.size() + 1);
+  EXPECT_NE(done, before);
+  EXPECT_NE(done, all);
+  EXPECT_EQ(shown(passes[half].place, PassPhase::kStroke), done);
+  EXPECT_NE(shown(passes[half].place, PassPhase::kAfter), done);
+  EXPECT_EQ(pointsByColour(groundMarkers(groundCutterOf(job), job, "planned")), all);
 }
 
 TEST(GroundMarkers, TellWhyACutterCannotBeShown) {

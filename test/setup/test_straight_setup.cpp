@@ -175,8 +175,9 @@ TEST(StraightSetup, OfALeftHandToolHasTheSameSwivelOrTheMirroredOne) {
   left.process().wheel_side = WheelFace::kLower;
   EXPECT_NE(refused(left, kMachine).find("process.wheel.rim_mm = 0 mm; allowed: more than 0 for flanks of a left-hand"),
             std::string::npos);
-  left.process().wheel_rim = left.process().wheel_diameter / 2 - 5 * kMillimetre;  // with a cutter of 12
-  EXPECT_NE(refused(left, kMachine).find("what leaves a recess as wide as the cutter"), std::string::npos);
+  left.process().wheel_rim = left.process().wheel_diameter / 2 - 4 * kMillimetre;  // with a cutter of 10
+  EXPECT_NE(refused(left, kMachine).find("what leaves a recess as wide as the cutter"), std::string::npos)
+      << refused(left, kMachine);
   left.process().wheel_rim = 9 * kMillimetre;
   EXPECT_EQ(solved(left).job.process().setup_swivel, solved(end).job.process().setup_swivel);
 }

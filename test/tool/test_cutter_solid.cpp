@@ -5,6 +5,7 @@
 
 #include "flute_grinder/tool/stl.h"
 #include "temp_folder.h"
+#include "tool/open_edges.h"
 #include "tool/solid_cases.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <regex>
 
@@ -22,32 +22,13 @@ namespace test_cutter_solid {
 
 using test_support::Case;
 using test_support::cylinder;
+using test_support::openEdges;
 using test_support::SolidCase;
 using units::kDegree;
 using units::kMillimetre;
 
 /// So fine that the volume is right to a thousandth.
 constexpr SolidResolution kMiddling{30, 16, 120};
-
-using Corner = std::array<double, 3>;
-
-/// How many edges are not passed once in each direction.
-std::size_t openEdges(const CutterSolid& solid) {
-  std::map<std::pair<Corner, Corner>, int> passed;
-  const auto corner = [&](std::uint32_t i) {
-    return Corner{solid.vertices[i].x(), solid.vertices[i].y(), solid.vertices[i].z()};
-  };
-  for (const SolidTriangle& t : solid.triangles) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Corner a = corner(t.vertices[i]), b = corner(t.vertices[(i + 1) % 3]);
-      EXPECT_NE(a, b);
-      passed[a < b ? std::pair(a, b) : std::pair(b, a)] += a < b ? 1 : -1;
-    }
-  }
-  std::size_t open = 0;
-  for (const auto& [edge, times] : passed) open += times != 0;
-  return open;
-}
 
 double blankVolume(const ConicalCutter& cutter, double from, double to) {
   const double a = cutter.radius(from), b = cutter.radius(to);
@@ -139,7 +120,7 @@ TEST(CutterSolid, CutOpenIsClosedAndLacksTheWedge) {
     double rest = 0;
     for (int third = 0; third < 3; ++third) {
       const double from = (third * 120 + 17) * kDegree;
-      const CutterSolid open = cutterSolid(c.ground, extent, coarse, Wedge{from, from + 120 * kDegree});
+      const CutterSolid open = cutterSolid(c.ground, extent, coarse, {wedge(from, from + 120 * kDegree)});
       EXPECT_EQ(openEdges(open), 0u);
       rest += open.volume();
       for (const SolidTriangle& t : open.triangles) {
@@ -200,7 +181,7 @@ TEST(CutterSolid, RefusesWhatCannotBeShown) {
     EXPECT_THROW(cutterSolid(ground, {0, 0.01}, resolution), std::invalid_argument) << resolution.sections;
   }
   for (const double to : {1.0, 5.0}) {
-    EXPECT_THROW(cutterSolid(ground, {0, 0.01}, {2, 8, 36}, Wedge{1, to}), std::invalid_argument) << to;
+    EXPECT_THROW(wedge(1, to), std::invalid_argument) << to;
   }
 }
 

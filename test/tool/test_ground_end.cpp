@@ -53,6 +53,12 @@ bool isInWheel(const FaceStroke& stroke, const FaceWheel& wheel, const WheelProf
   return false;
 }
 
+bool isIn(const RemovedVolume& volume, const Vector3d& place) {
+  const auto in_front = [&](const Plane& plane) { return plane.height(place) > 0; };
+  const bool in_body = std::all_of(volume.body.begin(), volume.body.end(), in_front);
+  return in_body && (volume.hollow.empty() || std::any_of(volume.hollow.begin(), volume.hollow.end(), in_front));
+}
+
 TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
   auto between = test_support::numbers(11);
   int removed_places = 0, left_places = 0;
@@ -73,6 +79,7 @@ TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
                                    : endStroke(tooth, endNormal(between(5, 20) * kDegree, dish), {0, tooth.radius, 0},
                                                wheel, 0.2 * kMillimetre, 1 * kMillimetre);
     const FaceSweep sweep(stroke, wheel, profile, tooth.radius, 0);
+    const RemovedVolume volume = sweep.volume(1e-6);
     for (int k = 0; k < 300; ++k) {
       const double r = tooth.radius * between(0.01, 1), angle = between(0, 2 * kPi);
       const double x = tooth.radius * between(-0.2, 1);
@@ -85,6 +92,7 @@ TEST(FaceSweep, RemovesWhatTheWheelPassesThrough) {
       const bool near = sweep.removes(ray, x - kNear) != removed || sweep.removes(ray, x + kNear) != removed;
       if (near) continue;
       (removed ? removed_places : left_places)++;
+      EXPECT_EQ(isIn(volume, {x, ray[0], ray[1]}), removed);
       EXPECT_EQ(isInWheel(stroke, wheel, profile, tooth.radius, {x, ray[0], ray[1]}), removed)
           << i << ": " << x << ' ' << r << ' ' << angle;
     }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "flute_grinder/tool/section_outline.h"
-#include "flute_grinder/tool/wedge_cut.h"
+#include "flute_grinder/tool/removed_volume.h"
 
 #include <Eigen/Core>
 
@@ -28,7 +27,7 @@ struct SolidResolution {
 struct SolidTriangle {
   std::array<std::uint32_t, 3> vertices;  ///< counterclockwise as seen from outside
   SurfaceKind kind;
-  std::uint16_t tooth;  ///< tooth of the rake face, flute or land
+  std::uint16_t tooth;  ///< tooth of the rake face, flute, land, gash or flank
 };
 
 /// A closed surface. Coincident points are exactly equal, and no triangle has two of them.
@@ -41,9 +40,9 @@ struct CutterSolid {
 
 /// The ground cutter as a closed surface through sections. Between them, layers are interpolated along the helix, so
 /// the facets' error does not grow with the twist.
-/// @param cut_out wedge to leave out; its faces are of the kind kCut.
-/// @throw std::invalid_argument like sectionOutline() and WedgeCut, and if the extent or the resolution is not usable.
+/// @param removed volumes to take out of it.
+/// @throw std::invalid_argument like sectionOutline(), and if the extent or the resolution is not usable.
 CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution = {},
-                        const std::optional<Wedge>& cut_out = std::nullopt);
+                        const std::vector<RemovedVolume>& removed = {});
 
 }  // namespace grinder

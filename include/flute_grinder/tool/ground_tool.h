@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/gouge.h"
 #include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/run_strokes.h"
@@ -21,6 +22,7 @@ struct GroundTool {
   std::string source;  ///< origin of the data, for the reader
   GroundCutter cutter;
   CutterCheck check;
+  EndVolumes end;  ///< what is taken from its end
   std::vector<MeasuredSection> sections;
   double volume_removed = 0;  ///< over the flute's length [m^3]
   bool of_run = false;        ///< as ground in a run, rather than as planned

@@ -5,6 +5,7 @@
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/motion/setpoint.h"
+#include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/ground_cutter.h"
 
 #include <cstdint>
@@ -60,8 +61,9 @@ class RunStrokes {
   /// The volume that the wheel removed in a stroke, as if the tooth were at angle 0.
   WheelSweep sweep(const RunStroke& stroke) const;
 
-  /// The deepest strokes of a run on the end, as the mean of their positions has them, by the number of the tooth.
-  std::multimap<int, FaceStroke> straightStrokes() const;
+  /// The deepest strokes of a run on the end, as the mean of their positions has them, by the number of the tooth; none
+  /// of other runs.
+  EndStrokes straightStrokes() const;
 
   /// The ground cutter; a tooth without a stroke removes nothing. Strokes that another one covers are left out, since
   /// they cost time and remove nothing more. Strokes on the end leave it as it was before.

@@ -21,7 +21,18 @@ struct PolarPoint {
 PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part) noexcept;
 
 /// The kind of a part of the cutter's surface. A relieved land is kPrimary up to the end of the relief at its edge.
-enum class SurfaceKind : std::uint8_t { kRakeFace, kFluteBack, kLand, kPrimary, kEndFace, kShank, kCut };
+enum class SurfaceKind : std::uint8_t {
+  kRakeFace,
+  kFluteBack,
+  kLand,
+  kPrimary,
+  kEndFace,
+  kGash,
+  kEndFlank,
+  kChamfer,
+  kShank,
+  kCut
+};
 
 /// The order of an outline's points. It is the same in every section, so that sections can be joined point by point.
 /// The outline runs around with rising angles. For each flute it has the floor, the high wall in rings from the floor

@@ -41,6 +41,9 @@ class WheelProfile {
   /// The intersections of the profile's lines, without the rounded ends.
   const std::vector<ProfilePoint>& corners() const noexcept { return corners_; }
 
+  /// Corners of a polygon about the profile, from face to face, for rounded ends at most about `error` outside it [m].
+  std::vector<ProfilePoint> outline(double error) const;
+
   /// Radius of the profile at `w`, clamped to the faces [m].
   double radius(double w) const noexcept;
 
@@ -73,6 +76,7 @@ class WheelProfile {
 
   std::size_t lineAt(double w) const noexcept;  ///< index of the corner at the line's upper end
   Fillet fillet(bool upper, double size) const;
+  void addEnd(bool upper, double error, std::vector<ProfilePoint>& outline) const;
   void findMax();
 
   std::vector<ProfilePoint> corners_;

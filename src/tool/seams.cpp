@@ -1,0 +1,246 @@
+#include "tool/seams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+namespace grinder {
+
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSamePoint = 1e-9;  ///< distance up to which corners are one, and one is on an edge [m]
+constexpr int kRounds = 4;           ///< an edge that is divided may come to lie on others
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+/// Finds the first of the points that are one.
+class Welder {
+ public:
+  explicit Welder(std::size_t points) { first_.reserve(points); }
+
+  std::uint32_t add(const Vector3d& point) {
+    const std::array<std::int64_t, 3> cell = cellOf(point);
+    // A point of another cell can be the same only beyond the nearer side of each axis.
+    std::array<std::int64_t, 3> side{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double place = point[static_cast<Eigen::Index>(i)] / kCell - static_cast<double>(cell[i]);
+      side[i] = place < kSamePoint / kCell ? -1 : place > 1 - kSamePoint / kCell ? 1 : 0;
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+      std::array<std::int64_t, 3> other = cell;
+      bool is_new = true;
+      for (std::size_t i = 0; i < 3; ++i) {
+        if ((corner >> i & 1) == 0) continue;
+        other[i] += side[i];
+        is_new = is_new && side[i] != 0;
+      }
+      const std::uint32_t found = is_new ? find(other, point) : kNone;
+      if (found != kNone) return found;
+    }
+    const auto index = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(point);
+    const auto [in_cell, is_first] = first_.emplace(keyOf(cell), index);
+    next_.push_back(is_first ? kNone : in_cell->second);
+    in_cell->second = index;
+    return index;
+  }
+
+  std::vector<Vector3d> take() { return std::move(points_); }
+
+ private:
+  static constexpr double kCell = 64 * kSamePoint;
+
+  static std::array<std::int64_t, 3> cellOf(const Vector3d& point) {
+    return {static_cast<std::int64_t>(std::floor(point[0] / kCell)),
+            static_cast<std::int64_t>(std::floor(point[1] / kCell)),
+            static_cast<std::int64_t>(std::floor(point[2] / kCell))};
+  }
+  static std::uint64_t keyOf(const std::array<std::int64_t, 3>& cell) {
+    std::uint64_t key = 0;
+    for (const std::int64_t part : cell)
+      key = (key ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u ^ key >> 29;
+    return key;
+  }
+  std::uint32_t find(const std::array<std::int64_t, 3>& cell, const Vector3d& point) const {
+    const auto found = first_.find(keyOf(cell));
+    for (std::uint32_t i = found == first_.end() ? kNone : found->second; i != kNone; i = next_[i]) {
+      if ((points_[i] - point).cwiseAbs().maxCoeff() <= kSamePoint) return i;
+    }
+    return kNone;
+  }
+
+  std::vector<Vector3d> points_;
+  std::unordered_map<std::uint64_t, std::uint32_t> first_;  ///< last point of each cell
+  std::vector<std::uint32_t> next_;                         ///< the point before of the same cell
+};
+
+using Edge = std::pair<std::uint32_t, std::uint32_t>;
+
+Edge sorted(std::uint32_t a, std::uint32_t b) { return a < b ? Edge(a, b) : Edge(b, a); }
+
+/// The edges that are not passed as often in one direction as in the other, in order.
+std::vector<Edge> openEdges(const CutterSolid& solid) {
+  // The passed edges, by their lower corner: it has the other corner, and the direction in the lowest bit.
+  std::vector<std::size_t> end(solid.vertices.size() + 1);
+  const auto visit = [&](const auto& take) {
+    for (const SolidTriangle& t : solid.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) take(t.vertices[i], t.vertices[(i + 1) % 3]);
+    }
+  };
+  visit([&](std::uint32_t a, std::uint32_t b) { ++end[std::min(a, b) + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::size_t> next(end.begin(), std::prev(end.end()));
+  std::vector<std::uint64_t> passed(end.back());
+  visit([&](std::uint32_t a, std::uint32_t b) {
+    passed[next[std::min(a, b)]++] = std::uint64_t{std::max(a, b)} << 1 | (a < b ? 1u : 0u);
+  });
+  std::vector<Edge> open;
+  for (std::uint32_t corner = 0; corner + 1 < end.size(); ++corner) {
+    const auto begin = passed.begin() + static_cast<std::ptrdiff_t>(end[corner]);
+    const auto last = passed.begin() + static_cast<std::ptrdiff_t>(end[corner + 1]);
+    std::sort(begin, last);
+    for (auto i = begin; i != last;) {
+      const std::uint64_t other = *i >> 1;
+      int times = 0;
+      for (; i != last && *i >> 1 == other; ++i) times += (*i & 1) != 0 ? 1 : -1;
+      if (times != 0) open.emplace_back(corner, static_cast<std::uint32_t>(other));
+    }
+  }
+  return open;
+}
+
+/// The corners that lie on open edges.
+class Dividers {
+ public:
+  Dividers(const CutterSolid& solid, const std::vector<Edge>& open) : at_(solid.vertices) {
+    for (const Edge& edge : open) {
+      corners_.push_back(edge.first);
+      corners_.push_back(edge.second);
+    }
+    std::sort(corners_.begin(), corners_.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return std::pair(at_[a].x(), a) < std::pair(at_[b].x(), b); });
+    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+  }
+
+  /// From the edge's first corner to its second.
+  std::vector<std::uint32_t> on(const Edge& edge) const {
+    const Vector3d& from = at_[edge.first];
+    const Vector3d way = at_[edge.second] - from;
+    const double length = way.norm();
+    const double least = std::min(from.x(), from.x() + way.x()) - kSamePoint;
+    const double most = std::max(from.x(), from.x() + way.x()) + kSamePoint;
+    std::vector<std::pair<double, std::uint32_t>> found;
+    auto i = std::lower_bound(corners_.begin(), corners_.end(), least,
+                              [&](std::uint32_t corner, double x) { return at_[corner].x() < x; });
+    for (; i != corners_.end() && at_[*i].x() <= most; ++i) {
+      const Vector3d off = at_[*i] - from;
+      const double along = off.dot(way) / length;
+      if (*i == edge.first || *i == edge.second || !(along > 0 && along < length)) continue;
+      if ((off - along / length * way).norm() <= kSamePoint) found.emplace_back(along, *i);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::uint32_t> corners;
+    for (const auto& [along, corner] : found) corners.push_back(corner);
+    return corners;
+  }
+
+ private:
+  const std::vector<Vector3d>& at_;
+  std::vector<std::uint32_t> corners_;  ///< by X
+};
+
+void push(std::vector<SolidTriangle>& all, const SolidTriangle& like, const std::array<std::uint32_t, 3>& v) {
+  if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return;
+  all.push_back({v, like.kind, like.tooth});
+}
+
+/// Divides triangles at the corners on their open edges, one edge of each.
+/// @return whether there was any.
+bool divide(CutterSolid& solid) {
+  const std::vector<Edge> open = openEdges(solid);
+  if (open.empty()) return false;
+  const Dividers dividers(solid, open);
+  std::vector<std::vector<std::uint32_t>> on(open.size());
+  for (std::size_t i = 0; i < open.size(); ++i) on[i] = dividers.on(open[i]);
+  std::vector<SolidTriangle> divided;
+  divided.reserve(solid.triangles.size());
+  bool any = false;
+  for (const SolidTriangle& t : solid.triangles) {
+    std::size_t side = 0;
+    std::vector<std::uint32_t> corners;
+    for (; side < 3 && corners.empty(); ++side) {
+      const std::uint32_t a = t.vertices[side], b = t.vertices[(side + 1) % 3];
+      const Edge edge = sorted(a, b);
+      const auto found = std::lower_bound(open.begin(), open.end(), edge);
+      if (found == open.end() || *found != edge) continue;
+      corners = on[static_cast<std::size_t>(found - open.begin())];
+      if (a > b) std::reverse(corners.begin(), corners.end());
+    }
+    if (corners.empty()) {
+      divided.push_back(t);
+      continue;
+    }
+    any = true;
+    const std::uint32_t apex = t.vertices[(side + 1) % 3];
+    std::uint32_t last = t.vertices[side - 1];
+    corners.push_back(t.vertices[side % 3]);
+    for (const std::uint32_t corner : corners) {
+      push(divided, t, {last, corner, apex});
+      last = corner;
+    }
+  }
+  solid.triangles = std::move(divided);
+  return any;
+}
+
+/// Leaves what hangs together with the end of the shank: elsewhere, cuts can leave a chip that falls off.
+void dropChips(CutterSolid& solid) {
+  std::vector<std::uint32_t> parent(solid.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  for (const SolidTriangle& t : solid.triangles) {
+    for (std::size_t i = 1; i < 3; ++i) parent[root(t.vertices[i])] = root(t.vertices[0]);
+  }
+  const auto farther = [](const Vector3d& a, const Vector3d& b) { return a.x() < b.x(); };
+  const auto shank = std::max_element(solid.vertices.begin(), solid.vertices.end(), farther);
+  if (shank == solid.vertices.end()) return;
+  const std::uint32_t whole = root(static_cast<std::uint32_t>(shank - solid.vertices.begin()));
+  const auto is_chip = [&](const SolidTriangle& t) { return root(t.vertices[0]) != whole; };
+  solid.triangles.erase(std::remove_if(solid.triangles.begin(), solid.triangles.end(), is_chip), solid.triangles.end());
+}
+
+}  // namespace
+
+void closeSeams(CutterSolid& solid) {
+  Welder welder(solid.vertices.size());
+  std::vector<std::uint32_t> index(solid.vertices.size(), kNone);
+  std::vector<SolidTriangle> triangles;
+  triangles.reserve(solid.triangles.size());
+  for (const SolidTriangle& t : solid.triangles) {
+    std::array<std::uint32_t, 3> v{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::uint32_t& known = index[t.vertices[i]];
+      if (known == kNone) known = welder.add(solid.vertices[t.vertices[i]]);
+      v[i] = known;
+    }
+    push(triangles, t, v);
+  }
+  solid.vertices = welder.take();
+  solid.triangles = std::move(triangles);
+  for (int i = 0; i < kRounds && divide(solid); ++i) {
+  }
+  dropChips(solid);
+}
+
+}  // namespace grinder

@@ -1,0 +1,295 @@
+// The end of a solid: what strokes on the end leave, beside the planes in closed form and beside rays along the axis.
+
+#include "flute_grinder/tool/cutter_solid.h"
+
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/tool/end_volumes.h"
+#include "flute_grinder/tool/z_law.h"
+#include "tool/face_sweep.h"
+#include "tool/open_edges.h"
+#include "tool/solid_cases.h"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace grinder {
+namespace test_solid_end {
+
+using Eigen::Vector3d;
+using test_support::openEdges;
+using units::kDegree;
+using units::kMillimetre;
+using units::kPi;
+
+constexpr double kLength = 12 * kMillimetre;
+constexpr SolidExtent kExtent{0, kLength};
+
+/// A plane of a tooth: its outward normal and a place on it.
+struct ToothPlane {
+  SurfaceKind kind;
+  OnTooth normal, through;
+};
+
+/// A cylindrical end mill of 10 mm with four teeth: gashed, with both flanks of its end teeth, and chamfered.
+struct EndMill {
+  explicit EndMill(CutDirection cut)
+      : tooth{5 * kMillimetre, kPi / 2, cut}, ground(fluted(cut)), first_edge(*ground.section(0).teeth[0].edge) {
+    FaceWheel wheel;
+    wheel.nominal_radius = wheel.radius = 50 * kMillimetre;
+    wheel.width = 10 * kMillimetre;
+    FaceWheel thin = wheel, flat = wheel;
+    thin.width = 1.5 * kMillimetre;
+    if (cut == CutDirection::kLeftHand) flat.inner_radius = 44 * kMillimetre;
+    const double dish = 2 * kDegree, gap = 0.05 * kMillimetre, clear = 1 * kMillimetre;
+    const auto add = [&](const ToothPlane& plane, const FaceStroke& stroke, const FaceWheel& its) {
+      planes.push_back(plane);
+      for (int k = 0; k < 4; ++k) {
+        const WheelProfile profile = WheelProfile::straight(2 * its.radius, its.width);
+        sweeps.emplace_back(stroke, its, profile, tooth.radius, angle(k));
+        RemovedVolume& volume = removed.emplace_back(sweeps.back().volume(1.5e-6));
+        volume.kind = plane.kind;
+        volume.tooth = static_cast<std::uint16_t>(k);
+      }
+    };
+    const ToothPlane gash{SurfaceKind::kGash, gashNormal(3 * kDegree, dish), {0, tooth.radius, 0}};
+    add(gash, gashStroke(tooth, gash.normal, 45 * kDegree, -0.2 * kMillimetre, thin, clear), thin);
+    const double land = 0.4 * kMillimetre, clearance = 8 * kDegree;
+    const OnTooth land_end(land * std::tan(clearance), tooth.radius, land);
+    for (const auto& [angle, through] : {std::pair(clearance, OnTooth(0, tooth.radius, 0)), {18 * kDegree, land_end}}) {
+      const ToothPlane flank{SurfaceKind::kEndFlank, endNormal(angle, dish), through};
+      add(flank, endStroke(tooth, flank.normal, through, flat, gap, clear), flat);
+    }
+    const double x = 0.3 * kMillimetre;
+    const ToothPlane chamfer{SurfaceKind::kChamfer,
+                             chamferNormal(45 * kDegree, 10 * kDegree, dish, std::tan(3 * kDegree)),
+                             {x, tooth.radius, x * std::tan(3 * kDegree)}};
+    add(chamfer, chamferStroke(tooth, chamfer.normal, chamfer.through, wheel, gap, clear), wheel);
+  }
+
+  static GroundCutter fluted(CutDirection cut) {
+    test_support::Case c = test_support::cylinder();
+    if (cut == CutDirection::kLeftHand) {
+      c.spiral = -c.spiral;
+      c.face = c.width / std::cos(c.swivel * kDegree) - c.face;
+      c.swivel = -c.swivel;
+      c.cut = cut;
+    }
+    return c.ground(4);
+  }
+  /// Of the edge of a tooth at the end.
+  double angle(int k) const { return first_edge + k * kPi / 2; }
+
+  /// How far a place is in front of a plane of a tooth [m].
+  double height(const ToothPlane& plane, int k, const Vector3d& place) const {
+    const double cos = std::cos(angle(k)), sin = std::sin(angle(k));
+    const double behind = place[2] * cos - place[1] * sin;
+    const OnTooth at(place[0], place[1] * cos + place[2] * sin,
+                     tooth.cut == CutDirection::kRightHand ? behind : -behind);
+    return plane.normal.dot(at - plane.through);
+  }
+
+  /// The volume that the strokes take from the fluted tool, on rays along the axis.
+  double removedOnRays() const {
+    constexpr int kRings = 60, kAround = 160;
+    double volume = 0;
+    for (int i = 0; i < kRings; ++i) {
+      const double r = (i + 0.5) * tooth.radius / kRings;
+      for (int k = 0; k < kAround; ++k) {
+        const double at = 2 * kPi * (k + 0.5) / kAround;
+        std::vector<Range> gone = flutesOn(r, at), all = gone;
+        for (const FaceSweep& sweep : sweeps) addRemoved(sweep, {r * std::cos(at), r * std::sin(at)}, all);
+        volume += (length(all) - length(gone)) * r * (tooth.radius / kRings) * (2 * kPi / kAround);
+      }
+    }
+    return volume;
+  }
+
+  /// Where a stroke takes something from a ray: in steps up to where that begins, which is half a step off on average.
+  static void addRemoved(const FaceSweep& sweep, const Eigen::Vector2d& ray, std::vector<Range>& ranges) {
+    constexpr double kStep = 0.1 * kMillimetre, kDeepest = 8 * kMillimetre;
+    for (double x = 0; x < kDeepest; x += kStep) {
+      if (!sweep.removes(ray, x)) continue;
+      ranges.push_back({x - kStep / 2, *sweep.removedTo(ray, x)});
+      x = ranges.back().to;
+    }
+  }
+
+  /// Where a ray along the axis is in a flute: its arc turns with X as the helix does.
+  std::vector<Range> flutesOn(double r, double at) const {
+    std::vector<Range> ranges;
+    const auto arc = ground.arc(ground.flutes().front(), 0, r);
+    if (!arc) return ranges;
+    const double per_x = (ground.arc(ground.flutes().front(), kLength, r)->low - arc->low) / kLength;
+    for (int turn = -8; turn < 8; ++turn) {  // of the teeth, a quarter each
+      const double a = (at + turn * kPi / 2 - arc->low) / per_x, b = (at + turn * kPi / 2 - arc->high) / per_x;
+      ranges.push_back({std::min(a, b), std::max(a, b)});
+    }
+    return ranges;
+  }
+
+  /// The length of ranges that may overlap, on the tool.
+  static double length(std::vector<Range> ranges) {
+    std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.from < b.from; });
+    double sum = 0, to = 0;
+    for (const Range& range : ranges) {
+      const double end = std::min(range.to, kLength);
+      sum += std::max(0.0, end - std::max(range.from, to));
+      to = std::max(to, end);
+    }
+    return sum;
+  }
+
+  EndTooth tooth;
+  GroundCutter ground;
+  double first_edge;  ///< angle of the first tooth's edge at the end [rad]
+  std::vector<ToothPlane> planes;
+  std::vector<FaceSweep> sweeps;
+  std::vector<RemovedVolume> removed;
+};
+
+constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
+constexpr SolidResolution kCoarse{24, 12, 60}, kFine{40, 24, 180};
+
+TEST(SolidEnd, LacksWhatTheWheelPassesThroughOnRays) {
+  for (const CutDirection cut : kHands) {
+    SCOPED_TRACE(toString(cut));
+    const EndMill mill(cut);
+    const double removed = cutterSolid(mill.ground, kExtent, kFine).volume() -
+                           cutterSolid(mill.ground, kExtent, kFine, mill.removed).volume();
+    const double on_rays = mill.removedOnRays();
+    EXPECT_GT(on_rays, 20e-9);
+    EXPECT_NEAR(removed, on_rays, 3e-3 * on_rays);
+  }
+}
+
+TEST(SolidEnd, IsClosedAlsoWhereItIsCutOpen) {
+  for (const CutDirection cut : kHands) {
+    SCOPED_TRACE(toString(cut));
+    EndMill mill(cut);
+    EXPECT_EQ(openEdges(cutterSolid(mill.ground, kExtent, kCoarse, mill.removed)), 0u);
+    mill.removed.push_back(wedge(35 * kDegree, 120 * kDegree));
+    EXPECT_EQ(openEdges(cutterSolid(mill.ground, kExtent, kCoarse, mill.removed)), 0u);
+  }
+}
+
+/// By area, to the outside.
+Vector3d normalOf(const CutterSolid& solid, const SolidTriangle& t) {
+  const auto at = [&](std::size_t i) { return solid.vertices[t.vertices[i]]; };
+  return (at(1) - at(0)).cross(at(2) - at(0)) / 2;
+}
+
+double area(const CutterSolid& solid, const SolidTriangle& t) { return normalOf(solid, t).norm(); }
+
+/// The areas of the faces in the planes of the teeth, and of the others by their kind.
+struct FaceAreas {
+  std::map<std::pair<std::size_t, int>, double> in_plane;
+  std::map<SurfaceKind, double> rest;
+
+  FaceAreas(const EndMill& mill, const CutterSolid& solid) {
+    for (const SolidTriangle& t : solid.triangles) {
+      if (!add(mill, solid, t)) rest[t.kind] += area(solid, t);
+    }
+  }
+
+ private:
+  bool add(const EndMill& mill, const CutterSolid& solid, const SolidTriangle& t) {
+    for (std::size_t i = 0; i < mill.planes.size(); ++i) {
+      const ToothPlane& plane = mill.planes[i];
+      const auto height = [&](const Vector3d& at) { return mill.height(plane, t.tooth, at); };
+      const auto is_on = [&](std::uint32_t v) { return std::abs(height(solid.vertices[v])) < kOn; };
+      if (plane.kind != t.kind || !std::all_of(t.vertices.begin(), t.vertices.end(), is_on)) continue;
+      // A cell of the inside that is turned inside out takes away what others cover twice.
+      const Vector3d outward = normalOf(solid, t);
+      in_plane[{i, t.tooth}] += height(outward) - height(Vector3d::Zero());
+      return true;
+    }
+    return false;
+  }
+
+  static constexpr double kOn = 2e-9;       ///< [m]
+  static constexpr double kSliver = 1e-13;  ///< [m^2]
+};
+
+TEST(SolidEnd, HasFacesInThePlanesOfItsTeeth) {
+  for (const CutDirection cut : kHands) {
+    SCOPED_TRACE(toString(cut));
+    const EndMill mill(cut);
+    FaceAreas areas(mill, cutterSolid(mill.ground, kExtent, kCoarse, mill.removed));
+    EXPECT_EQ(areas.in_plane.size(), 4 * mill.planes.size());
+    for (const auto& [face, sum] : areas.in_plane) {
+      EXPECT_GT(sum, 0.01e-6) << face.first << ' ' << face.second;
+      EXPECT_NEAR(sum, (areas.in_plane[{face.first, 0}]), 0.02 * sum);  // all teeth are alike
+    }
+    EXPECT_GT(areas.rest[SurfaceKind::kGash], 1e-6);      // bottoms
+    EXPECT_LT(areas.rest[SurfaceKind::kEndFlank], 1e-6);  // of rims
+    EXPECT_EQ(areas.rest[SurfaceKind::kChamfer], 0);
+  }
+}
+
+/// The tool of the shipped job after each of its operations has the faces of those up to it.
+TEST(SolidEnd, OfAJobHasTheFacesOfItsOperations) {
+  const std::vector<std::pair<std::string, std::map<SurfaceKind, int>>> rows{
+      {"secondary", {}},
+      {"gash", {{SurfaceKind::kGash, 4}}},
+      {"end_primary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 4}}},
+      {"end_secondary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 8}}},
+      {"chamfer", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 8}, {SurfaceKind::kChamfer, 4}}}};
+  for (const auto& [operation, faces] : rows) {
+    SCOPED_TRACE(operation);
+    const EndVolumes end = endVolumesOf(withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation))));
+    std::map<SurfaceKind, int> count;
+    std::map<int, std::size_t> of_tooth;
+    for (const RemovedVolume& volume : end.removed) {
+      ++count[volume.kind];
+      ++of_tooth[volume.tooth];
+    }
+    EXPECT_EQ(of_tooth[3], end.removed.size() / 4);
+    EXPECT_EQ(count, faces);
+    EXPECT_EQ(end.blank_x, 0);
+  }
+}
+
+TEST(SolidEnd, AChipThatIsCutOffIsNotShown) {
+  const GroundCutter ground = test_support::cylinder().ground(4);
+  const double from = 2 * kMillimetre, to = 3 * kMillimetre;
+  const RemovedVolume slot{{{{1, 0, 0}, from}, {{-1, 0, 0}, -to}}, {}, SurfaceKind::kGash, 0};
+  const CutterSolid solid = cutterSolid(ground, kExtent, kCoarse, {slot});
+  EXPECT_EQ(openEdges(solid), 0u);
+  for (const SolidTriangle& t : solid.triangles) {
+    for (const std::uint32_t v : t.vertices) EXPECT_GT(solid.vertices[v].x(), to - 1e-9);
+  }
+}
+
+/// Of two volumes that end in the same plane, one leaves the face.
+TEST(SolidEnd, ASharedPlaneHasOneFace) {
+  const GroundCutter ground = test_support::cylinder().ground(4);
+  const auto behind = [](const Vector3d& normal, double offset) { return Plane{normal, offset}; };
+  const double depth = 2 * kMillimetre;
+  const Plane front = behind({-1, 0, 0}, -depth);
+  const RemovedVolume low{{front, behind({0, -1, 0}, -kMillimetre)}, {}, SurfaceKind::kEndFlank, 0};
+  const RemovedVolume high{{front, behind({0, 1, 0}, -kMillimetre)}, {}, SurfaceKind::kChamfer, 1};
+  const CutterSolid solid = cutterSolid(ground, kExtent, kCoarse, {low, high});
+  EXPECT_EQ(openEdges(solid), 0u);
+  const CutterSolid rest = cutterSolid(ground, {depth, kLength}, kFine);
+  EXPECT_NEAR(solid.volume(), rest.volume(), 5e-3 * rest.volume());
+  double faces = 0;
+  for (const SolidTriangle& t : solid.triangles) {
+    if (t.kind == SurfaceKind::kEndFlank || t.kind == SurfaceKind::kChamfer) faces += area(solid, t);
+  }
+  double section = 0;
+  for (const SolidTriangle& t : cutterSolid(ground, {depth, kLength}, kFine).triangles) {
+    if (t.kind == SurfaceKind::kEndFace) section += area(rest, t) / 2;
+  }
+  EXPECT_NEAR(faces, section, 5e-3 * section);
+}
+
+}  // namespace test_solid_end
+}  // namespace grinder

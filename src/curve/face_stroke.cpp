@@ -13,7 +13,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kFaceSteps = 8;                 ///< steps to the centre of a face, each of which finds it more exactly
-constexpr double kOpposite = units::kPi / 6;  ///< angle within which the next tooth is about opposite
+/// Angle behind a tooth beyond which its flank ends even before the next tooth: where the next one is opposite, a rim
+/// that came to it would be far past the axis.
+constexpr double kWidestFlank = 140 * units::kDegree;
 
 /// A place of a tooth in the machine, while the tooth stands at an angle.
 Vector3d inMachine(const OnTooth& place, double tooth, CutDirection cut) {
@@ -37,14 +39,15 @@ using InFace = Eigen::Vector2d;
 
 Vector3d acrossAt(double swivel) { return {std::cos(swivel), 0, std::sin(swivel)}; }
 
-/// What of the next tooth must stay outside the wheel, as seen along the spindle from the axis outward: its edge, and
+/// What of the next tooth, or of where a wide flank ends, must stay outside the wheel, as seen along the spindle from the axis outward: its edge, and
 /// the place under the edge, along X, on the plane that is ground.
 struct NextTooth {
   std::array<std::array<InFace, 2>, 2> lines;
 
   /// @param place a place on the plane.
   NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
-    const double turn = tooth.cut == CutDirection::kRightHand ? tooth.pitch : -tooth.pitch;
+    const double pitch = std::min(tooth.pitch, kWidestFlank);
+    const double turn = tooth.cut == CutDirection::kRightHand ? pitch : -pitch;
     const double y = tooth.radius * std::cos(pose.tooth + turn), z = tooth.radius * std::sin(pose.tooth + turn);
     const double sin = std::sin(pose.swivel), cos = std::cos(pose.swivel);
     const double hollow = tooth.radius * normal[1] / normal[0];
@@ -149,9 +152,7 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   const bool right = tooth.cut == CutDirection::kRightHand;
   const double rim = right ? wheel.radius + gap : wheel.inner_radius - gap;
   const NextTooth next(tooth, normal, pose, place);
-  InFace centre = right ? besideNext(next, rim) : roundNext(next, rim);
-  // The edge of a tooth that is about opposite is on the other side of the axis; anywhere along it the wheel does.
-  if (std::abs(tooth.pitch - units::kPi) < kOpposite) centre = {rim, place.dot(spindle) * spindle[2] / spindle[0]};
+  const InFace centre = right ? besideNext(next, rim) : roundNext(next, rim);
   FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   if (right) {
     stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;

@@ -15,7 +15,7 @@ namespace {
 constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
 constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
 constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
-constexpr double kTouched = 5e-6;    ///< length of the periphery's edge that counts as untouched [m]
+constexpr double kTouched = 5e-6;    ///< of a periphery's edge that counts as untouched, and of a heel [m]
 constexpr double kInside = 1e-6;     ///< part of the radius by which the periphery's edge is looked for within it
 constexpr double kAlike = 1e-9;      ///< difference of pitch and wear between teeth that are alike [m], [rad]
 
@@ -25,6 +25,7 @@ struct EndPlace {
   EndSection at;
   double uncut = 0;      ///< diameter outside which the edge is whole [m]
   double periphery = 0;  ///< see ToolFigure::kPeripheryTaken [m]
+  double drag = 0;       ///< see ToolFigure::kHeelDrag [m]
   std::optional<ChamferFigures> chamfer;
 };
 
@@ -60,6 +61,8 @@ constexpr EndMeasurement kEndMeasurements[]{
     {ToolFigure::kUncutDiameter, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.uncut); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
     {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
+     [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
+    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return FigureValue(p.drag); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
@@ -102,9 +105,16 @@ bool hasEdges(const ValidJob& job, const std::optional<ValidJob>& next) {
   return next || job->hasGround(OperationKind::kPrimaryEnd);
 }
 
+/// Whether no flank of the end is to come.
+bool hasAllFlanks(const GrindJob& job) {
+  return std::none_of(job.operations.begin() + job.operation + 1, job.operations.end(),
+                      [](const GrindProcess& p) { return isEndFlank(p.kind); });
+}
+
 /// A figure is asked once its operation is done.
 bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
   if (m.figure == ToolFigure::kPeripheryTaken) return true;
+  if (m.figure == ToolFigure::kHeelDrag) return job->hasGround(m.since) && hasAllFlanks(*job);
   return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : job->hasGround(m.since);
 }
 
@@ -132,6 +142,8 @@ class EndCheck {
       const double r = inner + (outer - inner) * i / (kEndSections - 1);
       place.at = has_edge ? end_.section(tooth, r) : EndSection{};
       place.at.r = r;
+      const double pitch = endToothOf(*job_, static_cast<int>(tooth)).pitch;
+      if (place.at.edge && hasAllFlanks(*job_)) place.drag = end_.heelDrag(tooth, place.at, pitch);
       if (!has_edge) place.at.rake = end_.rake(tooth, r, (radius - r) * std::tan(cutter_.end_dish), 0);
       take(place, tooth);
     }

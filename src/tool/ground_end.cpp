@@ -19,6 +19,7 @@ constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake
 /// Width of what may be left of the blank's end in front of a primary flank, per radius: a blank without stock is not
 /// quite reached where an axis is off by the rounding of its encoder.
 constexpr double kBlunt = 2e-3;
+constexpr double kHeelStep = 3 * units::kDegree;
 constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
 
 bool holds(const std::vector<Range>& ranges, double x) {
@@ -50,7 +51,10 @@ GroundEnd::Ray GroundEnd::rayAt(std::size_t tooth, double r, double behind) cons
 }
 
 GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind) const {
-  const Ray ray = rayAt(tooth, r, behind);
+  return surface(rayAt(tooth, r, behind));
+}
+
+GroundEnd::Surface GroundEnd::surface(const Ray& ray) const {
   std::vector<Range> flutes;
   for (std::size_t i = 0; i < flutes_.teeth(); ++i) flutes_.addRemoved(i, ray.r, ray.angle, flutes);
   Surface left{blank_x_, nullptr};
@@ -143,6 +147,16 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
 }
 
 /// A little below the edge, the rake face is between what the gash removed and the tooth.
+double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double pitch) const {
+  double drag = 0;
+  const double from = std::atan2(section.behind, section.r) + kHeelStep;
+  for (double turn = from; turn < pitch - kHeelStep; turn += kHeelStep) {
+    const double x = surface(rayAt(section.r, tooth_angles_[tooth] + hand_ * turn)).x;
+    drag = std::max(drag, *section.edge - x);
+  }
+  return drag;
+}
+
 std::optional<double> GroundEnd::rake(std::size_t tooth, double r, double x, double behind) const {
   const double depth = kRakeDepth * radius_;
   const auto is_tooth = [&](double at) { return !isRemoved(tooth, r, at, x + depth, By::kAny); };

@@ -65,6 +65,11 @@ class GroundEnd {
   ///        axis [m].
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
+  /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.
+  /// @param section of the tooth, with an edge.
+  /// @param pitch angle to the next tooth [rad].
+  double heelDrag(std::size_t tooth, const EndSection& section, double pitch) const;
+
   /// Nothing if the corner has no chamfer.
   std::optional<ChamferFigures> chamfer(std::size_t tooth) const;
 
@@ -81,6 +86,7 @@ class GroundEnd {
     double x;
     const EndCut* cut;
   };
+  Surface surface(const Ray& ray) const;
   Surface surface(std::size_t tooth, double r, double behind) const;
   enum class By { kAny, kOwnGash, kOwnFace };
   bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;

@@ -202,8 +202,8 @@ TEST(FaceStroke, GrindsEndsAsBruteForceFindsThem) {
   };
   constexpr CutDirection kLeft = CutDirection::kLeftHand;
   for (const auto& [end, y] :
-       {Row{{2, 8, 2}, -4.95}, Row{{3, 8, 2}, -6.9}, Row{{4, 8, 2}, -6.4}, Row{{4, 18, 2}, -5.2}, Row{{6, 8, 1}, -15},
-        Row{{2, 8, 2, kLeft}, -11}, Row{{3, 8, 2, kLeft}, -12}, Row{{4, 8, 2, kLeft}, -13}}) {
+       {Row{{2, 8, 2}, -14.5}, Row{{3, 8, 2}, -6.9}, Row{{4, 8, 2}, -6.4}, Row{{4, 18, 2}, -5.2}, Row{{6, 8, 1}, -15},
+        Row{{2, 8, 2, kLeft}, -18}, Row{{3, 8, 2, kLeft}, -12}, Row{{4, 8, 2, kLeft}, -13}}) {
     const MeasuredEnd found = measured(end);
     EXPECT_LE(found.whole_from, 0.1) << end.teeth << " teeth, clearance " << end.clearance;
     EXPECT_NEAR(found.lowest_y, y, 0.2) << end.teeth << " teeth, clearance " << end.clearance;

@@ -114,10 +114,11 @@ struct NextTooth {
   std::array<std::array<Real, 2>, 2> edge, below;  ///< its edge, and what is under that on the plane
 };
 
-/// The next tooth as seen along the spindle: (across, Y).
+/// The next tooth, or a line 140 deg behind the edge before it, as seen along the spindle: (across, Y).
 NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
   const Vector axis{f.radius * std::tan(f.dish), 0, 0};
-  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth + (f.left_hand ? -f.pitch : f.pitch));
+  const Real turn = std::min(f.pitch, 7 * std::acos(Real(-1)) / 9);
+  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth + (f.left_hand ? -turn : turn));
   const auto seen = [&](const Vector& place) { return std::array<Real, 2>{dot(place, pose.across), place[1]}; };
   const auto under = [&](const Vector& place) {
     const Vector turned = inMachine(f, plane.normal, pose.tooth);
@@ -129,11 +130,7 @@ NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
 
 /// The inner edge of a cup's rim round the next tooth, of which all is within it by the gap.
 void judgeRimRound(const Face& f, const Plane& plane, const Pose& pose, const Vector& face) {
-  const Real inner = f.wheel_radius - f.rim - f.gap, turn = std::acos(Real(-1));
-  if (std::abs(f.pitch - turn) < turn / 6) {
-    requireSame("centre of the face, Y", face[1], inner);
-    return requireSame("centre of the face, Z", face[2], 0);
-  }
+  const Real inner = f.wheel_radius - f.rim - f.gap;
   const NextTooth next = nextTooth(f, plane, pose);
   Real farthest = 0;
   for (const auto& line : {next.edge, next.below}) {
@@ -155,11 +152,6 @@ void judgeWayIn(const Face& f, const Pose& pose, const Pass& pass) {
 /// The rim beside the next tooth: as seen along the spindle, neither its edge nor what is under it on the plane may be
 /// nearer than the gap, and one of them is not farther.
 void judgeRimOfEnd(const Face& f, const Plane& plane, const Pose& pose, const Vector& face, Real rim) {
-  const Real turn = std::acos(Real(-1));
-  if (std::abs(f.pitch - turn) < turn / 6) {
-    requireSame("centre of the face, Y", face[1], rim + f.gap);
-    return requireSame("centre of the face, Z", face[2], 0);
-  }
   const NextTooth next = nextTooth(f, plane, pose);
   const Real u = dot(face, pose.across), v = face[1];
   requireSame("gap to the next tooth", std::min(nearest(u, v, next.edge), nearest(u, v, next.below)) - rim, f.gap,

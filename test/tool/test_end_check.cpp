@@ -66,6 +66,7 @@ constexpr Asked kAsked[] = {{ToolFigure::kEndClearance, 8 * kDegree, 1e-6},
                             {ToolFigure::kEndRake, 3 * kDegree, 1e-6},
                             {ToolFigure::kEndLand, 0.4 * kMillimetre, 1e-9},
                             {ToolFigure::kPeripheryTaken, 0, 0},
+                            {ToolFigure::kHeelDrag, 0, 0},
                             {ToolFigure::kUncutDiameter, 0.1 * kMillimetre, 0.03 * kMillimetre},
                             {ToolFigure::kChamferWidth, 0.2 * kMillimetre, 5e-6},
                             {ToolFigure::kChamferAngle, 45 * kDegree, 0.2 * kDegree},
@@ -83,8 +84,8 @@ void expectAsAsked(const CutterCheck& check) {
 }
 
 TEST(EndCheck, TheShippedEndIsAsAskedWithOtherTeethToo) {
-  for (const auto& teeth : std::vector<std::vector<double>>{
-           {0, 90, 180, 270}, {0, 180}, {0, 120, 240}, {0, 80, 185, 270}, {0, 95, 180, 280}}) {
+  for (const auto& teeth :
+       std::vector<std::vector<double>>{{0, 90, 180, 270}, {0, 120, 240}, {0, 80, 185, 270}, {0, 95, 180, 280}}) {
     SCOPED_TRACE(testing::PrintToString(teeth));
     expectAsAsked(checked(jobOf("chamfer", ofTeeth(teeth))));
   }
@@ -107,6 +108,30 @@ TEST(EndCheck, UnequalTeethAreMeasuredOneByOne) {
 }
 
 GrindProcess& gashOf(GrindJob& job) { return operationOf(job, OperationKind::kGash); }
+
+/// What the flanks of two teeth leave between them is the gashes' to take. Else the blank's end stays there, in front
+/// of an edge with a dish.
+TEST(EndCheck, NothingMayStandInFrontOfTheEdgesOfTwoTeeth) {
+  const auto with_gash = [](double angle, const Change& change) {
+    return checked(jobOf("end_secondary", [&](GrindJob& job) {
+      ofTeeth({0, 180})(job);
+      gashOf(job).gash_angle = angle * kDegree;
+      change(job);
+    }));
+  };
+  const CutterCheck wide = with_gash(35, kShipped);
+  EXPECT_TRUE(wide.reasons.empty()) << text(wide.reasons);
+  EXPECT_EQ(largest(wide, ToolFigure::kHeelDrag), 0);
+  const CutterCheck narrow = with_gash(45, [](GrindJob& job) {
+    gashOf(job).wheel_profile = WheelShape::kStraight;
+    gashOf(job).wheel_angle = 0;
+    gashOf(job).wheel_width = 1 * kMillimetre;
+  });
+  const GroundFigure* drag = find(narrow.figures, ToolFigure::kHeelDrag);
+  ASSERT_TRUE(drag);
+  EXPECT_NEAR(drag->largest.value, (5 * kMillimetre - drag->largest.x) * std::tan(2 * kDegree), 1e-6);
+  EXPECT_NE(text(narrow.reasons).find("the heel drag of tooth 1 is "), std::string::npos) << text(narrow.reasons);
+}
 
 TEST(EndCheck, RefusesAnEndThatIsNotAsAskedAndNamesTheFigure) {
   const auto thin = [](GrindJob& job) {

@@ -72,7 +72,8 @@ struct FaceStroke {
 
 /// The stroke that grinds a flank of an end tooth. For a right-hand tool the wheel comes down along Y until its rim has
 /// passed the axis by as much as the next tooth's edge allows. For a left-hand one a cup comes along X, the inner edge
-/// of its rim round the next tooth. Stock is normal to the flank.
+/// of its rim round the next tooth. A flank ends 140 deg behind its edge even if the next tooth is farther; what is
+/// left of the heel is the gash's. Stock is normal to the flank.
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
 /// @param gap least distance of the rim from the next tooth; negative to pass it, for a tooth to the centre [m].

@@ -36,6 +36,7 @@ enum class ToolFigure : std::uint8_t {
   kChamferWidth,
   kChamferAngle,
   kChamferClearance,
+  kHeelDrag,
 };
 
 /// A figure with its name in files, which is the message constant in lower case.
@@ -85,6 +86,7 @@ inline constexpr ToolFigureRow kToolFigures[]{
     figureOfEnd(ToolFigure::kChamferWidth, "chamfer_width", "chamfer width", Unit::kMetre),
     figureOfEnd(ToolFigure::kChamferAngle, "chamfer_angle", "chamfer angle", Unit::kRadian),
     figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
+    figureOfEnd(ToolFigure::kHeelDrag, "heel_drag", "heel drag", Unit::kMetre),
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

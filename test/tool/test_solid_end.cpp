@@ -156,7 +156,7 @@ struct EndMill {
 };
 
 constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
-constexpr SolidResolution kCoarse{24, 12, 60}, kFine{40, 24, 180};
+constexpr SolidResolution kCoarse{24, 12, 60}, kFine{24, 16, 120};
 
 TEST(SolidEnd, LacksWhatTheWheelPassesThroughOnRays) {
   for (const CutDirection cut : kHands) {

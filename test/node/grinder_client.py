@@ -133,6 +133,24 @@ def reamer_file(path):
     return path
 
 
+def end_file(path, name):
+    """Writes a job of jobs/ to `path` with the primary flanks of its end and the flutes and gashes ahead of them alone, which are over
+    soon: in one pass each."""
+    jobs = package_file('jobs/')
+    with open(jobs + name + '.yaml') as text:
+        mill = yaml.safe_load(text)
+    kinds = ('flute', None), ('gash', None), ('end', 'primary')
+    mill['operations'] = [o for o in mill['operations'] if (o['kind'], o.get('relief')) in kinds]
+    for operation in mill['operations']:
+        operation.update(feed_mm_min=1000, infeed_mm=6, finish_infeed_mm=0, spark_out=0, clearance_mm=1)
+        for part in ('wheel', 'setup'):
+            if 'file' in operation[part]:
+                operation[part]['file'] = jobs + operation[part]['file']
+    with open(path, 'w') as file:
+        yaml.safe_dump(mill, file)
+    return path
+
+
 # The units by the endings of a file's keys, the numbers of its choices, and the fields of its pairs.
 UNITS = {'mm_per_rad': MM, 'mm_min': MM_MIN, 'mm': MM, 'um': UM, 'deg': DEG}
 CHOICES = {'cut': ['right_hand', 'left_hand'], 'order': ['tooth_major', 'pass_major'], 'direction': ['from_end', 'to_end'],

@@ -9,7 +9,6 @@ import os
 
 import rospy
 import tf2_ros
-import yaml
 from flute_grinder import job as job_file
 from flute_grinder.msg import GrinderState
 
@@ -20,7 +19,6 @@ from grinder_client import LIFT, MM, STROKE, A, X, Y, Z
 from test_journal import JournalTest, strokes_of
 
 OPERATION = 'primary flank of the end'
-KINDS = ('flute', None), ('gash', None), ('end', 'primary')
 TEETH = 4
 
 
@@ -30,18 +28,7 @@ class TestEnd(JournalTest):
     def setUp(self):
         super().setUp()
         self.history = self.folder + '/history'
-        self.job_path = self.folder + '/mill.yaml'
-        jobs = gc.package_file('jobs/')
-        with open(jobs + 'end_mill_d10_t4.yaml') as text:
-            mill = yaml.safe_load(text)
-        mill['operations'] = [o for o in mill['operations'] if (o['kind'], o.get('relief')) in KINDS]
-        for operation in mill['operations']:
-            operation.update(feed_mm_min=1000, infeed_mm=6, finish_infeed_mm=0, spark_out=0, clearance_mm=1)
-            for part in ('wheel', 'setup'):
-                if 'file' in operation[part]:
-                    operation[part]['file'] = jobs + operation[part]['file']
-        with open(self.job_path, 'w') as file:
-            yaml.safe_dump(mill, file)
+        self.job_path = gc.end_file(self.folder + '/mill.yaml', 'end_mill_d10_t4')
         self.goal = job_file.goal(self.job_path, 'end_primary')
 
     def start(self, **arguments):

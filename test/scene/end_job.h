@@ -14,6 +14,16 @@ inline ValidJob endJob(const std::string& operation) {
   return withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation)));
 }
 
+/// The same on two teeth without reliefs, whose sections cost a tenth.
+inline ValidJob lightEndJob(OperationKind kind) {
+  GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "chamfer");
+  auto& all = job.operations;
+  all.erase(std::remove_if(all.begin(), all.end(), [](const GrindProcess& p) { return isRelief(p.kind); }), all.end());
+  job.tooth_angles = {0, units::kPi};
+  const auto of_kind = std::find_if(all.begin(), all.end(), [&](const GrindProcess& p) { return p.kind == kind; });
+  return withLaws(ValidJob(job.ofOperation(static_cast<int>(of_kind - all.begin()))));
+}
+
 /// The same of its mirror image, without flanks, which need a cup.
 inline ValidJob leftHandEndJob(OperationKind kind) {
   GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "chamfer");

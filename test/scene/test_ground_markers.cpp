@@ -9,6 +9,7 @@
 #include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/z_law.h"
 #include "jobs.h"
+#include "scene/end_job.h"
 
 #include <gtest/gtest.h>
 #include <ros/serialization.h>
@@ -21,7 +22,9 @@
 namespace grinder {
 namespace test_ground_markers {
 
+using test_support::endJob;
 using test_support::jobOf;
+using test_support::lightEndJob;
 using test_support::paper;
 using units::kDegree;
 using units::kMillimetre;
@@ -326,26 +329,29 @@ std::map<std::array<float, 3>, std::size_t> pointsByColour(const MarkerArray& ar
   return points;
 }
 
-TEST(GroundMarkers, OfTheEndShowEachOfItsOperationsAndFitAMessage) {
+TEST(GroundMarkers, OfTheEndShowEachOfItsOperations) {
   std::size_t colours = 0;
-  for (const char* operation : {"secondary", "gash", "end_primary", "chamfer"}) {
-    SCOPED_TRACE(operation);
-    const ValidJob job = withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation)));
-    const MarkerArray planned = groundMarkers(groundCutterOf(job), job, "planned");
-    EXPECT_LT(ros::serialization::serializationLength(planned), kMaxBytes);
-    const std::size_t shown = pointsByColour(planned).size();
+  for (const OperationKind kind : {OperationKind::kGash, OperationKind::kPrimaryEnd, OperationKind::kChamfer}) {
+    SCOPED_TRACE(rowOf(kind).words);
+    const ValidJob job = lightEndJob(kind);
+    const std::size_t shown = pointsByColour(groundMarkers(groundCutterOf(job), job, "planned")).size();
     EXPECT_TRUE(colours == 0 || shown == colours + 1);
     colours = shown;
   }
 }
 
+TEST(GroundMarkers, OfAWholeEndFitAMessage) {
+  const ValidJob job = endJob("chamfer");
+  EXPECT_LT(ros::serialization::serializationLength(groundMarkers(groundCutterOf(job), job, "planned")), kMaxBytes);
+}
+
 TEST(GroundMarkers, ShowTheStrokesOnTheEndThatHaveEnded) {
-  const ValidJob job = withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", "gash")));
+  const ValidJob job = lightEndJob(OperationKind::kGash);
   const auto shown = [&](const ToothPass& pass, PassPhase phase) {
     return pointsByColour(markersSoFar(job, {pass, phase, 0}));
   };
   const std::vector<JobPass>& passes = job.passes();
-  // Halfway, two teeth are done: the job is ground tooth by tooth.
+  // Halfway, one tooth is done: the job is ground tooth by tooth.
   const std::size_t half = passes.size() / 2;
   const auto before = shown(passes.front().place, PassPhase::kStroke),
              all = shown(passes.back().place, PassPhase::kAfter);

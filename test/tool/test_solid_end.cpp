@@ -96,14 +96,14 @@ struct EndMill {
     return plane.normal.dot(at - plane.through);
   }
 
-  /// The volume that the strokes take from the fluted tool, on rays along the axis.
+  /// The volume that the strokes take from the fluted tool, on rays along the axis; a quarter turn stands for all four.
   double removedOnRays() const {
-    constexpr int kRings = 60, kAround = 160;
+    constexpr int kRings = 60, kAround = 40;
     double volume = 0;
     for (int i = 0; i < kRings; ++i) {
       const double r = (i + 0.5) * tooth.radius / kRings;
       for (int k = 0; k < kAround; ++k) {
-        const double at = 2 * kPi * (k + 0.5) / kAround;
+        const double at = kPi / 2 * (k + 0.5) / kAround;
         std::vector<Range> gone = flutesOn(r, at), all = gone;
         for (const FaceSweep& sweep : sweeps) addRemoved(sweep, {r * std::cos(at), r * std::sin(at)}, all);
         volume += (length(all) - length(gone)) * r * (tooth.radius / kRings) * (2 * kPi / kAround);
@@ -156,7 +156,7 @@ struct EndMill {
 };
 
 constexpr CutDirection kHands[] = {CutDirection::kRightHand, CutDirection::kLeftHand};
-constexpr SolidResolution kCoarse{24, 12, 60}, kFine{40, 24, 180};
+constexpr SolidResolution kCoarse{24, 12, 60}, kFine{24, 16, 120};
 
 TEST(SolidEnd, LacksWhatTheWheelPassesThroughOnRays) {
   for (const CutDirection cut : kHands) {

@@ -119,8 +119,9 @@ std::map<Face, Chains> bordersOf(const CutterSolid& solid, double blank_x) {
   std::map<Face, std::map<Side, int>> passed;
   for (const SolidTriangle& t : solid.triangles) {
     if (!isOnEnd(t.kind)) continue;
-    if (t.kind == SurfaceKind::kEndFace && solid.vertices[t.vertices[0]].x() > blank_x) continue;
-    std::map<Side, int>& of_face = passed[{t.kind, t.tooth}];
+    const bool is_blank = t.kind == SurfaceKind::kEndFace;
+    if (is_blank && solid.vertices[t.vertices[0]].x() > blank_x) continue;
+    std::map<Side, int>& of_face = passed[{t.kind, is_blank ? std::uint16_t{0} : t.tooth}];
     forEachSide(solid, t, [&](const Corner& from, const Corner& to) {
       from < to ? ++of_face[{from, to}] : --of_face[{to, from}];
     });

@@ -13,12 +13,11 @@ namespace grinder {
 /// A line in Y and Z of the cutter's frame at A = 0 [m].
 using EndLine = std::vector<Eigen::Vector2d>;
 
-/// What a volume leaves of a tooth's end, as far as it faces the end: the outlines of its parts, closed, and the other
-/// way round about a hole.
+/// A part of the end: a tooth's gash, a flank or its chamfer, or what is left of the blank's end, which has tooth 0.
 struct EndRegion {
   SurfaceKind kind;
   std::uint16_t tooth;
-  std::vector<EndLine> outlines;
+  std::vector<EndLine> outlines;  ///< closed; one about a hole runs the other way round
 };
 
 /// A line in which a tooth's primary flank, or its chamfer, meets the face of its gash or of its flute.

@@ -185,9 +185,9 @@ def tool_pictures(tool):
                                 '%s is dimensioned along the outer circle.' %
                                 (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
     if tool['end_view']:
-        figure = new_figure(3.6, NARROW)
+        figure = new_figure(3.6)
         draw_end(figure.add_subplot(), tool['end_view'])
-        pictures.append(picture('section-end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
+        pictures.append(picture('end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
                                 'dashed: the diameter in which edges may be missing.', figure))
     for curve in tool['curves']:
         figure = new_figure(2.6)

@@ -58,13 +58,13 @@ void forEachSide(const CutterSolid& solid, const SolidTriangle& triangle, const 
   for (std::size_t i = 0; i < 3; ++i) visit(corner(i), corner(i + 1));
 }
 
-/// The faces beside the sides of a solid's triangles.
+/// The faces that can form an edge, beside the sides of their triangles.
 Faces facesOf(const CutterSolid& solid) {
   Faces faces;
   for (const SolidTriangle& t : solid.triangles) {
-    forEachSide(solid, t, [&](const Corner& from, const Corner& to) {
-      faces.emplace(Side(from, to), Face{t.kind, t.tooth});
-    });
+    const Face face{t.kind, t.tooth};
+    if (!isFlank(face) && !isRakeFace(face)) continue;
+    forEachSide(solid, t, [&](const Corner& from, const Corner& to) { faces.emplace(Side(from, to), face); });
   }
   return faces;
 }

@@ -67,7 +67,7 @@ def draw_section(axes, tool, section):
     axes.set_axis_off()
 
 
-def draw_end(axes, view):
+def draw_end(axes, view, legend_place):
     """Draws the view of the end: Z up and Y to the left, turned until the first tooth is on top."""
     turn = math.radians(view['edge_deg'] - 90)
     cos, sin = math.cos(turn), math.sin(turn)
@@ -93,7 +93,7 @@ def draw_end(axes, view):
     if uncut > 0:
         axes.plot(uncut * np.cos(circle), uncut * np.sin(circle), color=INK, linestyle='--')
         legend.append(Line2D([], [], color=INK, linestyle='--', label='uncut Ø %g' % (2 * uncut)))
-    axes.legend(handles=legend, loc='lower center', bbox_to_anchor=(0.5, 1), ncol=2, fontsize=7, title='The end, Ø %.3f mm' % (2 * radius))
+    axes.legend(handles=legend, fontsize=8, title='The end, Ø %g mm' % (2 * radius), title_fontsize=8, **legend_place)
     axes.set(aspect='equal', anchor='S', xlim=(-1.05 * radius, 1.05 * radius), ylim=(-1.05 * radius, 1.05 * radius))
     axes.set_axis_off()
 
@@ -185,8 +185,8 @@ def tool_pictures(tool):
                                 '%s is dimensioned along the outer circle.' %
                                 (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
     if tool['end_view']:
-        figure = new_figure(3.6)
-        draw_end(figure.add_subplot(), tool['end_view'])
+        figure = new_figure(2.8)
+        draw_end(figure.add_subplot(), tool['end_view'], {'loc': 'center left', 'bbox_to_anchor': (1, 0.5)})
         pictures.append(picture('end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
                                 'dashed: the diameter in which edges may be missing.', figure))
     for curve in tool['curves']:
@@ -211,7 +211,7 @@ def draw_file(tool):
     for place, section in zip(places, shown):
         draw_section(figure.add_subplot(place), tool, section)
     if tool['end_view']:
-        draw_end(figure.add_subplot(places[-1]), tool['end_view'])
+        draw_end(figure.add_subplot(places[-1]), tool['end_view'], {'loc': 'lower center', 'bbox_to_anchor': (0.5, 1), 'ncol': 2})
     panels = []
     for place, curve in zip(below.subgridspec(len(curves), 1), curves):
         panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))

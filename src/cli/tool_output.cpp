@@ -3,6 +3,7 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/tool_text.h"
+#include "flute_grinder/tool/end_view.h"
 #include "flute_grinder/tool/section_outline.h"
 #include "flute_grinder/tool/tool_figure.h"
 
@@ -317,6 +318,49 @@ Json outline(const GroundTool& tool, double x) {
   return points;
 }
 
+/// A line in steps of 10 nm, so that it is short.
+Json lineOf(const EndLine& line) {
+  const auto rounded = [](double length) { return std::round(length / kMillimetre * 1e5) / 1e5; };
+  Json points = Json::array();
+  for (const Eigen::Vector2d& point : line) points.push_back({rounded(point.x()), rounded(point.y())});
+  return points;
+}
+
+const char* nameOf(SurfaceKind kind) {
+  switch (kind) {
+    case SurfaceKind::kGash: return "gash";
+    case SurfaceKind::kEndPrimary: return "primary";
+    case SurfaceKind::kEndSecondary: return "secondary";
+    case SurfaceKind::kChamfer: return "chamfer";
+    default: return "blank";
+  }
+}
+
+Json toJson(const GroundTool& tool, const EndView& view) {
+  if (view.regions.empty()) return nullptr;
+  Json regions = Json::array(), edges = Json::array();
+  for (const EndRegion& region : view.regions) {
+    Json outlines = Json::array();
+    for (const EndLine& outline : region.outlines) outlines.push_back(lineOf(outline));
+    regions.push_back({{"face", nameOf(region.kind)}, {"tooth", region.tooth}, {"outlines_mm", outlines}});
+  }
+  for (const EndEdge& edge : view.edges) edges.push_back({{"tooth", edge.tooth}, {"line_mm", lineOf(edge.line)}});
+  return {{"diameter_mm", tool.job->cutter.end_diameter / kMillimetre},
+          {"edge_deg", (tool.job->tooth_angles.front() + tool.job.edges().front().at_end) / kDegree},
+          {"uncut_diameter_mm", tool.job->cutter.end_uncut_diameter / kMillimetre},
+          {"regions", regions},
+          {"edges", edges}};
+}
+
+/// The view of the end; null for a tool whose end is the blank's, or whose core is cut through.
+Json endViewOf(const GroundTool& tool) {
+  try {
+    return toJson(tool, endView(tool.cutter, tool.end));
+  } catch (const std::invalid_argument&) {
+    return nullptr;
+  }
+}
+
 /// The radial depth of every pass at the small end.
 Json passDepths(const ValidJob& job) {
   Json depths = Json::array();
@@ -386,6 +430,7 @@ Json toJson(const GroundTool& tool) {
           {"complete_from_mm", complete ? Json(complete->from / kMillimetre) : Json(nullptr)},
           {"complete_to_mm", complete ? Json(complete->to / kMillimetre) : Json(nullptr)},
           {"end", tool.job.isStraight() ? toJson(tool.check.figures) : Json(nullptr)},
+          {"end_view", endViewOf(tool)},
           {"on_planned", tool.on_planned},
           {"strokes", tool.of_run ? strokes(tool) : Json(nullptr)},
           {"gouges", tool.of_run ? gouges(tool) : Json(nullptr)},

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kFaceSteps = 8;                 ///< steps to the centre of a face, each of which finds it more exactly
+constexpr int kFaceSteps = 8;  ///< steps to the centre of a face, each of which finds it more exactly
 /// Angle behind a tooth beyond which its flank ends even before the next tooth: where the next one is opposite, a rim
 /// that came to it would be far past the axis.
 constexpr double kWidestFlank = 140 * units::kDegree;
@@ -39,8 +39,8 @@ using InFace = Eigen::Vector2d;
 
 Vector3d acrossAt(double swivel) { return {std::cos(swivel), 0, std::sin(swivel)}; }
 
-/// What of the next tooth, or of where a wide flank ends, must stay outside the wheel, as seen along the spindle from the axis outward: its edge, and
-/// the place under the edge, along X, on the plane that is ground.
+/// What of the next tooth, or of where a wide flank ends, must stay outside the wheel, as seen along the spindle from
+/// the axis outward: its edge, and the place under the edge, along X, on the plane that is ground.
 struct NextTooth {
   std::array<std::array<InFace, 2>, 2> lines;
 

@@ -205,7 +205,8 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
     case SurfaceKind::kRakeFace: return colour(0.55, 0.57, 0.62);
     case SurfaceKind::kFluteBack: return colour(0.45, 0.50, 0.60);
     case SurfaceKind::kGash: return colour(0.50, 0.60, 0.55);
-    case SurfaceKind::kEndFlank: return colour(0.66, 0.70, 0.76);
+    case SurfaceKind::kEndPrimary:
+    case SurfaceKind::kEndSecondary: return colour(0.66, 0.70, 0.76);
     case SurfaceKind::kChamfer: return colour(0.80, 0.74, 0.62);
     case SurfaceKind::kLand:
     case SurfaceKind::kPrimary:

@@ -23,8 +23,8 @@ EndFace faceOf(OperationKind kind) {
 
 SurfaceKind surfaceOf(EndFace face) {
   switch (face) {
-    case EndFace::kPrimary:
-    case EndFace::kSecondary: return SurfaceKind::kEndFlank;
+    case EndFace::kPrimary: return SurfaceKind::kEndPrimary;
+    case EndFace::kSecondary: return SurfaceKind::kEndSecondary;
     case EndFace::kChamfer: return SurfaceKind::kChamfer;
     case EndFace::kGash: break;
   }

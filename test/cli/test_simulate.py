@@ -87,6 +87,21 @@ class TestSimulate(CommandLine):
         self.assertEqual((short['complete'], short['rake_deg'], short['normal_rake_deg']), (False, None, None))
         self.assertEqual(self.csv(self.path('tool.csv'))[1]['rake_deg'], '')
 
+    def test_view_of_the_end(self):
+        job = gc.package_file('jobs/left_hand_end_mill_d8_t3.yaml')
+        words = {'gash': 'gash', 'primary': 'primary flank', 'secondary': 'secondary flank', 'chamfer': 'chamfer', 'blank': 'blank'}
+        for operation, faces, edges in (('gash', {'gash', 'blank'}, 0), ('chamfer', {'gash', 'primary', 'secondary', 'chamfer'}, 3)):
+            reported, _ = self.json(0, 'simulate', job, '--operation', operation, '--at', '1', '--svg', self.path('end.svg'))
+            view = reported['end_view']
+            self.assertEqual(({region['face'] for region in view['regions']}, len(view['edges'])), (faces, edges))
+            text = pathlib.Path(self.path('end.svg')).read_text()
+            self.assertLess(len(text), 3e5)
+            shown = {face for face, name in words.items() if '>%s<' % name in text}
+            self.assertEqual((shown, '>cutting edge<' in text, '>uncut Ø 0.4<' in text), (faces, edges > 0, True))
+        reported, _ = self.json(0, 'simulate', job, '--operation', 'flute', '--at', '1', '--svg', self.path('end.svg'))
+        self.assertIsNone(reported['end_view'])
+        self.assertNotIn('>flute<', pathlib.Path(self.path('end.svg')).read_text())
+
     def test_what_is_refused(self):
         for at in ('-1', '1,1000', 'nan'):
             self.assertRegex(self.grind(2, 'simulate', PAPER_JOB, '--at', at).stderr,

@@ -73,6 +73,9 @@ class TestEnd(JournalTest):
         self.assertEqual(self.json('status')['last_job']['operation'], OPERATION)
         self.assertRegex(self.said('offsets'), r'(?m)^tool in the collet: mill\.yaml with flute, gash, %s$' % OPERATION)
         self.assertEqual(self.judged(), [(name, 'passed', []) for name in ('flute', 'gash', OPERATION)])
+        self.grind(0, 'report', '--last', '--from', self.history, '--output', self.folder + '/end.html')
+        with open(self.folder + '/end.html', encoding='utf-8') as page:
+            self.assertIn('<figure id="end"', page.read())
 
     def hold_below(self, run, tooth):
         """Holds a run in the midst of a tooth's stroke, deeper than 2 mm into the end."""

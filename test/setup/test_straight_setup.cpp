@@ -107,14 +107,14 @@ TEST(StraightSetup, SaysHowFarYGoes) {
     double y, face;  // [mm]
   };
   for (const auto& [kind, teeth, y, face] :
-       {Row{OperationKind::kPrimaryEnd, 2, -4.95, 0}, Row{OperationKind::kPrimaryEnd, 3, -6.90, 13.8},
-        Row{OperationKind::kPrimaryEnd, 4, -6.43, -12.1}, Row{OperationKind::kSecondaryEnd, 4, -5.24, -5.3}}) {
+       {Row{OperationKind::kPrimaryEnd, 3, -6.90, 13.8}, Row{OperationKind::kPrimaryEnd, 4, -6.43, -12.1},
+        Row{OperationKind::kSecondaryEnd, 4, -5.24, -5.3}}) {
     const JobSetup setup = solved(endJob(kind, teeth));
     const GrindProcess& p = setup.job.process();
     const JobSetup::Straight& straight = setup.straight.value();
     EXPECT_NEAR(straight.last.to[kY] / kMillimetre, y, 0.05) << teeth;
     EXPECT_NEAR(straight.past_axis, -straight.last.to[kY] - kRadius, 1e-12);
-    EXPECT_NEAR((p.setup_height - kWidth / 2 * std::cos(p.setup_swivel)) / kMillimetre, face, teeth > 2 ? 0.5 : 1.5);
+    EXPECT_NEAR((p.setup_height - kWidth / 2 * std::cos(p.setup_swivel)) / kMillimetre, face, 0.5);
   }
   const JobSetup gash = solved(endJob(OperationKind::kGash));
   const double y = 0.15 * kMillimetre - kRadius - kWheelRadius * (1 - std::cos(45 * kDegree));

@@ -63,9 +63,10 @@ struct EndMill {
     add(gash, gashStroke(tooth, gash.normal, 45 * kDegree, -0.2 * kMillimetre, thin, clear), thin);
     const double land = 0.4 * kMillimetre, clearance = 8 * kDegree;
     const OnTooth land_end(land * std::tan(clearance), tooth.radius, land);
-    for (const auto& [angle, through] : {std::pair(clearance, OnTooth(0, tooth.radius, 0)), {18 * kDegree, land_end}}) {
-      const ToothPlane flank{SurfaceKind::kEndFlank, endNormal(angle, dish), through};
-      add(flank, endStroke(tooth, flank.normal, through, flat, gap, clear), flat);
+    for (const ToothPlane& flank :
+         {ToothPlane{SurfaceKind::kEndPrimary, endNormal(clearance, dish), {0, tooth.radius, 0}},
+          ToothPlane{SurfaceKind::kEndSecondary, endNormal(18 * kDegree, dish), land_end}}) {
+      add(flank, endStroke(tooth, flank.normal, flank.through, flat, gap, clear), flat);
     }
     const double x = 0.3 * kMillimetre;
     const ToothPlane chamfer{SurfaceKind::kChamfer,
@@ -228,8 +229,9 @@ TEST(SolidEnd, HasFacesInThePlanesOfItsTeeth) {
       EXPECT_GT(sum, 0.01e-6) << face.first << ' ' << face.second;
       EXPECT_NEAR(sum, (areas.in_plane[{face.first, 0}]), 0.02 * sum);  // all teeth are alike
     }
-    EXPECT_GT(areas.rest[SurfaceKind::kGash], 1e-6);      // bottoms
-    EXPECT_LT(areas.rest[SurfaceKind::kEndFlank], 1e-6);  // of rims
+    EXPECT_GT(areas.rest[SurfaceKind::kGash], 1e-6);  // bottoms
+    // Of rims.
+    EXPECT_LT(areas.rest[SurfaceKind::kEndPrimary] + areas.rest[SurfaceKind::kEndSecondary], 1e-6);
     EXPECT_EQ(areas.rest[SurfaceKind::kChamfer], 0);
   }
 }
@@ -239,9 +241,13 @@ TEST(SolidEnd, OfAJobHasTheFacesOfItsOperations) {
   const std::vector<std::pair<std::string, std::map<SurfaceKind, int>>> rows{
       {"secondary", {}},
       {"gash", {{SurfaceKind::kGash, 4}}},
-      {"end_primary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 4}}},
-      {"end_secondary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 8}}},
-      {"chamfer", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndFlank, 8}, {SurfaceKind::kChamfer, 4}}}};
+      {"end_primary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndPrimary, 4}}},
+      {"end_secondary", {{SurfaceKind::kGash, 4}, {SurfaceKind::kEndPrimary, 4}, {SurfaceKind::kEndSecondary, 4}}},
+      {"chamfer",
+       {{SurfaceKind::kGash, 4},
+        {SurfaceKind::kEndPrimary, 4},
+        {SurfaceKind::kEndSecondary, 4},
+        {SurfaceKind::kChamfer, 4}}}};
   for (const auto& [operation, faces] : rows) {
     SCOPED_TRACE(operation);
     const EndVolumes end = endVolumesOf(withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation))));
@@ -274,7 +280,7 @@ TEST(SolidEnd, ASharedPlaneHasOneFace) {
   const auto behind = [](const Vector3d& normal, double offset) { return Plane{normal, offset}; };
   const double depth = 2 * kMillimetre;
   const Plane front = behind({-1, 0, 0}, -depth);
-  const RemovedVolume low{{front, behind({0, -1, 0}, -kMillimetre)}, {}, SurfaceKind::kEndFlank, 0};
+  const RemovedVolume low{{front, behind({0, -1, 0}, -kMillimetre)}, {}, SurfaceKind::kEndPrimary, 0};
   const RemovedVolume high{{front, behind({0, 1, 0}, -kMillimetre)}, {}, SurfaceKind::kChamfer, 1};
   const CutterSolid solid = cutterSolid(ground, kExtent, kCoarse, {low, high});
   EXPECT_EQ(openEdges(solid), 0u);
@@ -282,7 +288,7 @@ TEST(SolidEnd, ASharedPlaneHasOneFace) {
   EXPECT_NEAR(solid.volume(), rest.volume(), 5e-3 * rest.volume());
   double faces = 0;
   for (const SolidTriangle& t : solid.triangles) {
-    if (t.kind == SurfaceKind::kEndFlank || t.kind == SurfaceKind::kChamfer) faces += area(solid, t);
+    if (t.kind == SurfaceKind::kEndPrimary || t.kind == SurfaceKind::kChamfer) faces += area(solid, t);
   }
   double section = 0;
   for (const SolidTriangle& t : cutterSolid(ground, {depth, kLength}, kFine).triangles) {

@@ -28,7 +28,8 @@ enum class SurfaceKind : std::uint8_t {
   kPrimary,
   kEndFace,
   kGash,
-  kEndFlank,
+  kEndPrimary,
+  kEndSecondary,
   kChamfer,
   kShank,
   kCut

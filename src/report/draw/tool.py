@@ -6,10 +6,16 @@ import sys
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, PathPatch
+from matplotlib.path import Path
 
 from document import Output, run
-from style import CURVE, INK, LIMIT, METAL, NARROW, TEETH, THEORY, new_figure, picture, svg_of
+from style import (BLANK, CHAMFER, CURVE, FLUTE, GASH, INK, LIMIT, METAL, NARROW, PRIMARY, SECONDARY, TEETH, THEORY, new_figure,
+                   picture, svg_of)
 
+FACES = {'primary': ('primary flank', PRIMARY), 'secondary': ('secondary flank', SECONDARY), 'chamfer': ('chamfer', CHAMFER),
+         'gash': ('gash', GASH), 'blank': ('blank', BLANK)}
 LEAST_SPAN = 0.002  # least span of a picture's figures; a smaller one is rounding
 
 
@@ -58,6 +64,37 @@ def draw_section(axes, tool, section):
         section['x_mm'], text(tooth['rake_deg'], 'deg', tooth['asked_rake_deg']),
         text(section['core_diameter_mm'], 'mm', section['asked_core_diameter_mm']), land_text(tool, tooth)), loc='left')
     axes.set(aspect='equal', anchor='S', xlim=(-1.32 * radius, 1.32 * radius), ylim=(-1.15 * radius, 1.32 * radius))
+    axes.set_axis_off()
+
+
+def draw_end(axes, view, legend_place):
+    """Draws the view of the end: Z up and Y to the left, turned until the first tooth is on top."""
+    turn = math.radians(view['edge_deg'] - 90)
+    cos, sin = math.cos(turn), math.sin(turn)
+
+    def turned(line):
+        y, z = np.array(line).T
+        return np.column_stack([-y * cos - z * sin, -y * sin + z * cos])
+
+    radius, uncut = view['diameter_mm'] / 2, view['uncut_diameter_mm'] / 2
+    circle = np.linspace(0, 2 * np.pi, 181)
+    axes.fill(radius * np.cos(circle), radius * np.sin(circle), facecolor=FLUTE, edgecolor=INK, linewidth=0.6)
+    for region in view['regions']:
+        path = Path.make_compound_path(*(Path(turned(line), closed=True) for line in region['outlines_mm']))
+        axes.add_patch(PathPatch(path, facecolor=FACES[region['face']][1], edgecolor=INK, linewidth=0.3))
+    for edge in view['edges']:
+        axes.plot(*turned(edge['line_mm']).T, color=INK, linewidth=2, solid_capstyle='round')
+    shown = {region['face'] for region in view['regions']}
+    legend = [Patch(facecolor=colour, edgecolor=INK, linewidth=0.3, label=words)
+              for face, (words, colour) in FACES.items() if face in shown]
+    legend.append(Patch(facecolor=FLUTE, edgecolor=INK, linewidth=0.3, label='flute'))
+    if view['edges']:
+        legend.append(Line2D([], [], color=INK, linewidth=2, label='cutting edge'))
+    if uncut > 0:
+        axes.plot(uncut * np.cos(circle), uncut * np.sin(circle), color=INK, linestyle='--')
+        legend.append(Line2D([], [], color=INK, linestyle='--', label='uncut Ø %g' % (2 * uncut)))
+    axes.legend(handles=legend, fontsize=8, title='The end, Ø %g mm' % (2 * radius), title_fontsize=8, **legend_place)
+    axes.set(aspect='equal', anchor='S', xlim=(-1.05 * radius, 1.05 * radius), ylim=(-1.05 * radius, 1.05 * radius))
     axes.set_axis_off()
 
 
@@ -147,6 +184,11 @@ def tool_pictures(tool):
                                 'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the %s asked. The '
                                 '%s is dimensioned along the outer circle.' %
                                 (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
+    if tool['end_view']:
+        figure = new_figure(2.8)
+        draw_end(figure.add_subplot(), tool['end_view'], {'loc': 'center left', 'bbox_to_anchor': (1, 0.5)})
+        pictures.append(picture('end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
+                                'dashed: the diameter in which edges may be missing.', figure))
     for curve in tool['curves']:
         figure = new_figure(2.6)
         axes = figure.add_subplot(xlabel='X [mm]')
@@ -161,12 +203,15 @@ def draw_file(tool):
     """All pictures of a tool in one SVG."""
     curves = tool['curves']
     heights = 4.1, 1.5 * len(curves)
-    figure = Figure((9, sum(heights) + 0.1), constrained_layout=True, facecolor='white')
+    figure = Figure((12 if tool['end_view'] else 9, sum(heights) + 0.1), constrained_layout=True, facecolor='white')
     above, below = figure.add_gridspec(2, 1, height_ratios=heights)
     figure.suptitle('%s: %s' % (tool['source'], tool['tool']), fontsize=10)
     shown = shown_sections(tool)
-    for place, section in zip(above.subgridspec(1, len(shown)), shown):
+    places = list(above.subgridspec(1, len(shown) + (1 if tool['end_view'] else 0)))
+    for place, section in zip(places, shown):
         draw_section(figure.add_subplot(place), tool, section)
+    if tool['end_view']:
+        draw_end(figure.add_subplot(places[-1]), tool['end_view'], {'loc': 'lower center', 'bbox_to_anchor': (0.5, 1), 'ncol': 2})
     panels = []
     for place, curve in zip(below.subgridspec(len(curves), 1), curves):
         panels.append(figure.add_subplot(place, sharex=panels[0] if panels else None))

@@ -319,7 +319,7 @@ Json outline(const GroundTool& tool, double x) {
 }
 
 /// A line in steps of 10 nm, so that it is short.
-Json lineOf(const EndLine& line) {
+Json lineOf(const EndPolyline& line) {
   const auto rounded = [](double length) { return std::round(length / kMillimetre * 1e5) / 1e5; };
   Json points = Json::array();
   for (const Eigen::Vector2d& point : line) points.push_back({rounded(point.x()), rounded(point.y())});
@@ -341,7 +341,7 @@ Json toJson(const GroundTool& tool, const EndView& view) {
   Json regions = Json::array(), edges = Json::array();
   for (const EndRegion& region : view.regions) {
     Json outlines = Json::array();
-    for (const EndLine& outline : region.outlines) outlines.push_back(lineOf(outline));
+    for (const EndPolyline& outline : region.outlines) outlines.push_back(lineOf(outline));
     regions.push_back({{"face", nameOf(region.kind)}, {"tooth", region.tooth}, {"outlines_mm", outlines}});
   }
   for (const EndEdge& edge : view.edges) edges.push_back({{"tooth", edge.tooth}, {"line_mm", lineOf(edge.line)}});

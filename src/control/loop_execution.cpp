@@ -37,7 +37,7 @@ Answer ControlLoop::answerTo(MachineEvent event, Refusal refusal) const {
   const Interlock interlock = isSwitch(event) ? Interlock::kProbe : job_.openInterlock();
   const AxisLimits& limits = now_.config.machine.limits;
   const LiftTarget lift = liftTarget();
-  const int axis = lift.x < limits.min_position[kX] ? kX : kY;
+  const int axis = lift.y <= limits.max_position[kY] && lift.x < now_.sample.command[kX] ? kX : kY;
   Answer answer{event,
                 now_.sample.state,
                 refusal,
@@ -165,14 +165,14 @@ Refusal ControlLoop::lift() {
   if (!(to.y <= limits.max_position[kY])) return Refusal::kTooFar;
   if (backs_off && !(to.x >= limits.min_position[kX])) return Refusal::kTooFar;
   now_.wheel.beginLift(to);
+  lift_to_ = to;
   beginLiftAlong(backs_off ? kX : kY);
   now_.apply(MachineEvent::kLift);
   return Refusal::kNone;
 }
 
 void ControlLoop::beginLiftAlong(int axis) {
-  const LiftTarget target = liftTarget();
-  const double to = axis == kX ? target.x : std::max(now_.sample.command[kY], target.y);
+  const double to = axis == kX ? lift_to_.x : std::max(now_.sample.command[kY], lift_to_.y);
   now_.axis_move.begin(MoveKind::kLift, now_.sample.command, axis, to, now_.config.machine.limits.max_velocity[axis]);
   now_.limit_check.restart();
   // A lift is allowed wherever the other axes have come to rest; without the reference their limits mean nothing.
@@ -190,7 +190,7 @@ Refusal ControlLoop::setSwivel(double angle) {
 }
 
 LiftTarget ControlLoop::liftTarget() const {
-  return now_.wheel.liftTarget(now_.sample.drive.homed, now_.sample.command);
+  return now_.wheel.liftTarget(y_homed_, now_.sample.drive.homed, now_.sample.command);
 }
 
 }  // namespace grinder

@@ -160,13 +160,17 @@ GrindProgram::GrindProgram(const ValidJob& job, const Machine& machine, const Ru
                                        run.first.tooth, run.first.pass, last.tooth, last.pass));
   }
 
-  constexpr std::ptrdiff_t moves_per_pass = 7;
-  moves_.reserve(static_cast<std::size_t>((passes.end() - begin) * moves_per_pass + 2));
+  constexpr std::ptrdiff_t moves_per_pass = 6;
+  moves_.reserve(static_cast<std::size_t>((passes.end() - begin) * moves_per_pass + 3));
   const Axes park = machine.park - run.offset;
   Axes at = start();
   // After a job that did not finish, the wheel may be in a flute of a different cutter: only the park position is clear
   // of every cutter.
   if (at[kY] < park[kY]) {
+    if (at[kX] > clear_x_) {
+      at[kX] = clear_x_;
+      append(MoveKind::kLift, run.first, at);
+    }
     at[kY] = park[kY];
     append(MoveKind::kLift, run.first, at);
   }

@@ -101,8 +101,9 @@ std::optional<EndLine::Place> EndPasses::placeOf(const Setpoint& setpoint, const
   const ToothPass pass{setpoint.tooth, setpoint.pass};
   if (!(pass_ == pass)) {
     const auto is_this = [&](const JobPass& other) { return other.place == pass; };
-    const JobPass& found = *std::find_if(job_.passes().begin(), job_.passes().end(), is_this);
-    line_.emplace(job_, pass.tooth, found.depth, found.wear);
+    const auto found = std::find_if(job_.passes().begin(), job_.passes().end(), is_this);
+    if (found == job_.passes().end()) return std::nullopt;
+    line_.emplace(job_, pass.tooth, found->depth, found->wear);
     pass_ = pass;
   }
   const std::optional<EndLine::Place> place = line_->placeOf(actual);

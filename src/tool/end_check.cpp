@@ -15,7 +15,7 @@ namespace {
 constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
 constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
 constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
-constexpr double kTouched = 5e-6;    ///< of a periphery's edge that counts as untouched, and of a heel [m]
+constexpr double kTouched = 5e-6;    ///< length of a periphery's edge, and height of a heel, that do not count [m]
 constexpr double kInside = 1e-6;     ///< part of the radius by which the periphery's edge is looked for within it
 constexpr double kAlike = 1e-9;      ///< difference of pitch and wear between teeth that are alike [m], [rad]
 
@@ -25,7 +25,7 @@ struct EndPlace {
   EndSection at;
   double uncut = 0;      ///< diameter outside which the edge is whole [m]
   double periphery = 0;  ///< see ToolFigure::kPeripheryTaken [m]
-  double drag = 0;       ///< see ToolFigure::kHeelDrag [m]
+  FigureValue drag;      ///< by which the end stands in front of the tooth's edge behind it [m]
   std::optional<ChamferFigures> chamfer;
 };
 
@@ -62,7 +62,7 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
     {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
-    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return FigureValue(p.drag); },
+    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.drag; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
@@ -132,7 +132,8 @@ class EndCheck {
   void measure(std::size_t tooth) {
     EndPlace place{cutter_, {}, 0, periphery(tooth), {}};
     const double radius = cutter_.end_diameter / 2;
-    const bool has_edge = hasEdges(job_, next_);
+    const bool has_edge = hasEdges(job_, next_), all_flanks = hasAllFlanks(*job_);
+    const double pitch = endToothOf(*job_, static_cast<int>(tooth)).pitch;
     const double whole = has_edge ? end_.wholeFrom(tooth).value_or(radius) : 0;
     place.uncut = 2 * whole;
     if (job_->hasGround(OperationKind::kChamfer)) place.chamfer = end_.chamfer(tooth);
@@ -142,8 +143,7 @@ class EndCheck {
       const double r = inner + (outer - inner) * i / (kEndSections - 1);
       place.at = has_edge ? end_.section(tooth, r) : EndSection{};
       place.at.r = r;
-      const double pitch = endToothOf(*job_, static_cast<int>(tooth)).pitch;
-      if (place.at.edge && hasAllFlanks(*job_)) place.drag = end_.heelDrag(tooth, place.at, pitch);
+      place.drag = place.at.edge && all_flanks ? FigureValue(end_.heelDrag(tooth, place.at, pitch)) : std::nullopt;
       if (!has_edge) place.at.rake = end_.rake(tooth, r, (radius - r) * std::tan(cutter_.end_dish), 0);
       take(place, tooth);
     }

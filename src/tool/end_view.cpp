@@ -70,8 +70,8 @@ Faces facesOf(const CutterSolid& solid) {
 }
 
 /// Seen along the axis, without corners on straight lines.
-EndLine projected(const std::vector<Corner>& corners) {
-  EndLine line;
+EndPolyline projected(const std::vector<Corner>& corners) {
+  EndPolyline line;
   for (const Corner& corner : corners) {
     const Vector2d next(corner[1], corner[2]);
     while (line.size() > 1) {
@@ -85,7 +85,7 @@ EndLine projected(const std::vector<Corner>& corners) {
   return line;
 }
 
-double areaOf(const EndLine& outline) {
+double areaOf(const EndPolyline& outline) {
   double twice = 0;
   for (std::size_t i = 1; i < outline.size(); ++i) {
     twice += outline[i - 1].x() * outline[i].y() - outline[i - 1].y() * outline[i].x();
@@ -145,7 +145,7 @@ std::vector<EndRegion> regionsOf(std::map<Face, Chains> borders) {
     depth = sum / static_cast<double>(chains.size());
     region = {face.kind, face.tooth, {}};
     while (!chains.empty()) {
-      EndLine outline = projected(take(chains, chains.begin()->first));
+      EndPolyline outline = projected(take(chains, chains.begin()->first));
       if (std::abs(areaOf(outline)) > kSliver) region.outlines.push_back(std::move(outline));
     }
     if (region.outlines.empty()) by_depth.pop_back();
@@ -167,7 +167,7 @@ std::vector<EndEdge> edgesOf(const Faces& faces) {
   std::vector<EndEdge> edges;
   for (auto& [tooth, chains] : of_teeth) {
     while (!chains.empty()) {
-      EndLine line = projected(take(chains, beginOf(chains)));
+      EndPolyline line = projected(take(chains, beginOf(chains)));
       if (line.front().norm() > line.back().norm()) std::reverse(line.begin(), line.end());
       edges.push_back({tooth, std::move(line)});
     }

@@ -19,8 +19,8 @@ constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake
 /// Width of what may be left of the blank's end in front of a primary flank, per radius: a blank without stock is not
 /// quite reached where an axis is off by the rounding of its encoder.
 constexpr double kBlunt = 2e-3;
-constexpr double kHeelStep = 3 * units::kDegree;
-constexpr double kInnermost = 1e-3;  ///< least radius at which an edge is looked for, per radius
+constexpr double kHeelStep = 3 * units::kDegree;  ///< greatest step along a heel
+constexpr double kInnermost = 1e-3;               ///< least radius at which an edge is looked for, per radius
 
 bool holds(const std::vector<Range>& ranges, double x) {
   return std::any_of(ranges.begin(), ranges.end(),
@@ -146,17 +146,17 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
   section.second_clearance = std::atan(slope(tooth, section.r, end));
 }
 
-/// A little below the edge, the rake face is between what the gash removed and the tooth.
 double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double pitch) const {
   double drag = 0;
-  const double from = std::atan2(section.behind, section.r) + kHeelStep;
-  for (double turn = from; turn < pitch - kHeelStep; turn += kHeelStep) {
+  const double step = std::min(kHeelStep, kStep * radius_ / section.r), edge = std::atan2(section.behind, section.r);
+  for (double turn = edge + kNearby * radius_ / section.r; turn < pitch - step; turn += step) {
     const double x = surface(rayAt(section.r, tooth_angles_[tooth] + hand_ * turn)).x;
     drag = std::max(drag, *section.edge - x);
   }
   return drag;
 }
 
+/// A little below the edge, the rake face is between what the gash removed and the tooth.
 std::optional<double> GroundEnd::rake(std::size_t tooth, double r, double x, double behind) const {
   const double depth = kRakeDepth * radius_;
   const auto is_tooth = [&](double at) { return !isRemoved(tooth, r, at, x + depth, By::kAny); };

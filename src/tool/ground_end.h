@@ -66,6 +66,7 @@ class GroundEnd {
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
   /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.
+  /// What is narrower than a fiftieth of the radius may be missed.
   /// @param section of the tooth, with an edge.
   /// @param pitch angle to the next tooth [rad].
   double heelDrag(std::size_t tooth, const EndSection& section, double pitch) const;

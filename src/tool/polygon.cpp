@@ -33,7 +33,7 @@ Vector3d crossing(const Plane& plane, const Vector3d& a, const Vector3d& b) {
 }
 
 /// The corners other than the first, so that all four are an even permutation.
-constexpr std::array<std::array<std::size_t, 3>, 4> kOthers{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
+constexpr std::array<std::array<std::size_t, 3>, 4> kOtherCorners{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 /// The convex polygon of points in a plane.
 Polygon around(std::vector<Vector3d> points, const Vector3d& normal) {
@@ -68,11 +68,11 @@ Polygon section(const TetrahedronCorners& corners, const Plane& plane) {
   if (in_front == 0 || in_front == 4) return {};
   if (in_front != 2) {
     const auto i = static_cast<std::size_t>(std::find(front.begin(), front.end(), in_front == 1) - front.begin());
-    const auto [p, q, r] = kOthers[i];
+    const auto [p, q, r] = kOtherCorners[i];
     return in_front == 1 ? Polygon{cut(i, p), cut(i, r), cut(i, q)} : Polygon{cut(i, p), cut(i, q), cut(i, r)};
   }
   const auto i = static_cast<std::size_t>(std::find(front.begin(), front.end(), true) - front.begin());
-  std::array<std::size_t, 3> others = kOthers[i];
+  std::array<std::size_t, 3> others = kOtherCorners[i];
   while (!front[others[0]]) std::rotate(others.begin(), others.begin() + 1, others.end());
   const auto [k, p, q] = others;
   return {cut(i, p), cut(k, p), cut(k, q), cut(i, q)};

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 constexpr double kSamePoint = 1e-9;  ///< distance up to which corners are one, and one is on an edge [m]
 constexpr int kRounds = 4;           ///< an edge that is divided may come to lie on others
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 /// Finds the first of the points that are one.
 class Welder {
@@ -42,13 +42,13 @@ class Welder {
         other[i] += side[i];
         is_new = is_new && side[i] != 0;
       }
-      const std::uint32_t found = is_new ? find(other, point) : kNone;
-      if (found != kNone) return found;
+      const std::uint32_t found = is_new ? find(other, point) : kNoVertex;
+      if (found != kNoVertex) return found;
     }
     const auto index = static_cast<std::uint32_t>(points_.size());
     points_.push_back(point);
     const auto [in_cell, is_first] = first_.emplace(keyOf(cell), index);
-    next_.push_back(is_first ? kNone : in_cell->second);
+    next_.push_back(is_first ? kNoVertex : in_cell->second);
     in_cell->second = index;
     return index;
   }
@@ -71,10 +71,10 @@ class Welder {
   }
   std::uint32_t find(const std::array<std::int64_t, 3>& cell, const Vector3d& point) const {
     const auto found = first_.find(keyOf(cell));
-    for (std::uint32_t i = found == first_.end() ? kNone : found->second; i != kNone; i = next_[i]) {
+    for (std::uint32_t i = found == first_.end() ? kNoVertex : found->second; i != kNoVertex; i = next_[i]) {
       if ((points_[i] - point).cwiseAbs().maxCoeff() <= kSamePoint) return i;
     }
-    return kNone;
+    return kNoVertex;
   }
 
   std::vector<Vector3d> points_;
@@ -224,14 +224,14 @@ void dropChips(CutterSolid& solid) {
 
 void closeSeams(CutterSolid& solid) {
   Welder welder(solid.vertices.size());
-  std::vector<std::uint32_t> index(solid.vertices.size(), kNone);
+  std::vector<std::uint32_t> index(solid.vertices.size(), kNoVertex);
   std::vector<SolidTriangle> triangles;
   triangles.reserve(solid.triangles.size());
   for (const SolidTriangle& t : solid.triangles) {
     std::array<std::uint32_t, 3> v{};
     for (std::size_t i = 0; i < 3; ++i) {
       std::uint32_t& known = index[t.vertices[i]];
-      if (known == kNone) known = welder.add(solid.vertices[t.vertices[i]]);
+      if (known == kNoVertex) known = welder.add(solid.vertices[t.vertices[i]]);
       v[i] = known;
     }
     push(triangles, t, v);

@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kSides = 63;                 ///< planes of a volume that have a bit of their own
-constexpr std::uint64_t kOthers = 1ull << kSides;  ///< the bit of all other planes
-constexpr double kSamePlane = 1e-11;               ///< difference between planes that are the same [m], [1]
+constexpr std::size_t kSides = 63;                      ///< planes of a volume that have a bit of their own
+constexpr std::uint64_t kOtherPlanes = 1ull << kSides;  ///< the bit of all other planes
+constexpr double kSamePlane = 1e-11;                    ///< difference between planes that are the same [m], [1]
 
 /// The planes that bound a convex part of a box.
 /// @param part gets the part in front of all planes.
@@ -103,9 +103,9 @@ SolidCut::SolidCut(const std::vector<RemovedVolume>& volumes, const Box& box)
 
 void SolidCut::findSides(const Vector3d& at, std::uint64_t* sides) const noexcept {
   for (const RemovedVolume& volume : volumes_) {
-    std::uint64_t behind = volume.hollow.empty() ? 0 : kOthers;
+    std::uint64_t behind = volume.hollow.empty() ? 0 : kOtherPlanes;
     for (std::size_t i = 0; i < volume.body.size(); ++i) {
-      if (!(volume.body[i].height(at) > 0)) behind |= i < kSides ? 1ull << i : kOthers;
+      if (!(volume.body[i].height(at) > 0)) behind |= i < kSides ? 1ull << i : kOtherPlanes;
     }
     *sides++ = behind;
   }
@@ -114,7 +114,7 @@ void SolidCut::findSides(const Vector3d& at, std::uint64_t* sides) const noexcep
 std::optional<SolidCut::Touched> SolidCut::touched(std::initializer_list<const std::uint64_t*> corners) const {
   Touched found;
   for (std::size_t i = 0; i < volumes_.size(); ++i) {
-    std::uint64_t all = ~kOthers, any = 0;
+    std::uint64_t all = ~kOtherPlanes, any = 0;
     for (const std::uint64_t* corner : corners) {
       all &= corner[i];
       any |= corner[i];

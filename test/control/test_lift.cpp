@@ -319,8 +319,8 @@ class RoundTheWork {
  public:
   static constexpr double kClearX = 0.002, kBack = 0.005, kHeight = 0.011;
 
-  explicit RoundTheWork(bool homed, double back = kBack)
-      : rig(machineConfig(), Wheel{true, kClearanceHeight, kHeight, false, true, kClearX, back}) {
+  explicit RoundTheWork(bool homed, double back = kBack, bool y_doubted = false)
+      : rig(machineConfig(), Wheel{true, kClearanceHeight, kHeight, y_doubted, true, kClearX, back}) {
     rig.drive.status.homed = homed;
     rig.drive.position = {kClearX + 0.004, -0.008, 0, 0};
     rig.enable();
@@ -368,6 +368,22 @@ TEST(AWheelRoundTheWork, ThatHasBackedOffMayBeLiftedByHand) {
 TEST(AWheelRoundTheWork, WithoutTheReferenceBacksOffByTheDistanceOfTheJob) {
   RoundTheWork wheel(false);
   wheel.expectLifted(wheel.from[kX] - RoundTheWork::kBack, wheel.from[kY] + RoundTheWork::kHeight);
+}
+
+TEST(AWheelRoundTheWork, WhoseYIsDoubtedBacksOffToWhereXIsClear) {
+  RoundTheWork wheel(true, RoundTheWork::kBack, true);
+  wheel.expectLifted(RoundTheWork::kClearX, wheel.from[kY] + RoundTheWork::kHeight);
+}
+
+TEST(AWheelRoundTheWork, IsLiftedToWhereItWasToGoAlsoIfTheReferenceIsLostMeanwhile) {
+  RoundTheWork wheel(true);
+  auto& rig = wheel.rig;
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  rig.run(5);
+  rig.drive.status.homed = false;
+  rig.runUntil(S::kReady);
+  EXPECT_EQ(rig.last().command[kX], RoundTheWork::kClearX);
+  EXPECT_EQ(rig.last().command[kY], kClearanceHeight);
 }
 
 TEST(AWheelRoundTheWork, IsNotLiftedOnceAStopCameWhileItBackedOff) {

@@ -115,7 +115,11 @@ class TestRecords(gc.OwnNode):
         head, *rows = [re.split('  +', line) for line in done.stdout.splitlines()]
         self.assertEqual(head, ['start', 'job', 'tool', 'outcome', 'strokes', 'duration', 'holds', 'verdict'])
         tool = 'D 10 mm, cone 8 deg, spiral 30 deg, rake 8 deg, 2 teeth'
-        for row, record, name, strokes in zip(rows, (first, second), ('two.yaml', '-'), ('4 of 4', '1 of 4')):
+        # A cancel comes when a client of a busy computer gets to it.
+        complete = [sum(s['complete'] for s in record['strokes']) for record in (first, second)]
+        self.assertEqual(complete[0], 4)
+        self.assertIn(complete[1], (1, 2, 3))
+        for row, record, name, strokes in zip(rows, (first, second), ('two.yaml', '-'), ('%d of 4' % count for count in complete)):
             local = time.strftime('%Y-%m-%d %H:%M:%S', time.gmtime(seconds(record['started']) + 3600))
             self.assertEqual(row[:5] + row[6:7], [local, name, tool, record['outcome'], strokes, '0'])
             self.assertAlmostEqual(float(row[5].split()[0]), seconds(record['ended']) - seconds(record['started']), delta=0.051)
@@ -130,7 +134,7 @@ class TestRecords(gc.OwnNode):
                                            'wheel', 'dressed', 'wear_mm', 'outcome', 'reason', 'strokes', 'passes', 'duration_s', 'holds',
                                            'setpoints', 'lost', 'verdict', 'verdict_because'])
         for entry, record, figures in zip(listed, (first, second), (('two.yaml', 'done', '', 4, 4, 0, first['verdict']),
-                                                                    ('', 'canceled', second['reason'], 1, 4, 0, 'failed'))):
+                                                                    ('', 'canceled', second['reason'], complete[1], 4, 0, 'failed'))):
             self.assertEqual([entry[key] for key in ('file', 'started')], [os.path.join(self.folder, record['file']), record['started']])
             self.assertEqual(tuple(entry[key] for key in ('job', 'outcome', 'reason', 'strokes', 'passes', 'holds', 'verdict')), figures)
         self.check_judged_again()

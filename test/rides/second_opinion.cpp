@@ -11,6 +11,7 @@ namespace second_opinion {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr Real kRest = 10e-6L;  ///< how far before its end an axis may rest that leads out of the work [m]
 
 std::string text(const char* what, int axis, Real value, Real allowed) {
   std::ostringstream out;
@@ -159,9 +160,7 @@ Real Watch::clearHeight() const {
 /// Whatever a job leaves in the work goes out of it, and nowhere else.
 void Watch::checkWayOut(const Row& row) {
   if (!row.moves && !row.free) return;
-  // An axis may rest a little below where it was lifted to.
-  constexpr Real rest = 10e-6L;
-  const Real y = row.free ? row.y + rest : row.at[1] - row.y_off;
+  const Real y = row.free ? row.y + kRest : row.at[1] - row.y_off;
   if (y - asked_.offset_y >= clearHeight() - noiseOf(1)) {
     progress_.in_work = progress_.entered = false;
   } else if (row.of_job) {
@@ -180,7 +179,7 @@ bool Watch::risesFrom(const Point& from, const Point& to) const {
 /// Up; or back along X, before it rises from round the work.
 bool Watch::goesOut(const Point& from, const Point& to, Real offset_x) const {
   const bool is_round = asked_.round_work && progress_.entered;
-  if (risesFrom(from, to)) return !is_round || to[1] == from[1] || from[0] - offset_x <= asked_.clear_x + noiseOf(0);
+  if (risesFrom(from, to)) return !is_round || to[1] == from[1] || from[0] - offset_x <= asked_.clear_x + kRest;
   return asked_.round_work && to[0] <= from[0] && to[1] == from[1] && to[2] == from[2] && to[3] == from[3];
 }
 

@@ -35,7 +35,8 @@ struct Asked {
   std::vector<Tooth> teeth;
   std::vector<Pass> passes;
   Real from = 0, to = 0;  ///< X of a stroke's ends
-  /// The wheel of straight strokes goes round the work: it may rise out of it only where X is no more than that.
+  /// The wheel of straight strokes goes round the work: it may rise out of it only where X is
+  /// `clear_x` at most.
   bool round_work = false;
   Real clear_x = 0;
   Real clearance = 0;               ///< above the surface, at which only strokes go across

@@ -119,7 +119,7 @@ TEST(EndCheck, NothingMayStandInFrontOfTheEdgesOfTwoTeeth) {
       change(job);
     }));
   };
-  const CutterCheck wide = with_gash(35, kShipped);
+  const CutterCheck wide = with_gash(30, kShipped);
   EXPECT_TRUE(wide.reasons.empty()) << text(wide.reasons);
   EXPECT_EQ(largest(wide, ToolFigure::kHeelDrag), 0);
   const CutterCheck narrow = with_gash(45, [](GrindJob& job) {

@@ -61,7 +61,7 @@ const Shipped& shipped(const std::string& name, const std::string& operation = "
 
 const std::vector<const char*> kTools{"end_mill_d10_t4", "left_hand_end_mill_d8_t3"};
 
-double areaOf(const EndLine& outline) {
+double areaOf(const EndPolyline& outline) {
   double twice = 0;
   for (std::size_t i = 1; i < outline.size(); ++i) {
     twice += outline[i - 1].x() * outline[i].y() - outline[i - 1].y() * outline[i].x();
@@ -72,7 +72,7 @@ double areaOf(const EndLine& outline) {
 /// How often a region goes round a place.
 int turnsAbout(const EndRegion& region, const Vector2d& place) {
   double angle = 0;
-  for (const EndLine& outline : region.outlines) {
+  for (const EndPolyline& outline : region.outlines) {
     for (std::size_t i = 1; i < outline.size(); ++i) {
       const Vector2d a = outline[i - 1] - place, b = outline[i] - place;
       angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
@@ -140,7 +140,7 @@ TEST(EndView, PrimaryFlanksAreAsWideAsTheLand) {
     SCOPED_TRACE(name);
     const Shipped& tool = shipped(name);
     for (std::uint16_t tooth = 0; tooth < tool.job->tooth_angles.size(); ++tooth) {
-      EndLine strip;
+      EndPolyline strip;
       double widest = 0;
       const EndRegion& flank = tool.region(SurfaceKind::kEndPrimary, tooth);
       ASSERT_EQ(flank.outlines.size(), 1u);

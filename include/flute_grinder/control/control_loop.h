@@ -118,6 +118,7 @@ class ControlLoop : public RequestBox {
   JobRun job_;
   Jogging jog_;
   CommandHistory history_;
+  LiftTarget lift_to_;              ///< target of the lift in progress
   bool y_homed_ = false;            ///< the drive reports the reference, and is not homing
   bool moving_unbuffered_ = false;  ///< the axes were moving, and the drive's buffer is empty
   bool resets_ = false;             ///< the drive is commanded to clear its fault

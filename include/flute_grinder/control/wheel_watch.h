@@ -61,21 +61,23 @@ class WheelWatch {
   void forgetLift() noexcept { last_target_.reset(); }
 
   /// Target for lifting the wheel.
-  /// @param homed whether X and Y refer to the machine's reference; otherwise only the distances of the lift are known,
-  ///        and a lift that was stopped continues.
+  /// @param x_homed,y_homed whether the axis refers to the machine's reference; otherwise only the distance of the lift
+  ///        is known, and a lift that was stopped continues.
   /// @param at commanded position of the axes [m], A [rad].
-  LiftTarget liftTarget(bool homed, const Axes& at) const noexcept {
+  LiftTarget liftTarget(bool x_homed, bool y_homed, const Axes& at) const noexcept {
     // For an unknown job the target is the top of the travel, unless the wheel is already above it.
     const bool to_top = !wheel_.known && at[kY] < wheel_.clear_y;
-    if (homed) return {wheel_.back > 0 ? std::min(at[kX], wheel_.clear_x) : at[kX], wheel_.clear_y};
-    if (last_target_) return {std::min(at[kX], last_target_->x), last_target_->y};
-    return {at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
+    LiftTarget target{at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
+    if (last_target_) target = *last_target_;
+    if (x_homed) target.x = wheel_.clear_x;
+    if (y_homed) target.y = wheel_.clear_y;
+    return {wheel_.back > 0 ? std::min(at[kX], target.x) : at[kX], target.y};
   }
 
   /// Whether a motion of a single axis takes the wheel out of the work as a lift does.
   /// @param x commanded X, relative to the machine's reference [m].
   bool isWayOut(int axis, bool upward, double x) const noexcept {
-    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x;
+    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x + kBelow;
     return backs_off ? axis == kX && !upward : axis == kY && upward;
   }
 
@@ -86,7 +88,7 @@ class WheelWatch {
   }
 
   static constexpr double kSeenClear = 0.1;  ///< time for which Y must read clear [s]
-  /// How far below its target a lifted axis may rest; a tenth of the least clearance of a job [m].
+  /// How far before its target a lifted axis may rest; a tenth of the least clearance of a job [m].
   static constexpr double kBelow = 10e-6;
 
   Wheel wheel_;

@@ -52,9 +52,9 @@ struct Helix {
 
 /// The ordered moves of all teeth and passes of a job. If the wheel is lower than the park position, it first rises to
 /// that height. Then, for each pass, A is indexed, and the wheel moves above the start, descends to the clearance,
-/// plunges at feed, makes its stroke with overtravel, and retracts radially. A straight stroke along X backs off first.
-/// At the end the wheel returns to the park position. The plunge compensates for wheel wear, so the compensation never
-/// changes within a pass. All positions are in work coordinates.
+/// plunges at feed, makes its stroke with overtravel, and retracts radially. From a straight stroke along X the wheel
+/// backs off first. At the end the wheel returns to the park position. The plunge compensates for wheel wear, so the
+/// compensation never changes within a pass. All positions are in work coordinates.
 class GrindProgram {
  public:
   /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if

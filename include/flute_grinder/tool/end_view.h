@@ -11,19 +11,19 @@
 namespace grinder {
 
 /// A line in Y and Z of the cutter's frame at A = 0 [m].
-using EndLine = std::vector<Eigen::Vector2d>;
+using EndPolyline = std::vector<Eigen::Vector2d>;
 
 /// A part of the end: a tooth's gash, a flank or its chamfer, or what is left of the blank's end, which has tooth 0.
 struct EndRegion {
   SurfaceKind kind;
   std::uint16_t tooth;
-  std::vector<EndLine> outlines;  ///< closed; one about a hole runs the other way round
+  std::vector<EndPolyline> outlines;  ///< closed; one about a hole runs the other way round
 };
 
 /// A line in which a tooth's primary flank, or its chamfer, meets the face of its gash or of its flute.
 struct EndEdge {
   std::uint16_t tooth;
-  EndLine line;  ///< from the axis out
+  EndPolyline line;  ///< from the axis out
 };
 
 /// The end of a tool, projected along its axis.

@@ -131,7 +131,7 @@ def grinder():
 
 def seconds(command):
     begin = time.monotonic()
-    subprocess.run([gc.program('grind'), *command.split()], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([gc.program('grind'), *command.split()], cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return time.monotonic() - begin
 
 

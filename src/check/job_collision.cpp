@@ -53,7 +53,7 @@ std::vector<bool> outsideCut(const GrindProgram& program, const ProgramPath& pat
   for (std::size_t leg = 0; leg < path.moves.size(); ++leg) {
     const MoveKind kind = program.moves()[path.moves[leg]].kind;
     // A cup is in the cut until it has backed off along X.
-    if (program.job().plunges()) {
+    if (program.job()->comesAlongX()) {
       const bool backs_off = isUp(kind) && path.points[leg + 1][kX] < path.points[leg][kX];
       outside.push_back(!isAtFeed(kind) && !backs_off);
       continue;

@@ -116,9 +116,10 @@ GroundTool simulate(const Source& source, const std::vector<double>& at) {
 }
 
 /// Prints a measured tool. @return the exit status.
-int show(const GroundTool& tool, bool json) {
-  if (json) {
-    print(toJson(tool));
+/// @param document the tool's, for JSON.
+int show(const GroundTool& tool, const Json* document) {
+  if (document != nullptr) {
+    print(*document);
   } else {
     printText(tool);
   }
@@ -141,9 +142,10 @@ int runSimulate(const std::string& node, const SimulateOptions& options) {
     const GroundTool tool = simulate(source, at);
     if (csv) csv->write(tool);
     if (csv) csv->close();
-    const int status = show(tool, options.json);
+    const Json document = options.json || svg ? toJson(tool) : Json();
+    const int status = show(tool, options.json ? &document : nullptr);
     if (stl) writeStlFile(tool, *stl);
-    const int drawn = svg ? drawTool(text(toJson(tool)), *svg) : 0;
+    const int drawn = svg ? drawTool(text(document), *svg) : 0;
     return drawn != 0 ? drawn : status;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -12,7 +12,7 @@ Wheel wheelOf(const GrindProgram& program) {
   const double clear_y =
       std::min(program.clearanceHeight() + program.run().offset[kY], program.machine().limits.max_position[kY]);
   Wheel wheel{false, clear_y, program.clearanceHeight() - deepest};
-  if (!program.job().plunges()) return wheel;
+  if (!program.job()->comesAlongX()) return wheel;
   double farthest = program.clearX();
   for (const Move& move : program.moves()) {
     if (move.kind == MoveKind::kStroke) farthest = std::max(farthest, move.to[kX]);

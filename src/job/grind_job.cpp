@@ -197,7 +197,7 @@ void checkOperations(Checker& checker, const GrindJob& job) {
 void checkWheelSuits(Checker& checker, const GrindJob& job) {
   const GrindProcess& p = job.process();
   const bool right = job.cutter.cut == CutDirection::kRightHand, is_gash = p.kind == OperationKind::kGash;
-  const bool round_next = isEndFlank(p.kind) && !right, is_relief = isRelief(p.kind);
+  const bool round_next = job.comesAlongX(), is_relief = isRelief(p.kind);
   const auto refuse = [&](const char* path, auto choice, const char* allowed) {
     checker.refuse(ReasonKind::kNotAllowed, path, {static_cast<double>(choice), Unit::kNone}, allowed);
   };
@@ -344,6 +344,8 @@ bool GrindJob::hasGround(OperationKind kind) const {
   return std::any_of(operations.begin(), operations.begin() + operation + 1,
                      [kind](const GrindProcess& p) { return p.kind == kind; });
 }
+
+bool GrindJob::comesAlongX() const { return isEndFlank(process().kind) && cutter.cut == CutDirection::kLeftHand; }
 
 const GrindProcess* GrindJob::next() const {
   const auto next = static_cast<std::size_t>(operation) + 1;

@@ -250,7 +250,7 @@ FaceStroke ValidJob::faceStroke(int tooth, double depth, double wear) const {
   FaceStroke stroke = lastFaceStroke(content_->job, tooth, wear);
   const double deepest = content_->deepest, angle = content_->job.tooth_angles[i] + content_->edges[i].at_end;
   // A wheel that comes along X begins every pass clear of all that there was to grind.
-  stroke.from += (plunges() ? deepest : deepest - depth) * stroke.per_stock;
+  stroke.from += (content_->job.comesAlongX() ? deepest : deepest - depth) * stroke.per_stock;
   stroke.to += (deepest - depth) * stroke.per_stock;
   for (Axes* at : {&stroke.from, &stroke.to}) (*at)[kA] += angle;
   return stroke;

@@ -128,7 +128,7 @@ double clearanceOf(const ValidJob& job, const std::vector<Helix>& helices, const
 /// X before which the wheel of strokes along X is clear of the work.
 double clearXOf(const ValidJob& job) {
   double x = std::numeric_limits<double>::infinity();
-  if (!job.plunges()) return x;
+  if (!job->comesAlongX()) return x;
   for (int tooth = 0; tooth < job.teeth(); ++tooth) x = std::min(x, job.faceStroke(tooth, 0, 0).from[kX]);
   return x;
 }

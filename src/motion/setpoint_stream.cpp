@@ -176,6 +176,8 @@ bool SetpointStream::beginPair() noexcept {
 //              |    kPlunge            kLift     kPlunge: at feed, down to the stroke
 //              |       v                 |       kPath:   on, at feed again where it was left
 //   stroke  ---+-------+== kPath =====>  x  left here
+//
+// From round the work, kBackOff leads along X to in front of it before kLift.
 void SetpointStream::beginNext() noexcept {
   const bool left_stroke = next_move_ > 0 && program_->moves()[next_move_ - 1].kind == MoveKind::kStroke;
   switch (leg_) {

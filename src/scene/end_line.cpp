@@ -36,7 +36,7 @@ EndLine::EndLine(const ValidJob& job, int tooth, double depth, double wear)
   const FaceStroke stroke = job.faceStroke(tooth, depth, wear);
   const FaceWheel wheel = job.faceWheel(wear);
   a_ = stroke.to[kA];
-  rim_ = job.plunges() ? 0 : wheel.radius;
+  rim_ = job->comesAlongX() ? 0 : wheel.radius;
   spindle_ = {-std::sin(stroke.swivel), 0, std::cos(stroke.swivel)};
   const double up = is_gash_ && job->cutter.cut == CutDirection::kRightHand ? 1 : -1;
   zero_ = Vector3d(0, job->cutter.end_diameter / 2 + wheel.nominal_radius, wheel.height) +

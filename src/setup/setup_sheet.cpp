@@ -137,8 +137,7 @@ std::string whatLimitsStraight(const JobSetup& setup, const Range& swivel) {
   const JobSetup::Straight& straight = *setup.straight;
   const std::string past = format("%.3f mm %s the cutter's axis, at Y %.3f mm", std::abs(mm(straight.past_axis)),
                                   straight.past_axis < 0 ? "before" : "past", mm(straight.last.to[kY]));
-  const bool goes_round = isEndFlank(p.kind) && setup.job.cutter.cut == CutDirection::kLeftHand;
-  std::string ends = goes_round ? "goes round the next tooth, and ends " : "ends ";
+  std::string ends = setup.job.comesAlongX() ? "goes round the next tooth, and ends " : "ends ";
   if (p.kind == OperationKind::kChamfer) ends += format("%g mm beyond the flank, ", mm(kEndGap));
   return swivelText(std::min(p.setup_swivel - swivel.from, swivel.to - p.setup_swivel)) + line("rim", ends + past) +
          (isEndFlank(p.kind) ? line("next tooth", format("%g mm from the rim at the end of a stroke", mm(kEndGap)))

@@ -12,23 +12,13 @@ namespace {
 
 constexpr double kFacets = 1.5e-6;  ///< largest distance between a rim and its facets [m]
 
-EndFace faceOf(OperationKind kind) {
+SurfaceKind surfaceOf(OperationKind kind) {
   switch (kind) {
-    case OperationKind::kPrimaryEnd: return EndFace::kPrimary;
-    case OperationKind::kSecondaryEnd: return EndFace::kSecondary;
-    case OperationKind::kChamfer: return EndFace::kChamfer;
-    default: return EndFace::kGash;
+    case OperationKind::kPrimaryEnd: return SurfaceKind::kEndPrimary;
+    case OperationKind::kSecondaryEnd: return SurfaceKind::kEndSecondary;
+    case OperationKind::kChamfer: return SurfaceKind::kChamfer;
+    default: return SurfaceKind::kGash;
   }
-}
-
-SurfaceKind surfaceOf(EndFace face) {
-  switch (face) {
-    case EndFace::kPrimary: return SurfaceKind::kEndPrimary;
-    case EndFace::kSecondary: return SurfaceKind::kEndSecondary;
-    case EndFace::kChamfer: return SurfaceKind::kChamfer;
-    case EndFace::kGash: break;
-  }
-  return SurfaceKind::kGash;
 }
 
 }  // namespace
@@ -47,7 +37,7 @@ void addCuts(const ValidJob& job, const EndStrokes& strokes, std::vector<EndCut>
   for (const auto& [tooth, stroke] : strokes) {
     const auto i = static_cast<std::size_t>(tooth);
     cuts.push_back(
-        {i, faceOf(job->process().kind),
+        {i, job->process().kind,
          FaceSweep(stroke, job.faceWheel(wear[i]), wheelOf(*job).worn(wear[i]), job->cutter.end_diameter / 2, 0)});
   }
 }
@@ -75,7 +65,7 @@ EndVolumes endVolumesOf(const ValidJob& job, const EndStrokes& own) {
   EndVolumes volumes{end.blank_x, {}};
   for (const EndCut& cut : end.cuts) {
     RemovedVolume& volume = volumes.removed.emplace_back(cut.sweep.volume(kFacets));
-    volume.kind = surfaceOf(cut.face);
+    volume.kind = surfaceOf(cut.kind);
     volume.tooth = static_cast<std::uint16_t>(cut.tooth);
   }
   return volumes;

@@ -94,7 +94,7 @@ std::optional<double> FaceSweep::removedTo(const OnRay& on_ray, double x) const 
     const double to = plungedTo(ray);
     return x <= to ? std::optional(to) : std::nullopt;
   }
-  // From one leg the ray may go on into another, and back.
+  // The ray may pass the legs in either order.
   const Leg* last = nullptr;
   for (std::size_t i = 0; i < 2 * legs_.size() - 1; ++i) {
     const Leg& leg = legs_[i % legs_.size()];
@@ -187,8 +187,8 @@ Plane FaceSweep::touching(const Vector3d& outward, const Vector3d& at) const {
   return {{inward[0], inward[1] * cos - inward[2] * sin, inward[1] * sin + inward[2] * cos}, -offset};
 }
 
-/// The planes of a wheel that comes in its face's plane and goes out along Y. Between the two legs they leave out
-/// nothing that is nearer to the rim than the wheel's radius, so that no tool is there.
+/// The planes of a wheel that comes in its face's plane and goes out along Y. They also enclose the corner between the
+/// two legs, which is as far from the rim as the wheel's radius: no tool is there.
 void FaceSweep::addPlanes(double error, RemovedVolume& volume) const {
   const std::vector<ProfilePoint> outline = profile_.outline(error);
   const Vector3d up = Vector3d::UnitY();

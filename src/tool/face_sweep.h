@@ -29,7 +29,7 @@ class FaceSweep {
   std::optional<double> removedTo(const OnRay& ray, double x) const;
 
   /// What is removed of the tool, in its frame at A = 0, as between planes that touch the wheel on its way. Its face is
-  /// exact, its rim and rounded corners at most about `error` too large [m].
+  /// exact, its rim, rounded corners and recess off by at most about `error` [m].
   /// Kind and tooth of its faces are left to the caller.
   RemovedVolume volume(double error) const;
 

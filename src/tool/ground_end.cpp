@@ -27,8 +27,8 @@ bool holds(const std::vector<Range>& ranges, double x) {
                      [x](const Range& range) { return x >= range.from && x <= range.to; });
 }
 
-bool isOf(const EndCut* cut, std::size_t tooth, EndFace face) {
-  return cut != nullptr && cut->tooth == tooth && cut->face == face;
+bool isOf(const EndCut* cut, std::size_t tooth, OperationKind kind) {
+  return cut != nullptr && cut->tooth == tooth && cut->kind == kind;
 }
 
 }  // namespace
@@ -75,7 +75,7 @@ GroundEnd::Surface GroundEnd::surface(const Ray& ray) const {
 bool GroundEnd::isRemoved(std::size_t tooth, double r, double behind, double x, By by) const {
   const Ray ray = rayAt(tooth, r, behind);
   for (const EndCut& cut : cuts_) {
-    if ((by == By::kAny || isOf(&cut, tooth, EndFace::kGash)) && cut.sweep.removes(ray.at, x)) return true;
+    if ((by == By::kAny || isOf(&cut, tooth, OperationKind::kGash)) && cut.sweep.removes(ray.at, x)) return true;
   }
   std::vector<Range> flutes;
   for (std::size_t i = 0; i < flutes_.teeth() && by != By::kOwnGash; ++i) {
@@ -89,12 +89,12 @@ bool GroundEnd::isRemovedOnEnd(std::size_t tooth, double r, double turn, double 
   return std::any_of(cuts_.begin(), cuts_.end(), [&](const EndCut& cut) { return cut.sweep.removes(ray.at, x); });
 }
 
-bool GroundEnd::isFlank(std::size_t tooth, EndFace face, double r, double behind) const {
-  return isOf(surface(tooth, r, behind).cut, tooth, face);
+bool GroundEnd::isFlank(std::size_t tooth, OperationKind kind, double r, double behind) const {
+  return isOf(surface(tooth, r, behind).cut, tooth, kind);
 }
 
-std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r) const {
-  const auto is_flank = [&](double behind) { return isFlank(tooth, face, r, behind); };
+std::optional<double> GroundEnd::edge(std::size_t tooth, OperationKind kind, double r) const {
+  const auto is_flank = [&](double behind) { return isFlank(tooth, kind, r, behind); };
   const double step = kStep * radius_;
   double before = -step;
   if (is_flank(before)) return std::nullopt;
@@ -102,7 +102,7 @@ std::optional<double> GroundEnd::edge(std::size_t tooth, EndFace face, double r)
     if (is_flank(behind)) {
       const double edge = changeBetween(before, behind, is_flank);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
-      const double blunt = (face == EndFace::kPrimary ? kBlunt : kNearby) * radius_;
+      const double blunt = (kind == OperationKind::kPrimaryEnd ? kBlunt : kNearby) * radius_;
       const bool faced = isRemoved(tooth, r, edge - blunt, x, By::kOwnFace);
       return faced ? std::optional(edge) : std::nullopt;
     }
@@ -119,7 +119,7 @@ double GroundEnd::slope(std::size_t tooth, double r, double behind) const {
 EndSection GroundEnd::section(std::size_t tooth, double r) const {
   EndSection section;
   section.r = r;
-  const std::optional<double> behind = edge(tooth, EndFace::kPrimary, r);
+  const std::optional<double> behind = edge(tooth, OperationKind::kPrimaryEnd, r);
   if (!behind) return section;
   section.behind = *behind;
   section.edge = surface(tooth, r, *behind).x;
@@ -133,7 +133,7 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
   const double step = kNearby * radius_, inside = section.behind + step;
   const double fall = surface(tooth, section.r - step, inside).x - surface(tooth, section.r, inside).x;
   section.dish = std::atan(fall / step);
-  const auto is_other = [&](double behind) { return !isFlank(tooth, EndFace::kPrimary, section.r, behind); };
+  const auto is_other = [&](double behind) { return !isFlank(tooth, OperationKind::kPrimaryEnd, section.r, behind); };
   const double stride = kStep * radius_;
   double behind = section.behind + stride;
   while (!is_other(behind)) {
@@ -141,7 +141,7 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
     if (behind > 2 * radius_) return;
   }
   const double end = changeBetween(behind - stride, behind, is_other);
-  if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, EndFace::kSecondary)) return;
+  if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, OperationKind::kSecondaryEnd)) return;
   section.land = end - section.behind;
   section.second_clearance = std::atan(slope(tooth, section.r, end));
 }
@@ -168,7 +168,8 @@ std::optional<double> GroundEnd::rake(std::size_t tooth, double r, double x, dou
 
 std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
   const auto is_whole = [&](double r) {
-    return edge(tooth, EndFace::kPrimary, r).has_value() || edge(tooth, EndFace::kChamfer, r).has_value();
+    return edge(tooth, OperationKind::kPrimaryEnd, r).has_value() ||
+           edge(tooth, OperationKind::kChamfer, r).has_value();
   };
   const double corner = radius_ * (1 - kNearby), innermost = kInnermost * radius_;
   if (!is_whole(corner)) return std::nullopt;
@@ -181,7 +182,7 @@ std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
 }
 
 std::optional<ChamferFigures> GroundEnd::chamfer(std::size_t tooth) const {
-  const auto at = [&](double r) { return edge(tooth, EndFace::kChamfer, r); };
+  const auto at = [&](double r) { return edge(tooth, OperationKind::kChamfer, r); };
   const double corner = radius_ * (1 - kNearby), step = kStep * radius_;
   if (!at(corner)) return std::nullopt;
   double r = corner - step;

@@ -1,21 +1,18 @@
 #pragma once
 
+#include "flute_grinder/job/grind_job.h"
 #include "tool/end_flutes.h"
 #include "tool/face_sweep.h"
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace grinder {
 
-/// What a stroke on the end of a tool grinds.
-enum class EndFace : std::uint8_t { kGash, kPrimary, kSecondary, kChamfer };
-
 /// A stroke on the end of a tool.
 struct EndCut {
   std::size_t tooth = 0;
-  EndFace face = EndFace::kGash;
+  OperationKind kind = OperationKind::kGash;  ///< on the end
   FaceSweep sweep;
 };
 
@@ -91,9 +88,9 @@ class GroundEnd {
   Surface surface(std::size_t tooth, double r, double behind) const;
   enum class By { kAny, kOwnGash, kOwnFace };
   bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;
-  bool isFlank(std::size_t tooth, EndFace face, double r, double behind) const;
+  bool isFlank(std::size_t tooth, OperationKind kind, double r, double behind) const;
   /// How far behind the radius the tooth has an edge that its flute or gash and this flank form.
-  std::optional<double> edge(std::size_t tooth, EndFace face, double r) const;
+  std::optional<double> edge(std::size_t tooth, OperationKind kind, double r) const;
   double slope(std::size_t tooth, double r, double behind) const;
   void measureFlanks(std::size_t tooth, EndSection& section) const;
 

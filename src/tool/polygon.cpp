@@ -26,7 +26,7 @@ bool comesBefore(const Vector3d& a, const Vector3d& b) {
 Vector3d crossing(const Plane& plane, const Vector3d& a, const Vector3d& b) {
   if (comesBefore(b, a)) return crossing(plane, b, a);
   const double at_a = plane.height(a), at_b = plane.height(b);
-  // Exact, as the axis lies in both half planes of a wedge.
+  // Exact: a corner may lie in several planes, as the axis does in both of a wedge.
   if (at_a == 0) return a;
   if (at_b == 0) return b;
   return a + at_a / (at_a - at_b) * (b - a);

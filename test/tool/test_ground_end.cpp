@@ -136,11 +136,12 @@ struct WholeEnd {
       return endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre);
     };
     const OnTooth land_end(land * std::tan(clearance), tooth.radius, land);
-    add(EndFace::kPrimary, flank(endNormal(clearance, dish), {0, tooth.radius, 0}), wheel);
-    add(EndFace::kSecondary, flank(endNormal(second, dish), land_end), wheel);
+    add(OperationKind::kPrimaryEnd, flank(endNormal(clearance, dish), {0, tooth.radius, 0}), wheel);
+    add(OperationKind::kSecondaryEnd, flank(endNormal(second, dish), land_end), wheel);
     const OnTooth normal = chamferNormal(angle, chamfer_clearance, dish, std::tan(rake));
-    add(EndFace::kChamfer, chamferStroke(tooth, normal, corner(), plain, kGap, 1 * kMillimetre), plain);
-    add(EndFace::kGash, gashStroke(tooth, gashNormal(rake, dish), 45 * kDegree, past, thin, 1 * kMillimetre), thin);
+    add(OperationKind::kChamfer, chamferStroke(tooth, normal, corner(), plain, kGap, 1 * kMillimetre), plain);
+    add(OperationKind::kGash, gashStroke(tooth, gashNormal(rake, dish), 45 * kDegree, past, thin, 1 * kMillimetre),
+        thin);
     strokes.back().stroke.to[kA] += right ? turn : -turn;
     strokes.back().stroke.from[kA] = strokes.back().stroke.to[kA];
     for (int k = 0; k < teeth; ++k) angles.push_back(k * tooth.pitch);
@@ -182,12 +183,12 @@ struct WholeEnd {
   }
 
   struct Ground {
-    EndFace face;
+    OperationKind face;
     FaceStroke stroke;
     FaceWheel wheel;
     WheelProfile profile;
   };
-  void add(EndFace face, const FaceStroke& stroke, const FaceWheel& wheel) {
+  void add(OperationKind face, const FaceStroke& stroke, const FaceWheel& wheel) {
     strokes.push_back({face, stroke, wheel, WheelProfile::straight(2 * wheel.radius, wheel.width)});
   }
 

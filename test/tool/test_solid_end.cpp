@@ -215,8 +215,7 @@ struct FaceAreas {
     return false;
   }
 
-  static constexpr double kOn = 2e-9;       ///< [m]
-  static constexpr double kSliver = 1e-13;  ///< [m^2]
+  static constexpr double kOn = 2e-9;  ///< [m]
 };
 
 TEST(SolidEnd, HasFacesInThePlanesOfItsTeeth) {

@@ -23,7 +23,7 @@ struct Place {
   double move_fraction = 0;  ///< completed fraction of the program's move, 0..1; exactly 1 at its end
 };
 
-/// Whether the wheel is in the workpiece, and how far to lift it off. In machine coordinates, so that a change of the
+/// Whether the wheel is in the workpiece, and the way out of it. In machine coordinates, so that a change of the
 /// work offsets does not matter.
 struct Wheel {
   bool in_work = false;

@@ -45,7 +45,7 @@ class WheelWatch {
   /// @param period of the control loop [s].
   void observePosition(const std::optional<double>& y, bool powered, double period) noexcept {
     left_by_job_ = left_by_job_ && !powered;
-    const bool is_clear = y && *y >= wheel_.clear_y - kBelow;
+    const bool is_clear = y && *y >= wheel_.clear_y - kBefore;
     seen_clear_ = is_clear ? seen_clear_ + period : 0;
     if (seen_clear_ >= kSeenClear) clear();
     if (left_by_job_ && (wheel_.y_doubted || (y && !is_clear))) wheel_.in_work = true;
@@ -77,7 +77,7 @@ class WheelWatch {
   /// Whether a motion of a single axis takes the wheel out of the work as a lift does.
   /// @param x commanded X, relative to the machine's reference [m].
   bool isWayOut(int axis, bool upward, double x) const noexcept {
-    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x + kBelow;
+    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x + kBefore;
     return backs_off ? axis == kX && !upward : axis == kY && upward;
   }
 
@@ -89,7 +89,7 @@ class WheelWatch {
 
   static constexpr double kSeenClear = 0.1;  ///< time for which Y must read clear [s]
   /// How far before its target a lifted axis may rest; a tenth of the least clearance of a job [m].
-  static constexpr double kBelow = 10e-6;
+  static constexpr double kBefore = 10e-6;
 
   Wheel wheel_;
   double seen_clear_ = 0;     ///< time for which Y has read clear [s]

@@ -85,7 +85,7 @@ struct GrindProcess {
   WheelShape wheel_profile = WheelShape::kStraight;
   double wheel_diameter = 0;  ///< largest diameter, to which Y = 0 is set [m]
   double wheel_width = 0;     ///< width of the wheel [m]
-  double wheel_angle = 0;     ///< angle of a tapered wheel's surface to its axis, for a cup from 0; otherwise 0 [rad]
+  double wheel_angle = 0;  ///< angle of a tapered wheel's surface to its axis, 0 for a straight cup; otherwise 0 [rad]
   WheelFace wheel_side = WheelFace::kUpper;  ///< the larger face of a tapered wheel
   double wheel_corner_radius_lower = 0;      ///< corner radius between surface and lower face; 0 for a sharp edge [m]
   double wheel_corner_radius_upper = 0;      ///< corner radius between surface and upper face; 0 for a sharp edge [m]
@@ -135,6 +135,9 @@ struct GrindJob {
   const GrindProcess& process() const { return processOf(*this); }  ///< the job's operation
   /// Whether the tool has an operation of a kind after the job's: it is the job's, or before it.
   bool hasGround(OperationKind kind) const;
+  /// Whether the wheel comes along X, and has to go back along it before it is lifted: a cup, whose rim goes round the
+  /// next tooth of a left-hand end.
+  bool comesAlongX() const;
   /// The operation after the job's; null after the last.
   const GrindProcess* next() const;
   /// The operation for people, e.g. "primary relief"; empty for the only operation of a cutter.

@@ -122,11 +122,6 @@ class ValidJob {
 
   /// Whether the strokes are straight, at constant A, and so have a faceStroke() and no laws.
   bool isStraight() const noexcept { return grinder::isStraight(content_->job.process().kind); }
-  /// Whether a straight stroke is along X, and the wheel has to go back along it before it is lifted: as a cup does,
-  /// whose rim goes round the next tooth of a left-hand end.
-  bool plunges() const noexcept {
-    return isEndFlank(content_->job.process().kind) && content_->job.cutter.cut == CutDirection::kLeftHand;
-  }
   /// The stroke of a pass of an operation on the end, with A of the tooth's edge.
   /// @param depth, wear as for depthLaw() [m].
   /// @throw std::invalid_argument if withEdges() has not been called.

@@ -76,7 +76,7 @@ class SetpointStream {
   void retract() noexcept;
 
   /// Takes over a setpoint from another source of motion, and numbers it as the stream's own. Such setpoints must come
-  /// in pairs and end at rest. After resume() the stream first returns to the position to which retract() lifted the
+  /// in pairs and end at rest. After resume() the stream first returns to the position to which retract() led the
   /// wheel: up to at least that height, across, then down; from there it continues as if the axes had not been moved.
   /// Ignored unless the rest is Rest::kLifted. Real-time safe.
   /// @param setpoint changed except for position, velocity, feed and kind of move.

@@ -17,9 +17,10 @@ NARROW = 3.0  # width of one of three pictures side by side [in]
 INK, GRID, THEORY, CURVE = '#222222', '#dddddd', '#888888', '#1f4e8c'
 LIMIT, ODD_COLOUR, METAL, HELD = '#c03020', '#d96c00', '#dfe5ec', '#c9c4b4'
 TEETH = [CURVE, ODD_COLOUR, '#2b8a3e', '#8e3b8e', '#00808a', '#8a6d00', '#555555', '#c2185b']
-# Faces of an end, in rising lightness but for the chamfer.
+# Faces of an end: in rising lightness from the flute to the primary flank; chamfer and blank differ in hue.
 FLUTE, GASH, SECONDARY, PRIMARY, CHAMFER, BLANK = '#5c6b84', '#8d9bb0', '#b9c6d6', '#e6edf5', '#e0c978', '#a9a591'
-VARIABLES = {FLUTE: 'flute', GASH: 'gash', SECONDARY: 'secondary', PRIMARY: 'primary', CHAMFER: 'chamfer', BLANK: 'blank', INK: 'ink', GRID: 'grid', THEORY: 'theory', LIMIT: 'limit', METAL: 'metal', HELD: 'held',
+VARIABLES = {FLUTE: 'flute', GASH: 'gash', SECONDARY: 'secondary', PRIMARY: 'primary', CHAMFER: 'chamfer', BLANK: 'blank',
+             INK: 'ink', GRID: 'grid', THEORY: 'theory', LIMIT: 'limit', METAL: 'metal', HELD: 'held',
              **{colour: 'tooth%d' % i for i, colour in enumerate(TEETH)}}
 
 ODD_STYLE = {'marker': 'o', 'color': ODD_COLOUR, 'markerfacecolor': 'none'}

@@ -15,6 +15,7 @@
 #include "flute_grinder/network/user_at_host.h"
 
 #include <actionlib/client/action_client.h>
+#include <ros/callback_queue.h>
 #include <std_msgs/Header.h>
 
 #include <cmath>
@@ -102,15 +103,21 @@ int runProbe(const std::string& node, ProbingCycle cycle, const ProbeOptions& op
   const flute_grinder::ProbeGoal goal = goalOf(row, options);
   ros::NodeHandle nh(node);
   const States states(nh, "state");
-  ProbeClient client(nh, "probe");
-  ros::Publisher publisher = nh.advertise<std_msgs::Header>("probe_alive", 1);
+  ros::CallbackQueue queue;
+  ros::NodeHandle own(nh);
+  own.setCallbackQueue(&queue);
+  ProbeClient client(own, "probe");
+  ros::Publisher publisher = own.advertise<std_msgs::Header>("probe_alive", 1);
+  // Ends before all that its callbacks use, which roscpp would destroy while they run.
+  ros::AsyncSpinner spinner(1, &queue);
+  spinner.start();
   if (!await(kPatience,
              [&] { return states.newest() && client.isServerConnected() && publisher.getNumSubscribers() > 0; })) {
     return noGrinder(nh);
   }
   catchInterrupts();
   catchHolds();
-  const ros::WallTimer alive = nh.createWallTimer(kAgain, [&publisher](const ros::WallTimerEvent&) {
+  const ros::WallTimer alive = own.createWallTimer(kAgain, [&publisher](const ros::WallTimerEvent&) {
     std_msgs::Header header;
     header.stamp = ros::Time::now();
     publisher.publish(header);

@@ -71,10 +71,10 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
       telemetry_(telemetry),
       offsets_(offsets),
       tracker_(journal),
-      thread_(kIdlePollPeriod, [this] { poll(); }) {
+      thread_(std::make_shared<ServedQueue>(kIdlePollPeriod, [this] { poll(); })) {
   offsets_.noteFinished(tracker_.progress());
   ros::NodeHandle nh(private_nh);
-  nh.setCallbackQueue(thread_.queue());
+  nh.setCallbackQueue(thread_->queue());
   job_ = nh.advertise<flute_grinder::GrindActionGoal>("job", 1, true);
   server_ = std::make_unique<Server>(
       nh, "grind", [this](const GoalHandle& handle) { onGoal(handle); },
@@ -84,13 +84,15 @@ GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, Job
       });
   server_->start();
   cancels_ = stops.subscribeToCancels(
-      [this](const actionlib_msgs::GoalID::Ptr& what) { thread_.post([this, what] { server_->cancel(what); }); });
-  thread_.start();
+      [this, thread = std::weak_ptr<ServedQueue>(thread_)](const actionlib_msgs::GoalID::Ptr& what) {
+        if (const auto running = thread.lock()) running->post([this, what] { server_->cancel(what); });
+      });
+  thread_->start();
 }
 
 GoalServer::~GoalServer() {
   cancels_.shutdown();
-  thread_.stop();
+  thread_->stop();
 }
 
 void GoalServer::reject(GoalHandle& handle, int code, const std::string& text) { reject(handle, result(code, text)); }
@@ -170,7 +172,7 @@ void GoalServer::begin(const GoalHandle& handle, const ValidJob& job) {
   // From here to the end of the goal nobody else changes the offsets.
   goal_ = Goal{handle, job, control};
   busy_ = true;
-  thread_.setPeriod(kPollPeriod);
+  thread_->setPeriod(kPollPeriod);
   carryOutAnswers();
 }
 
@@ -211,7 +213,7 @@ void GoalServer::plan(const WorkOffsets& offsets) {
   request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), firstOf(asked), offsets.values()};
   request.control = goal_->control;
   request.done = [this](std::shared_ptr<const PlannedJob> planned) {
-    thread_.post([this, planned = std::move(planned)] { onPlanned(planned); });
+    thread_->post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
   if (!planner_.submit(std::move(request))) {
     return refuse(result(flute_grinder::GrindResult::NOT_READY, "the grinder is being shut down"));
@@ -263,7 +265,7 @@ void GoalServer::startJob() {
   GoalHandle handle = goal_->handle;
   const flute_grinder::GrindGoal& asked = *handle.getGoal();
   goal_->phase = Phase::kStarting;
-  thread_.setPeriod(kStartPollPeriod);
+  thread_->setPeriod(kStartPollPeriod);
   goal_->number = loop_.status().jobs_started + 1;
   // Spindle and coolant start while the disk writes; the axes wait for the entry.
   const PlannedJob& plan = *goal_->plan;
@@ -340,7 +342,7 @@ void GoalServer::releaseWhenJournaled() {
   const bool ended = loop_.status().jobs_ended >= goal_->number;
   if (!ended && !tracker_.upToDate()) return;
   goal_->phase = Phase::kRunning;
-  thread_.setPeriod(kPollPeriod);
+  thread_->setPeriod(kPollPeriod);
   if (ended) return;
   goal_->journal_error = tracker_.error();
   if (goal_->journal_error.empty()) {
@@ -442,7 +444,7 @@ void GoalServer::release() {
   gate_.close();
   goal_.reset();
   busy_ = false;
-  thread_.setPeriod(kIdlePollPeriod);
+  thread_->setPeriod(kIdlePollPeriod);
 }
 
 }  // namespace grinder

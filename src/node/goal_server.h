@@ -98,7 +98,8 @@ class GoalServer {
   ros::SteadyTime last_cycle_;  ///< time at which `cycles_` was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
-  ServedQueue thread_;  ///< its queue serves the callbacks of the members below
+  /// Its queue serves the callbacks of the members below. A cancel on its way in another thread may still know it.
+  const std::shared_ptr<ServedQueue> thread_;
   ros::Publisher job_;  ///< the goal about to start, because a recorder may connect to its sender too late
   std::unique_ptr<Server> server_;
   ros::Subscriber cancels_;

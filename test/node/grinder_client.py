@@ -62,11 +62,15 @@ def add_sub_test(result, _test, sub_test, error):
 
 
 def add_error(result, test, error):
-    """rosunit counts what fails in setUpClass, which is no test, and would write nothing of it."""
+    """rosunit counts what fails in setUpClass or setUpModule, which is no test, and would write nothing of it."""
     unittest.TestResult.addError(result, test, error)
     result._error = error
-    if not isinstance(test, unittest.TestCase):
-        result._tests.append(rosunit.xmlrunner._TestInfo.create_error(test, 0, error))
+    if isinstance(test, unittest.TestCase):
+        return
+    # 'setUpModule (test_x)', of which rosunit wants to know the class.
+    name = re.fullmatch(r'(\w+) \((.*)\)', test.id())
+    test.id = lambda: '%s.%s' % (name[2], name[1])
+    result._tests.append(rosunit.xmlrunner._TestInfo.create_error(test, 0, error))
 
 
 rosunit.xmlrunner._XMLTestResult.addSubTest = add_sub_test

@@ -20,6 +20,7 @@
 #include "flute_grinder/messages/reasons.h"
 #include "panel_fixture.h"
 
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <sensor_msgs/JointState.h>
 #include <std_msgs/String.h>
@@ -35,7 +36,8 @@ namespace grinder {
 /// A grinder that is and does what a test wants.
 class Stage {
  public:
-  Stage() : nh_("cell/stage") {
+  Stage() : nh_("cell/stage"), spinner_(4, &queue_) {
+    nh_.setCallbackQueue(&queue_);
     machine_ = nh_.advertise<flute_grinder::MachineInfo>("machine", 1, true);
     flute_grinder::MachineInfo able;
     able.homing = able.spindle = able.coolant = 1;
@@ -94,6 +96,7 @@ class Stage {
     state.override = 1;
     state.swivel = 31.769 * M_PI / 180;  // as test/jobs/paper.yaml needs it
     timer_ = nh_.createSteadyTimer(ros::WallDuration(0.05), [this](const ros::SteadyTimerEvent&) { publish(); });
+    spinner_.start();
   }
   ~Stage() { release(); }
 
@@ -248,11 +251,13 @@ class Stage {
   }
 
   std::mutex mutex_;
+  ros::CallbackQueue queue_;
   ros::NodeHandle nh_;
   ros::Publisher machine_, state_topic_, feedback_, results_, joint_states_, offsets_, legend_, job_, jog_refusals_;
   std::vector<ros::ServiceServer> services_;
   ros::Subscriber goals_, stops_, jogs_;
   ros::SteadyTimer timer_;
+  ros::AsyncSpinner spinner_;  ///< last member, so that no callback runs when the others are destroyed
 };
 
 /// What the stage has received, in short words.

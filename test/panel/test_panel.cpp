@@ -680,7 +680,5 @@ int main(int argc, char** argv) {
   grinder::test_support::setGermanEnvironment();
   const QApplication application(argc, argv);
   const ros::NodeHandle keeps_ros_up;
-  ros::AsyncSpinner spinner(4);
-  spinner.start();
   return RUN_ALL_TESTS();
 }

@@ -185,7 +185,5 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, is_grinder ? "stage" : "test_panel_without_master");
   if (!is_grinder) startMaster();
   const ros::NodeHandle keeps_ros_up;
-  ros::AsyncSpinner spinner(4);
-  spinner.start();
   return is_grinder ? runGrinder() : RUN_ALL_TESTS();
 }

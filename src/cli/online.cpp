@@ -102,6 +102,12 @@ std::string swivelText(const flute_grinder::GrinderState& state) {
   return text(Quantity{state.swivel, Unit::kRadian}) + (state.swivel_measured ? ", measured" : ", confirmed");
 }
 
+std::string wheelInWork(const flute_grinder::GrinderState& state) {
+  if (!state.wheel_in_work) return "no";
+  return std::string(isWheelUnknown(state) ? "not known" : "yes") +
+         (state.wheel_backs_off ? "; off along X first" : "");
+}
+
 /// Prints the bases of the work offsets. @param offsets null if unknown.
 void printZeroPoints(const flute_grinder::WorkOffsets::ConstPtr& offsets) {
   const WorkOffsets all = offsets ? fromMessage(*offsets) : WorkOffsets();
@@ -127,7 +133,7 @@ void printState(const std::string& node, const flute_grinder::GrinderState& stat
                                                                 : "not at speed");
   std::printf("coolant         %s\n", state.coolant_on ? "on" : "off");
   std::printf("emergency stop  %s\n", state.emergency_stop ? "pressed" : "released");
-  std::printf("wheel in work   %s\n", isWheelUnknown(state) ? "not known" : state.wheel_in_work ? "yes" : "no");
+  std::printf("wheel in work   %s\n", wheelInWork(state).c_str());
   std::printf("swivel          %s\n", swivelText(state).c_str());
   printPosition("work position", state.work_position);
   printPosition("of the machine", state.position);

@@ -110,6 +110,7 @@ void ControlLoop::writeDrive(const DriveCycle& cycle) {
 void ControlLoop::publish() {
   now_.sample.feed_override = feed_override_;
   now_.sample.wheel_in_work = now_.wheel.wheel().in_work;
+  now_.sample.wheel_backs_off = now_.sample.wheel_in_work && now_.wheel.backsOff(now_.sample.command[kX]);
   const bool single = jog_.inProgress() || now_.sample.state == MachineState::kLifting;
   now_.sample.distance_to_go = single ? jog_.distanceToGo() : job_.distanceToGo();
 

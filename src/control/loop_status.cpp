@@ -22,9 +22,9 @@ Wheel wheelOf(const GrindProgram& program) {
   return wheel;
 }
 
-Wheel unknownWheel(const AxisLimits& limits) {
-  const double top = limits.max_position[kY];
-  return {true, top, top - limits.min_position[kY], false, false};
+Wheel unknownWheel(const AxisLimits& limits, bool is_cup) {
+  const double top = limits.max_position[kY], front = limits.min_position[kX];
+  return {true, top, top - limits.min_position[kY], false, false, front, is_cup ? limits.max_position[kX] - front : 0};
 }
 
 }  // namespace grinder

@@ -31,6 +31,7 @@ To convertedBasis(const From& from) {
   to.end_diameter = from.end_diameter;
   to.wheel_diameter = from.wheel_diameter;
   to.wheel_width = from.wheel_width;
+  to.wheel_rim = from.wheel_rim;
   to.swivel = from.swivel;
   to.height = from.height;
   to.tool_digest = from.tool_digest;
@@ -67,6 +68,7 @@ OffsetBasis basisOf(const flute_grinder::GrindGoal& goal, OffsetMethod method) {
   basis.end_diameter = goal.cutter.end_diameter;
   basis.wheel_diameter = processOf(goal).wheel_diameter;
   basis.wheel_width = processOf(goal).wheel_width;
+  basis.wheel_rim = processOf(goal).wheel_rim;
   basis.swivel = processOf(goal).setup_swivel;
   basis.height = processOf(goal).setup_height;
   return basis;
@@ -104,7 +106,7 @@ WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message) {
                        message.mounting[i]};
   }
   const flute_grinder::MountedWheel& wheel = message.wheel;
-  offsets.wheel = {wheel.name, wheel.digest, wheel.diameter, wheel.mounting};
+  offsets.wheel = {wheel.name, wheel.digest, wheel.diameter, wheel.rim, wheel.mounting};
   const flute_grinder::ClampedTool& tool = message.tool;
   offsets.tool = {tool.digest, tool.job_name, tool.ground, static_cast<TeethUnknown>(tool.unknown), tool.clamping};
   return offsets;
@@ -122,6 +124,7 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets) {
   message.wheel.name = offsets.wheel.name;
   message.wheel.digest = offsets.wheel.digest;
   message.wheel.diameter = offsets.wheel.diameter;
+  message.wheel.rim = offsets.wheel.rim;
   message.wheel.mounting = offsets.wheel.mounting;
   message.tool.digest = offsets.tool.digest;
   message.tool.job_name = offsets.tool.job_name;

@@ -101,7 +101,8 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   Drive& drive = plugin.drive();
   ros::NodeHandle hardware_nh(private_nh_, "hardware");
   plugin.call("init()", [&] { drive.init(private_nh_, hardware_nh); });
-  const Wheel wheel = journal.error.empty() ? journal.on_disk.wheel : unknownWheel(config.machine.limits);
+  const bool is_cup = offsets_->offsets().wheel.rim > 0;
+  const Wheel wheel = journal.error.empty() ? journal.on_disk.wheel : unknownWheel(config.machine.limits, is_cup);
   plugin.call("capabilities()", [&] { loop_ = std::make_unique<ControlLoop>(drive, config, wheel); });
   const DriveCapabilities& can = loop_->capabilities();
   checkCapabilities(can, own.drive, parameters.name("control_rate"), config.machine.period);

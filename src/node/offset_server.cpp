@@ -40,7 +40,7 @@ std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
     }
   }
   for (const double figure :
-       {basis.end_diameter, basis.wheel_diameter, basis.wheel_width, basis.swivel, basis.height}) {
+       {basis.end_diameter, basis.wheel_diameter, basis.wheel_width, basis.wheel_rim, basis.swivel, basis.height}) {
     if (!std::isfinite(figure)) return "basis has a figure that is not finite; allowed: those of a job";
   }
   return "";
@@ -259,7 +259,7 @@ std::string OffsetServer::mount(const OffsetBasis& job, const std::string& by) {
         MountedWheel& wheel = offsets.wheel;
         // Offsets set before any wheel was confirmed carry their own wheel.
         const std::uint32_t mounting = wheel.mounting + (wheel.isKnown() ? 1 : 0);
-        wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, mounting};
+        wheel = {job.wheel_name, job.wheel_digest, job.wheel_diameter, job.wheel_rim, mounting};
       },
       "wheel on the spindle: " + wheelText(job) + ", by " + by);
 }

@@ -27,6 +27,7 @@ void StateForm<WorkOffsets>::visit(StateFields& field, WorkOffsets& offsets) {
     field(joint + "_end_diameter_m", offset.basis.end_diameter);
     field(joint + "_wheel_diameter_m", offset.basis.wheel_diameter);
     field(joint + "_wheel_width_m", offset.basis.wheel_width);
+    field(joint + "_wheel_rim_m", offset.basis.wheel_rim);
     field(joint + "_swivel_rad", offset.basis.swivel);
     field(joint + "_height_m", offset.basis.height);
     field(joint + "_tool_digest", offset.basis.tool_digest);
@@ -36,6 +37,7 @@ void StateForm<WorkOffsets>::visit(StateFields& field, WorkOffsets& offsets) {
   field("wheel", offsets.wheel.name);
   field("wheel_digest", offsets.wheel.digest);
   field("wheel_diameter_m", offsets.wheel.diameter);
+  field("wheel_rim_m", offsets.wheel.rim);
   field("wheel_mounting", offsets.wheel.mounting);
   field("tool_digest", offsets.tool.digest);
   field("tool_job", offsets.tool.job_name);

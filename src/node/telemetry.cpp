@@ -237,6 +237,7 @@ flute_grinder::GrinderState Telemetry::stateMessage() const {
   message.coolant_commanded = sample_.coolant_commanded;
   message.emergency_stop = sample_.drive.emergency_stop;
   message.wheel_in_work = sample_.wheel_in_work;
+  message.wheel_backs_off = sample_.wheel_backs_off;
   message.swivel = sample_.swivel.angle;
   message.swivel_measured = sample_.swivel.measured;
   message.probe_contact = sample_.drive.probe_contact;

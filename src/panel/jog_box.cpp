@@ -134,8 +134,9 @@ void JogBox::refresh(const std::optional<flute_grinder::GrinderState>& state, do
   const bool allowed = state && after(static_cast<MachineState>(state->state), MachineEvent::kJog) && state->homed != 0;
   const bool reached = isContinuous() ? timeout > 0 : has_services;
   for (const Button& button : buttons_) {
-    const bool raises = button.axis == kY && button.direction > 0;
-    const bool safe = state && (!state->wheel_in_work || raises);
+    const bool out = state && (state->wheel_backs_off ? button.axis == kX && button.direction < 0
+                                                      : button.axis == kY && button.direction > 0);
+    const bool safe = state && (!state->wheel_in_work || out);
     button.button->setEnabled(allowed && reached && safe && speedBoxOf(button.axis).isGood());
   }
 }

@@ -24,7 +24,9 @@ std::string wheelInWork(const flute_grinder::GrinderState& state) {
     case MachineState::kDisabled: return wheel + ": enable, then lift it.";
     case MachineState::kHeld: return "The job is held with the wheel in the work. Resume continues; Retract lifts it.";
     case MachineState::kLifting: return wheel + ": it is being lifted; no job runs.";
-    case MachineState::kJogging: return wheel + ": it is being jogged off, in Y.";
+    case MachineState::kJogging:
+      return wheel +
+             (state.wheel_backs_off ? ": it is being jogged off, along X." : ": it is being jogged off, along Y.");
     default: return wheel + ": lift it.";
   }
 }

@@ -239,7 +239,7 @@ class WithoutTheReference {
   Rig<SimulatedDrive> rig;
 };
 
-const Wheel kUnknownWheel = unknownWheel(machineConfig().machine.limits);
+const Wheel kUnknownWheel = unknownWheel(machineConfig().machine.limits, false);
 
 TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsMovedUpAloneToTheTop) {
   const double top = machineConfig().machine.limits.max_position[kY];
@@ -277,6 +277,30 @@ TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsLiftedToTheTopWithoutTheReferen
     rig.runUntil(S::kReady);
     EXPECT_EQ(rig.last().command[kY], top);
     EXPECT_FALSE(rig.last().wheel_in_work);
+  }
+}
+
+TEST(AfterARestart, ACupOfWhichNothingIsKnownBacksOffToTheEndOfXBeforeItRises) {
+  const AxisLimits limits = machineConfig().machine.limits;
+  for (const bool homed : {true, false}) {
+    Rig<FakeDrive> rig(machineConfig(), unknownWheel(limits, true));
+    rig.drive.status.homed = homed;
+    rig.enable();
+    rig.run(500);
+    EXPECT_TRUE(rig.last().wheel_backs_off);
+    if (homed) {
+      EXPECT_FALSE(rig.jog({kY, false, 1e-3, 0.01}).accepted);
+      EXPECT_TRUE(rig.jog({kX, false, -1e-3, 0.01}).accepted);
+      rig.runUntil(S::kReady);
+    }
+    const std::size_t before = rig.log.size();
+    ASSERT_NO_FATAL_FAILURE(rig.lift());
+    for (auto at = rig.log.begin() + static_cast<std::ptrdiff_t>(before); at != rig.log.end(); ++at) {
+      ASSERT_TRUE(at->command[kX] == limits.min_position[kX] || at->command[kY] == rig.log[before].command[kY]);
+    }
+    EXPECT_TRUE(sameBits(rig.last().command, Axes(limits.min_position[kX], limits.max_position[kY], 0, 0)));
+    EXPECT_FALSE(rig.last().wheel_in_work);
+    EXPECT_FALSE(rig.last().wheel_backs_off);
   }
 }
 

@@ -23,8 +23,8 @@ constexpr double kDegree = 0.017453292519943295;
 
 /// A job of D 6 with a wheel of D 100 x 3.
 OffsetBasis basisOf(OffsetMethod method = OffsetMethod::kTouchOff) {
-  return {method, "d6.yaml",    "a.yaml", std::string(64, 'a'), 0.006, 0.1,
-          0.003,  30 * kDegree, 0.0015,   std::string(64, 'c')};
+  return {method, "d6.yaml",    "a.yaml", std::string(64, 'a'), 0.006, 0.1, 0.003,
+          0,      30 * kDegree, 0.0015,   std::string(64, 'c')};
 }
 
 OffsetBasis basisOfNoJob(OffsetMethod method) {

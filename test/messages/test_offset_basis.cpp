@@ -29,6 +29,9 @@ TEST(OffsetBasis, IsThatOfTheJobFileAndItsWheelFile) {
   EXPECT_EQ(basis.end_diameter, 0.012);
   EXPECT_EQ(basis.wheel_diameter, 0.1);
   EXPECT_EQ(basis.wheel_width, 0.003);
+  EXPECT_EQ(basis.wheel_rim, 0);
+  const std::string end = "jobs/left_hand_end_mill_d8_t3.yaml";
+  EXPECT_EQ(basisOf(goalFromFile(end, "end_primary"), OffsetMethod::kProbe).wheel_rim, 0.006);
   EXPECT_TRUE(basis.hasJob());
   EXPECT_EQ(goalFromFile("test/jobs/paper.yaml").wheel_name, "");
   EXPECT_EQ(basisOf(goalFromFile("test/jobs/paper.yaml"), OffsetMethod::kProbe).wheel_name, "straight, 3 mm wide");
@@ -103,10 +106,11 @@ TEST(OffsetBasis, SurvivesTheMessageOfTheWorkOffsetsAndAnUnknownMethodIsUnknown)
   for (WorkOffset& offset : offsets.axes) {
     offset = {0.001, "anna@grinder", 1.7e9, basisOf(goalFromFile(kJob), OffsetMethod::kProbe), 7};
   }
-  offsets.wheel = {"a.yaml", std::string(64, 'a'), 0.1, 7};
+  offsets.wheel = {"a.yaml", std::string(64, 'a'), 0.1, 0.006, 7};
   offsets.tool = {"", "d6.yaml", 0b11, TeethUnknown::kHomed, 5};
   flute_grinder::WorkOffsets message = toMessage(offsets);
   EXPECT_TRUE(toMessage(fromMessage(message)) == message);
+  EXPECT_EQ(message.wheel.rim, 0.006);
   EXPECT_EQ(message.wheel.mounting, 7U);
   EXPECT_EQ(message.tool.unknown, flute_grinder::ClampedTool::HOMED);
   EXPECT_EQ(message.tool.clamping, 5U);

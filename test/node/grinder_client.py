@@ -31,7 +31,7 @@ import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
                                ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
-from flute_grinder.srv import ConfirmSwivel, InjectFault, SetFeedOverride, SetOffset, TouchOff
+from flute_grinder.srv import ConfirmSwivel, ConfirmWheel, InjectFault, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
@@ -478,6 +478,7 @@ class Grinder:
     reset = partialmethod(_call, 'reset_fault', Trigger)
     set_feed_override = partialmethod(_call, 'set_feed_override', SetFeedOverride)
     confirm_swivel = partialmethod(_call, 'confirm_swivel', ConfirmSwivel)
+    confirm_wheel = partialmethod(_call, 'confirm_wheel', ConfirmWheel)
 
     def plan(self, goal):
         """The result of a dry run of a goal."""

@@ -10,7 +10,7 @@ import time
 
 import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
-from flute_grinder.msg import GrinderState, GrindResult
+from flute_grinder.msg import GrinderState, GrindResult, OffsetBasis
 
 import grinder_client as gc
 import path_checks as checks
@@ -74,7 +74,7 @@ class JournalTest(gc.OwnNode):
         self.job = gc.job_from_file(self.job_path)
 
     def start(self, **arguments):
-        super().start(quick_machine(self.at, journal=self.journal), **arguments)
+        super().start(quick_machine(self.at, journal=self.journal, offsets=os.path.join(self.folder, 'offsets')), **arguments)
         self.client.confirm_swivel(gc.PAPER['process.setup_swivel'])
 
     def start_ready(self, **arguments):
@@ -266,6 +266,18 @@ class TestDamagedJournal(JournalTest):
                          'its checksum is missing; .*, or discard it; answer: discard$')
         self.assertEqual(self.client.run(self.job).status, 'SUCCEEDED')
         self.check_reported(self.wait_finished())
+
+
+    def test_a_cup_on_the_spindle_then_leads_out_along_x(self):
+        self.start()
+        cup = OffsetBasis(job_name='mill.yaml', wheel_name='cup.yaml', wheel_digest='c' * 64, wheel_diameter=100 * MM, wheel_rim=6 * MM)
+        self.assertTrue(self.client.confirm_wheel(cup, False, 'anna@grinder').success)
+        self.kill()
+        with open(self.journal, 'wb') as file:
+            file.write(b'nothing of a journal')
+        self.start()
+        self.assertEqual(self.client.fresh_state().wheel_backs_off, True)
+        self.assertRegex(self.said('status'), r'(?m)^wheel in work +not known; off along X first$')
 
 
 class TestOwner(JournalTest):

@@ -18,6 +18,7 @@ const OffsetBasis kBasis{OffsetMethod::kProbe,
                          0.006,
                          0.1,
                          0.003,
+                         0.006,
                          1.0 / 3,
                          -0.0015,
                          std::string(64, 'e'),
@@ -66,7 +67,7 @@ TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
     OffsetStore store(path_, "/grinder");
     store.change([](WorkOffsets& offsets) {
       offsets.axes[kY].mounting = 4;
-      offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 5};
+      offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 0.006, 5};
       offsets.tool = {std::string(64, 'd'), "my job.yaml", 0b101, TeethUnknown::kHomed, 7};
     });
   }
@@ -77,13 +78,13 @@ TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
   const auto all = [](const WorkOffset& o) {
     const OffsetBasis& b = o.basis;
     return std::tie(o.value, o.set_by, o.set_at, b.method, b.job_name, b.wheel_name, b.wheel_digest, b.end_diameter,
-                    b.wheel_diameter, b.wheel_width, b.swivel, b.height, b.tool_digest, b.kind, b.before);
+                    b.wheel_diameter, b.wheel_width, b.wheel_rim, b.swivel, b.height, b.tool_digest, b.kind, b.before);
   };
   EXPECT_TRUE(all(kept.axes[kY]) == all(kSome));
   EXPECT_TRUE(all(kept.axes[kA]) == all(kOther));
   EXPECT_EQ(kept.axes[kY].mounting, 4U);
-  EXPECT_TRUE(std::tie(kept.wheel.name, kept.wheel.digest, kept.wheel.diameter, kept.wheel.mounting) ==
-              std::make_tuple("a: b.yaml", std::string(64, 'f'), 0.1, 5U));
+  EXPECT_TRUE(std::tie(kept.wheel.name, kept.wheel.digest, kept.wheel.diameter, kept.wheel.rim, kept.wheel.mounting) ==
+              std::make_tuple("a: b.yaml", std::string(64, 'f'), 0.1, 0.006, 5U));
   EXPECT_TRUE(std::tie(kept.tool.digest, kept.tool.job_name, kept.tool.ground, kept.tool.unknown, kept.tool.clamping) ==
               std::make_tuple(std::string(64, 'd'), "my job.yaml", 0b101U, TeethUnknown::kHomed, 7U));
 }

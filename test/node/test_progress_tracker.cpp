@@ -187,7 +187,7 @@ TEST_F(ProgressTrackerTest, ADamagedJournalIsInTheWayOfEveryJob) {
   EXPECT_EQ(refusal(tracker, "job", kFirst, true), "");
   // What is done about the wheel leaves it, for whoever can restore it.
   for (const bool known : {false, true}) {
-    status_.wheel = unknownWheel(test_support::machineConfig().machine.limits);
+    status_.wheel = unknownWheel(test_support::machineConfig().machine.limits, false);
     status_.wheel.in_work = !(status_.wheel.known = known);
     tracker.update(status_);
     EXPECT_TRUE(tracker.upToDate());

@@ -347,7 +347,7 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
         {"disabled", "", "The wheel is in the work: enable, then lift it."},
         {"held", "", "The job is held with the wheel in the work. Resume continues; Retract lifts it."},
         {"lifting", "", "The wheel is in the work: it is being lifted; no job runs."},
-        {"jogging", "", "The wheel is in the work: it is being jogged off, in Y."},
+        {"jogging", "", "The wheel is in the work: it is being jogged off, along Y."},
         {"running", "", "The job moves the axes."}}) {
     stage.change([&] { stage.state.fault = row.fault; });
     stage.be(row.state);

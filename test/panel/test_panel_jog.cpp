@@ -62,7 +62,9 @@ TEST_F(Jogging, AxesMayBeJoggedAndTouchedOffWhereTheStateAllows) {
   stage.be("ready");
   stage.change([&] { stage.state.wheel_in_work = 1; });
   WAIT_FOR(enabledButtons() == Names{"jog_y_plus"});
-  stage.change([&] { stage.state.wheel_in_work = 0, stage.state.homed = 0; });
+  stage.change([&] { stage.state.wheel_backs_off = 1; });
+  WAIT_FOR(enabledButtons() == Names{"jog_x_minus"});
+  stage.change([&] { stage.state.wheel_in_work = stage.state.wheel_backs_off = 0, stage.state.homed = 0; });
   WAIT_FOR(enabledButtons().empty());
   EXPECT_FALSE(panel.enabled("touch_off"));
 }

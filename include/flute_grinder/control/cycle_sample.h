@@ -32,6 +32,7 @@ struct CycleSample {
   std::uint64_t job = 0;   ///< number of the running job, or else the last one; 0 for a setpoint without a job
   bool job_ended = false;  ///< the job's stream is no longer in use; passed on to the next sample if this one is lost
   bool wheel_in_work = false;
+  bool wheel_backs_off = false;  ///< with wheel_in_work: the way out leads along X first
   bool spindle_commanded = false;
   bool coolant_commanded = false;
   Axes distance_to_go = Axes::Zero();      ///< distance from the positions to the end of the running move [m], A [rad]

@@ -41,7 +41,8 @@ struct Wheel {
 Wheel wheelOf(const GrindProgram& program);
 
 /// A wheel that may be in the workpiece of an unknown job: it is clear at the top of Y's travel.
-Wheel unknownWheel(const AxisLimits& limits);
+/// @param is_cup whether its rim may be round a tooth: it backs off to the lower end of X's travel before it rises.
+Wheel unknownWheel(const AxisLimits& limits, bool is_cup);
 
 /// How a job ended.
 enum class JobEnd : std::uint8_t {

@@ -65,20 +65,21 @@ class WheelWatch {
   ///        is known, and a lift that was stopped continues.
   /// @param at commanded position of the axes [m], A [rad].
   LiftTarget liftTarget(bool x_homed, bool y_homed, const Axes& at) const noexcept {
-    // For an unknown job the target is the top of the travel, unless the wheel is already above it.
-    const bool to_top = !wheel_.known && at[kY] < wheel_.clear_y;
-    LiftTarget target{at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
+    // For an unknown job the targets are the ends of the travels, unless the wheel is already beyond them.
+    const bool to_front = !wheel_.known && at[kX] > wheel_.clear_x, to_top = !wheel_.known && at[kY] < wheel_.clear_y;
+    LiftTarget target{to_front ? wheel_.clear_x : at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
     if (last_target_) target = *last_target_;
     if (x_homed) target.x = wheel_.clear_x;
     if (y_homed) target.y = wheel_.clear_y;
     return {wheel_.back > 0 ? std::min(at[kX], target.x) : at[kX], target.y};
   }
 
-  /// Whether a motion of a single axis takes the wheel out of the work as a lift does.
+  /// Whether the way out of the work leads along X before the wheel may rise.
   /// @param x commanded X, relative to the machine's reference [m].
+  bool backsOff(double x) const noexcept { return wheel_.back > 0 && x > wheel_.clear_x + kBefore; }
+  /// Whether a motion of a single axis takes the wheel out of the work as a lift does. @param x as for backsOff() [m].
   bool isWayOut(int axis, bool upward, double x) const noexcept {
-    const bool backs_off = wheel_.back > 0 && x > wheel_.clear_x + kBefore;
-    return backs_off ? axis == kX && !upward : axis == kY && upward;
+    return backsOff(x) ? axis == kX && !upward : axis == kY && upward;
   }
 
  private:

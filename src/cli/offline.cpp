@@ -5,11 +5,13 @@
 #include "cli/machine_file.h"
 #include "cli/tool_output.h"
 #include "flute_grinder/base/escaped.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/step_table.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/plan_result.h"
+#include "flute_grinder/tool/pass_removal.h"
 
 #include <cstdio>
 
@@ -84,6 +86,37 @@ void printStatistics(const PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
+constexpr double kMillimetre2 = kMillimetre * kMillimetre, kMillimetre3 = kMillimetre2 * kMillimetre;
+
+/// Prints what each pass of a tooth removes.
+void printText(const std::vector<PassRemoval>& passes) {
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const auto& [depth, area, rate, volume] = passes[i];
+    std::printf("%-20s %.4f mm deep, ", format("pass %zu", i + 1).c_str(), depth / kMillimetre);
+    if (area > 0) {
+      std::printf("%.4g mm^2 of a section, %.3g mm^3/s\n", area / kMillimetre2, rate / kMillimetre3);
+    } else {
+      std::printf(i > 0 && depth == passes[i - 1].depth ? "spark-out\n" : "removes nothing\n");
+    }
+  }
+}
+
+Json toJson(const std::vector<PassRemoval>& passes) {
+  Json json = Json::array();
+  for (const auto& [depth, area, rate, volume] : passes) {
+    json.push_back({{"depth_mm", depth / kMillimetre},
+                    {"area_mm2", area / kMillimetre2},
+                    {"rate_mm3_s", rate / kMillimetre3},
+                    {"volume_mm3", volume / kMillimetre3}});
+  }
+  return json;
+}
+
+/// What the passes of a plan remove; empty for a plan without a program.
+std::vector<PassRemoval> removalOf(const PlannedJob& plan) {
+  return plan.program ? removalOfPasses(plan.program->job()) : std::vector<PassRemoval>();
+}
+
 }  // namespace
 
 int runTable(const TableOptions& options) {
@@ -138,9 +171,11 @@ int runPlan(const PlanOptions& options) {
   if (options.json) {
     Json json = toJson(plan);
     json["shank_cut_mm"] = shankCut(job->cutter) / kMillimetre;
+    json["passes"] = toJson(removalOf(plan));
     print(json);
   } else {
     printPlan(resultOf(plan).plan);
+    printText(removalOf(plan));
   }
   for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason).c_str());

@@ -298,10 +298,6 @@ void checkTogether(Checker& checker, const GrindJob& job) {
                    "enough for the depth in " + std::to_string(allowed_passes) + " passes per tooth, " +
                        std::to_string(kMaxPassesOfAll) + " of all teeth");
   }
-  if (!checker.good()) return;
-  const auto passes = static_cast<double>(job.tooth_angles.size() * passDepths(p).size());
-  checker.below("process.wheel_wear_per_pass", p.wheel_wear_per_pass, (p.wheel_diameter / 2 - p.wheel_wear) / passes,
-                "what is left of the wheel's radius, over the passes of all teeth");
 }
 
 }  // namespace

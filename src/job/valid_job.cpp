@@ -19,12 +19,12 @@ std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& de
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(depths.size());
   const bool tooth_major = job.process().order == GrindOrder::kToothMajor;
+  const double wear = isByFace(job.process().kind) ? 0 : job.process().wheel_wear;
   std::vector<JobPass> all;
   all.reserve(static_cast<std::size_t>(teeth) * depths.size());
   for (int i = 0; i < teeth * passes; ++i) {
     const ToothPass place = tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth};
-    all.push_back({place, depths[static_cast<std::size_t>(place.pass)],
-                   job.process().wheel_wear + i * job.process().wheel_wear_per_pass});
+    all.push_back({place, depths[static_cast<std::size_t>(place.pass)], wear + i * job.process().wheel_wear_per_pass});
   }
   return all;
 }
@@ -34,15 +34,29 @@ Range startOf(const ReliefPath& path, double length) {
   return {-path.beyondEnd() - kRunIn, length + path.beyondShank() + kRunIn};
 }
 
+/// @throw InvalidJob if there are more passes than the wheel lasts.
+void requireWheelLasts(const GrindProcess& p, std::size_t passes) {
+  const bool by_face = isByFace(p.kind);
+  const double left = by_face ? p.wheel_width - p.wheel_corner_radius_lower - p.wheel_corner_radius_upper
+                              : p.wheel_diameter / 2 - p.wheel_wear;
+  const double most = left / static_cast<double>(passes);
+  if (p.wheel_wear_per_pass == 0 || p.wheel_wear_per_pass < most) return;
+  const std::string what = by_face ? "the wheel's width between its corners" : "what is left of the wheel's radius";
+  throw InvalidJob({{ReasonKind::kNotBelow, 0, "process.wheel_wear_per_pass", what + ", over the passes of all teeth",
+                     Unit::kMetre, p.wheel_wear_per_pass, 0, most}});
+}
+
 constexpr const char* kNoEdges = "the edges that the operation follows are not computed; see withLaws()";
 
 FaceWheel faceWheelOf(const GrindProcess& p, double wear) noexcept {
   const double radius = p.wheel_diameter / 2;
-  return {radius, radius - wear, p.wheel_width, 0, p.setup_height, p.wheel_rim > 0 ? radius - p.wheel_rim : 0};
+  const bool by_face = isByFace(p.kind);
+  return {radius,         radius - (by_face ? p.wheel_wear : wear),  p.wheel_width, by_face ? wear : 0,
+          p.setup_height, p.wheel_rim > 0 ? radius - p.wheel_rim : 0};
 }
 
 /// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
-/// @param wear wear of the wheel's radius [m].
+/// @param wear of the pass, see JobPass [m].
 FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
   const GrindProcess& p = job.process();
   const FaceWheel wheel = faceWheelOf(p, wear);
@@ -210,6 +224,7 @@ ValidJob::ValidJob(GrindJob job) {
     content.laws = lawsOf(job, content.cutters, {}, {});
     content.job = std::move(job);
   }
+  requireWheelLasts(content.job.process(), content.passes.size());
   if (content.job.process().z_law == ZLaw::kPublished) content.z_corrections.resize(content.cutters.size());
   content_ = std::make_shared<const Content>(std::move(content));
 }

@@ -129,7 +129,9 @@ double clearanceOf(const ValidJob& job, const std::vector<Helix>& helices, const
 double clearXOf(const ValidJob& job) {
   double x = std::numeric_limits<double>::infinity();
   if (!job->comesAlongX()) return x;
-  for (int tooth = 0; tooth < job.teeth(); ++tooth) x = std::min(x, job.faceStroke(tooth, 0, 0).from[kX]);
+  // A face that has worn begins nearer to the work.
+  const double wear = job.passes().front().wear;
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) x = std::min(x, job.faceStroke(tooth, 0, wear).from[kX]);
   return x;
 }
 
@@ -187,7 +189,7 @@ void GrindProgram::append(MoveKind kind, const ToothPass& pass, const Axes& to, 
 
 void GrindProgram::appendStraightPass(const JobPass& pass, Axes& at) {
   const FaceStroke stroke = job_.faceStroke(pass.place.tooth, pass.depth, pass.wear);
-  const auto go = [&](MoveKind kind) { append(kind, pass.place, at, pass.wear); };
+  const auto go = [&](MoveKind kind) { append(kind, pass.place, at); };
   at[kA] = stroke.from[kA];
   go(MoveKind::kIndex);
   at[kX] = stroke.from[kX];

@@ -187,7 +187,7 @@ const char* angleOfPlane(OperationKind kind) {
 
 JobSetup::Straight straightOf(const ValidJob& job) {
   JobSetup::Straight straight;
-  straight.last = job.faceStroke(0, job.deepest(), job->process().wheel_wear);
+  straight.last = job.faceStroke(0, job.deepest(), job.passes().front().wear);
   straight.passes = static_cast<int>(job.depths().size());
   straight.stock = job.deepest();
   straight.past_axis = -(straight.last.to[kY] + job->cutter.end_diameter / 2 + job->process().wheel_wear);
@@ -206,7 +206,7 @@ JobSetup::Straight straightOf(const ValidJob& job) {
 double heightOfStrokes(const ValidJob& job) {
   double height = 0;
   for (int i = 0; i < job.teeth(); ++i) {
-    height += job.faceStroke(i, job.deepest(), job->process().wheel_wear).to[kZ] / job.teeth();
+    height += job.faceStroke(i, job.deepest(), job.passes().front().wear).to[kZ] / job.teeth();
   }
   visitJobFields([&](const JobField& field, auto) {
     if (std::string_view(field.path) == "process.setup_height") {

@@ -36,9 +36,12 @@ void addCuts(const ValidJob& job, const EndStrokes& strokes, std::vector<EndCut>
   const std::vector<double> wear = job.wearOfTeeth();
   for (const auto& [tooth, stroke] : strokes) {
     const auto i = static_cast<std::size_t>(tooth);
-    cuts.push_back(
-        {i, job->process().kind,
-         FaceSweep(stroke, job.faceWheel(wear[i]), wheelOf(*job).worn(wear[i]), job->cutter.end_diameter / 2, 0)});
+    const FaceWheel wheel = job.faceWheel(wear[i]);
+    GrindJob worn = *job;
+    worn.process().wheel_width -= wheel.face_wear;
+    cuts.push_back({i, job->process().kind,
+                    FaceSweep(stroke, wheel, wheelOf(worn).worn(wheel.nominal_radius - wheel.radius),
+                              job->cutter.end_diameter / 2, 0)});
   }
 }
 

@@ -65,8 +65,9 @@ FaceSweep::FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProf
       sin_a_(std::sin(stroke.to[kA] + tooth_angle)),
       spindle_(-std::sin(stroke.swivel), 0, std::cos(stroke.swivel)),
       across_(std::cos(stroke.swivel), 0, std::sin(stroke.swivel)) {
-  const auto centre = [&](const Axes& at) {
-    return Vector3d(at[kX], end_radius + wheel.nominal_radius + at[kY], wheel.height + at[kZ]);
+  const auto centre = [&](const Axes& at) -> Vector3d {
+    const Vector3d of_new(at[kX], end_radius + wheel.nominal_radius + at[kY], wheel.height + at[kZ]);
+    return of_new + wheel.face_wear / 2 * spindle_;
   };
   end_ = centre(stroke.to);
   const Vector3d way = centre(stroke.from) - end_;

@@ -14,7 +14,8 @@ namespace grinder {
 /// the rim of such a cup is taken as sharp.
 class FaceSweep {
  public:
-  /// @param profile the wheel with its present wear, convex; its faces are at the ends of FaceWheel::width.
+  /// @param wheel worn, if at all, at its lower face.
+  /// @param profile the wheel with its present wear, convex; as wide as FaceWheel::width less the face's wear.
   /// @param end_radius radius of the tool at its end [m].
   /// @param tooth_angle added to A of the stroke [rad].
   FaceSweep(const FaceStroke& stroke, const FaceWheel& wheel, WheelProfile profile, double end_radius,

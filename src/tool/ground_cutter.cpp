@@ -26,7 +26,7 @@ constexpr double kSamePitch = 1e-9;   ///< [rad]
 double withinTurn(double angle) { return angle - units::kTurn * std::floor(angle / units::kTurn); }
 
 /// The angle that some arcs cover together.
-double covered(std::vector<Arc>& arcs) {
+double covered(const std::vector<Arc>& arcs) {
   std::vector<Arc> parts;
   for (const Arc& arc : arcs) {
     if (arc.high - arc.low >= units::kTurn) return units::kTurn;
@@ -42,6 +42,22 @@ double covered(std::vector<Arc>& arcs) {
     end = std::max(end, part.high);
   }
   return sum;
+}
+
+/// The area of a ring of a section, of which an angle counts on each circle [m^2].
+/// @param radii radii of the ring [m].
+/// @param angle_at called with a radius; returns the angle [rad].
+template <typename Angle>
+double areaOfRings(const Range& radii, const Angle& angle_at) {
+  const double depth = radii.to - radii.from;
+  double area = 0;
+  for (int i = 0; i < kRings; ++i) {
+    // Rings closer together toward the core, where the arcs open like a square root.
+    const double u = (i + 0.5) / kRings;
+    const double r = radii.from + depth * u * u;
+    area += angle_at(r) * r * depth * 2 * u / kRings;
+  }
+  return area;
 }
 
 }  // namespace
@@ -130,27 +146,36 @@ double GroundCutter::coreRadius(double x) const {
   return min;
 }
 
-double GroundCutter::areaRemoved(double x, double core_radius) const {
-  const double depth = cutter_.radius(x) - core_radius;
-  double area = 0;
-  for (int i = 0; i < kRings; ++i) {
-    // Rings closer together toward the core, where the arcs open like a square root.
-    const double u = (i + 0.5) / kRings;
-    const double r = core_radius + depth * u * u;
-    std::vector<std::optional<Arc>> of_flutes;
-    for (const Flute& flute : flutes_) of_flutes.push_back(arc(flute, x, r));
-    std::vector<Arc> arcs;
-    for (const GroundTooth& tooth : teeth_) {
-      if (const auto& a = of_flutes[tooth.flute]) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
-      for (const Relief& relief : reliefs_[tooth.flute]) {
-        for (const WheelSweep& sweep : relief) {
-          if (const auto a = sweep.arc(x, r)) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
-        }
+std::vector<Arc> GroundCutter::arcsOn(double x, double r) const {
+  std::vector<std::optional<Arc>> of_flutes;
+  for (const Flute& flute : flutes_) of_flutes.push_back(arc(flute, x, r));
+  std::vector<Arc> arcs;
+  for (const GroundTooth& tooth : teeth_) {
+    if (const auto& a = of_flutes[tooth.flute]) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
+    for (const Relief& relief : reliefs_[tooth.flute]) {
+      for (const WheelSweep& sweep : relief) {
+        if (const auto a = sweep.arc(x, r)) arcs.push_back({a->low + tooth.angle, a->high + tooth.angle});
       }
     }
-    area += covered(arcs) * r * depth * 2 * u / kRings;
   }
-  return area;
+  return arcs;
+}
+
+double GroundCutter::areaRemoved(double x, double core_radius) const {
+  return areaOfRings({core_radius, cutter_.radius(x)}, [&](double r) { return covered(arcsOn(x, r)); });
+}
+
+double GroundCutter::areaRemovedBy(const WheelSweep& stroke, double angle, double x) const {
+  const double radius = cutter_.radius(x), core = stroke.minRadius(x, radius);
+  if (!(core < radius)) return 0;
+  return areaOfRings({core, radius}, [&](double r) {
+    const auto own = stroke.arc(x, r);
+    if (!own) return 0.0;
+    std::vector<Arc> arcs = arcsOn(x, r);
+    const double before = covered(arcs);
+    arcs.push_back({own->low + angle, own->high + angle});
+    return covered(arcs) - before;
+  });
 }
 
 GroundCutter::NextTooth GroundCutter::next(std::size_t tooth) const {

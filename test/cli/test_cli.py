@@ -83,7 +83,7 @@ class TestPlan(CommandLine):
             self.assertGreater(reported['max_jerk'][axis + '_s3'], 0)
             ripple = max(abs(a - 2 * b + c) for a, b, c in zip(positions, positions[1:], positions[2:])) / 1e-3 ** 2
             self.assertAlmostEqual(reported['odd_even_ripple'][axis + '_s2'], ripple, delta=1e-5 * max(1, ripple))
-        self.assertEqual((reported['complete_from_mm'], reported['complete_to_mm'], len(reported)), (0, 30, 20))
+        self.assertEqual((reported['complete_from_mm'], reported['complete_to_mm'], len(reported)), (0, 30, 21))
         printed = self.grind(0, 'plan', PAPER_JOB).stdout
         self.assertRegex(printed, r'setpoints +%d\nduration +%.3f s' % (len(rows), (len(rows) - 1) * 1e-3))
         for feed in re.search(r'feed constancy +(\S+) to (\S+) mm/min', printed).groups():
@@ -93,6 +93,10 @@ class TestPlan(CommandLine):
         # The paper's cone ends with a radius of 5 + 30 tan 5 deg, in a shank of 16 mm.
         self.assertAlmostEqual(reported['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
         self.assertRegex(printed, r"cut out of the shank 0\.375 mm more than the infeed, by the first pass beyond the flute's end")
+        for number, removed in enumerate(reported['passes'], 1):
+            self.assertIn('pass %-15d %.4f mm deep, %.4g mm^2 of a section, %.3g mm^3/s\n' % (
+                number, removed['depth_mm'], removed['area_mm2'], removed['rate_mm3_s']), printed)
+        self.assertEqual(number, 1)
 
     def test_what_is_asked_stands_beside_what_is_ground(self):
         with open(PAPER_JOB) as file:

@@ -1,5 +1,6 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include "flute_grinder/job/job_file.h"
 #include "motion/examples.h"
 
 #include <gtest/gtest.h>
@@ -104,9 +105,6 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
        "process.finish_infeed_mm = 0.6 mm; allowed: up to the depth, 0.5 mm"},
       {[](GrindJob& j) { j.process().wheel_wear = 50e-3; },
        "process.wheel.wear_mm = 50 mm; allowed: less than 50 mm, the wheel's radius"},
-      {[](GrindJob& j) { wearPerPass(j, 0.125e-3 * (1 + 1e-6)); },
-       "process.wheel.wear_per_pass_mm = 0.125000125 mm; allowed: less than 0.125 mm, what is left of the wheel's "
-       "radius, over the passes of all teeth"},
       {[](GrindJob& j) { j.process().depth = 4e-3, j.process().infeed = 0.1e-6; },
        "process.infeed_mm = 0.0001 mm; allowed: enough for the depth in 10000 passes per tooth, 20000 of all teeth"},
       // 64 times 313 are 20,032.
@@ -300,6 +298,52 @@ TEST(ValidJob, HasThePlaceDepthAndWearOfEveryPassInOrder) {
       EXPECT_NEAR(pass.wear, 0.25e-3 + static_cast<double>(i) * 1e-6, 1e-18);
     }
   }
+}
+
+/// A face that grinds wears from 0 on, since its touch-off has taken up what it wore before.
+TEST(ValidJob, OfAFaceHasTheWearSinceItBegan) {
+  for (const char* operation : {"gash", "end_primary", "end_secondary", "chamfer"}) {
+    SCOPED_TRACE(operation);
+    GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", operation);
+    job.process().wheel_wear = 0.25e-3;
+    job.process().wheel_wear_per_pass = 1e-6;
+    const bool gash = job.process().kind == OperationKind::kGash;
+    const ValidJob valid(job);
+    for (const std::size_t i : {std::size_t{0}, valid.passes().size() - 1}) {
+      const double worn = static_cast<double>(i) * 1e-6, wear = valid.passes()[i].wear;
+      EXPECT_NEAR(wear, gash ? 0.25e-3 + worn : worn, 1e-15);
+      const FaceWheel wheel = valid.faceWheel(wear);
+      EXPECT_NEAR(wheel.radius, 50e-3 - 0.25e-3 - (gash ? worn : 0), 1e-15);
+      EXPECT_NEAR(wheel.face_wear, gash ? 0 : worn, 1e-15);
+    }
+  }
+}
+
+TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {
+  const auto refusal = [](const GrindJob& job) {
+    try {
+      return ValidJob(job).digest();
+    } catch (const InvalidJob& refused) {
+      return text(refused.reasons());
+    }
+  };
+  GrindJob flute = paperJob();
+  wearPerPass(flute, 0.125e-3 * (1 + 1e-6));
+  EXPECT_EQ(refusal(flute),
+            "process.wheel.wear_per_pass_mm = 0.125000125 mm; allowed: less than 0.125 mm, what is left of the wheel's "
+            "radius, over the passes of all teeth");
+  GrindJob end = readJobFile("jobs/end_mill_d10_t4.yaml", "chamfer");  // 6 mm wide
+  end.process().wheel_corner_radius_lower = 0.4e-3;
+  const std::size_t passes = ValidJob(end).passes().size();
+  ASSERT_EQ(passes % 4, 0u);
+  end.process().wheel_wear_per_pass = 5.6e-3 / static_cast<double>(passes) * (1 - 1e-9);
+  EXPECT_EQ(refusal(end), ValidJob(end).digest());
+  end.process().wheel_wear_per_pass *= 1 + 1e-6;
+  const std::string why = refusal(end);
+  EXPECT_NE(why.find(", the wheel's width between its corners, over the passes of all teeth"), std::string::npos)
+      << why;
+  end.process().wheel_wear_per_pass = std::nan("");
+  EXPECT_THROW(ValidJob{end}, InvalidJob);
 }
 
 TEST(ShankCut, IsByHowMuchTheShankStandsOut) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <string>
 #include <vector>
 
 namespace grinder {
@@ -53,9 +54,10 @@ GrindJob endJob(OperationKind kind) {
 }
 
 /// With edges at the teeth's angles.
-ValidJob validEndJob(OperationKind kind, CutDirection cut = CutDirection::kRightHand) {
+ValidJob validEndJob(OperationKind kind, CutDirection cut = CutDirection::kRightHand, double wear_per_pass = 0) {
   GrindJob asked = endJob(kind);
   asked.cutter.cut = cut;
+  asked.process().wheel_wear_per_pass = wear_per_pass;
   if (cut == CutDirection::kLeftHand) {
     GrindProcess& p = asked.process();
     p.wheel_profile = WheelShape::kCup;
@@ -91,6 +93,36 @@ TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
     for (std::size_t i = 1; i < planes.size(); ++i) {
       const double infeed = kind == OperationKind::kGash ? 0 : job.depths()[i] - job.depths()[i - 1];
       EXPECT_NEAR(planes[i - 1] - planes[i], infeed, 1e-8);
+    }
+  }
+}
+
+/// A face that has worn by w goes on by w along the spindle, which leans back by the swivel.
+TEST(StraightStrokes, GoOnByTheWearOfTheFaceAlone) {
+  constexpr double kWear = 2e-6, kRounded = 1e-6;  // the set-up's swivels are rounded
+  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+    for (const OperationKind kind :
+         {OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd, OperationKind::kChamfer}) {
+      SCOPED_TRACE(std::string(toString(kind)) + " " + toString(cut));
+      const auto strokesWith = [&](double wear) {
+        std::vector<Axes> ends;
+        for (const Move& move :
+             GrindProgram(validEndJob(kind, cut, wear), plainMachine(), plainMachine().park).moves()) {
+          if (move.kind == MoveKind::kApproach || move.kind == MoveKind::kStroke) ends.push_back(move.to);
+        }
+        return ends;
+      };
+      const std::vector<Axes> fresh = strokesWith(0), worn = strokesWith(kWear);
+      ASSERT_EQ(fresh.size(), worn.size());
+      const double swivel = endJob(kind).process().setup_swivel;
+      for (std::size_t i = 0; i < fresh.size(); ++i) {
+        const double wear = static_cast<double>(i / 2) * kWear;
+        const Axes way = worn[i] - fresh[i];
+        EXPECT_NEAR(way[kX], wear * std::sin(swivel), kRounded * wear + 1e-15);
+        EXPECT_NEAR(way[kZ], -wear * std::cos(swivel), kRounded * wear + 1e-15);
+        EXPECT_NEAR(way[kY], 0, 1e-15);
+        EXPECT_EQ(way[kA], 0);
+      }
     }
   }
 }

@@ -96,8 +96,8 @@ Vector inMachine(const Face& f, const Vector& place, Real tooth) {
 }
 
 /// The centre of the face that grinds, in the machine.
-Vector faceAt(const Face& f, const Pose& pose, const Point& at) {
-  const Real half = (pose.upper ? 1 : -1) * f.wheel_width / 2;
+Vector faceAt(const Face& f, const Pose& pose, const Point& at, Real face_wear) {
+  const Real half = (pose.upper ? 1 : -1) * (f.wheel_width / 2 - face_wear);
   return {Real(at[0]) + half * pose.spindle[0], f.radius + f.wheel_radius + Real(at[1]),
           f.height + Real(at[2]) + half * pose.spindle[2]};
 }
@@ -144,7 +144,7 @@ void judgeWayIn(const Face& f, const Pose& pose, const Pass& pass) {
   requireSame("begin, Y", pass.from[1], pass.to[1], 0);
   requireSame("begin, Z", pass.from[2], pass.to[2], 0);
   const Real nearest = -f.stock * pose.spindle[0] + f.radius * std::abs(pose.spindle[2]);
-  const Real clear = dot(pose.spindle, faceAt(f, pose, pass.from)) - nearest;
+  const Real clear = dot(pose.spindle, faceAt(f, pose, pass.from, pass.face_wear)) - nearest;
   require(clear >= f.clear - kExact && clear <= f.clear + 4 * f.radius * std::abs(pose.spindle[2]) + kExact,
           "distance from the blank", clear, f.clear);
 }
@@ -174,7 +174,7 @@ void judgeRimOfChamfer(const Face& f, const Plane& plane, const Pose& pose, cons
 void judgeGash(const Face& f, const Plane& plane, const Pose& pose, const Pass& pass, Real rim) {
   const Real level = dot(pose.spindle, inMachine(f, plane.through, pose.tooth)) / pose.spindle[2];
   const auto placeOf = [&](const Point& at) {
-    const Vector face = faceAt(f, pose, at);
+    const Vector face = faceAt(f, pose, at, pass.face_wear);
     const std::array<Real, 2> place{dot(less(face, {0, 0, level}), pose.across), face[1]};
     const Real above = (place[1] + f.past - pass.stock) * std::cos(f.angle) - place[0] * std::sin(f.angle);
     requireSame("rim above the gash's bottom", above, rim);
@@ -199,12 +199,12 @@ void judge(const Face& f, const Pass& pass) {
   for (const Point* at : {&pass.from, &pass.to}) {
     requireSame("A", (*at)[3], f.a - pose.tooth);
     if (round && at == &pass.from) continue;
-    requireSame("face above the plane", dot(pose.spindle, less(faceAt(f, pose, *at), place)), left);
+    requireSame("face above the plane", dot(pose.spindle, less(faceAt(f, pose, *at, pass.face_wear), place)), left);
   }
   const Real rim = f.wheel_radius - pass.wear;
   if (f.kind == Face::Kind::kGash) return judgeGash(f, plane, pose, pass, rim);
   // The passes step along X: the last one's place is where the rim is judged.
-  Vector face = faceAt(f, pose, pass.to);
+  Vector face = faceAt(f, pose, pass.to, pass.face_wear);
   face[0] += pass.stock / -pose.spindle[0];
   if (round) {
     judgeWayIn(f, pose, pass);

@@ -243,7 +243,11 @@ std::vector<second_opinion::Pass> straightPassesOf(const ValidJob& job) {
     Axes::Map(one.from.data()) = stroke.from;
     Axes::Map(one.to.data()) = stroke.to;
     one.stock = second_opinion::Real(job.deepest()) - pass.depth;
-    one.wear = pass.wear;
+    const second_opinion::Real worn =
+        second_opinion::Real(passes.size()) * second_opinion::Real(job->process().wheel_wear_per_pass);
+    const bool by_rim = job->process().kind == OperationKind::kGash;
+    one.wear = job->process().wheel_wear + (by_rim ? worn : 0);
+    one.face_wear = by_rim ? 0 : worn;
     judge(faceOf(job, one.tooth), one);
     passes.push_back(one);
   }

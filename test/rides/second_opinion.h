@@ -28,6 +28,7 @@ struct Pass {
   Real at_end = 0, taper = 0;
   Point from{}, to{};        ///< of a straight stroke
   Real stock = 0, wear = 0;  ///< that it leaves, and of the wheel's radius [m]
+  Real face_wear = 0;        ///< of the face that grinds [m]
 };
 
 struct Asked {

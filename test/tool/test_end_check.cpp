@@ -91,6 +91,25 @@ TEST(EndCheck, TheShippedEndIsAsAskedWithOtherTeethToo) {
   }
 }
 
+/// Each pass takes up what the passes before have worn: of the face by X and Z, of a gash's rim by Y.
+TEST(EndCheck, AWheelThatWearsGrindsTheSameEnd) {
+  const CutterCheck fresh = checked(jobOf("chamfer", kShipped));
+  const CutterCheck worn = checked(jobOf("chamfer", [](GrindJob& job) {
+    for (GrindProcess& p : job.operations) {
+      if (isStraight(p.kind)) p.wheel_wear_per_pass = 1e-6;
+    }
+  }));
+  EXPECT_EQ(text(worn.reasons), "");
+  ASSERT_EQ(worn.figures.size(), fresh.figures.size());
+  for (std::size_t i = 0; i < fresh.figures.size(); ++i) {
+    const GroundFigure &a = fresh.figures[i], &b = worn.figures[i];
+    // The rims of smaller wheels end a little farther in.
+    const double off = a.figure == ToolFigure::kUncutDiameter ? 0.2e-6 : 1e-9;
+    EXPECT_NEAR(b.least.value, a.least.value, off) << toString(a.figure);
+    EXPECT_NEAR(b.largest.value, a.largest.value, off) << toString(a.figure);
+  }
+}
+
 /// The one that is not like the others tells of which tooth the figure is.
 TEST(EndCheck, UnequalTeethAreMeasuredOneByOne) {
   const auto extremes = [](const std::vector<double>& teeth) {

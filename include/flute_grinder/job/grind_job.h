@@ -64,6 +64,9 @@ constexpr bool isEndFlank(OperationKind kind) noexcept {
   return kind == OperationKind::kPrimaryEnd || kind == OperationKind::kSecondaryEnd;
 }
 constexpr bool isStraight(OperationKind kind) noexcept { return rowOf(kind).form == StrokeForm::kStraight; }
+/// Whether the wheel's lower face grinds, and so wears, rather than its rim. A gash is fed in along the wheel's radius,
+/// so its rim does the work.
+constexpr bool isByFace(OperationKind kind) noexcept { return isEndFlank(kind) || kind == OperationKind::kChamfer; }
 
 /// How the flutes, or a relief behind the edge of every tooth, are ground. For a relief, `depth`, `depth_end`, the
 /// overtravels, `setup_x_shift` and the law of Z follow from the other members, and are 0 here.
@@ -91,7 +94,8 @@ struct GrindProcess {
   double wheel_corner_radius_upper = 0;      ///< corner radius between surface and upper face; 0 for a sharp edge [m]
   double wheel_rim = 0;                      ///< width of a cup's rim on its larger face; 0: it does not matter [m]
   double wheel_wear = 0;                     ///< wear of the radius, from wheel_diameter / 2, compensated in Y [m]
-  double wheel_wear_per_pass = 0;  ///< wear added by each pass of any tooth, compensated before the next pass [m]
+  /// Wear of the radius, or of the face that grinds, by each pass of any tooth; compensated before the next pass [m].
+  double wheel_wear_per_pass = 0;
   double setup_swivel = 0;  ///< angle of the wheel's plane to the cutter's axis; positive for right-hand flutes [rad]
   double setup_height = 0;  ///< height of the wheel's centre above the cutter's axis at Z = 0 [m]
   double behind = 0;        ///< distance of a primary relief behind the edge at the small end [m]

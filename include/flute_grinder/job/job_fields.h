@@ -134,7 +134,7 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).wheel_rim; });
   visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100, "by which the radius is below half of `process.wheel.diameter_mm`; compensated by Y"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear; });
-  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed", "0"},
+  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed. Of a flank of the end or a chamfer it is the wear of the face that grinds, compensated by X and Z", "0"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -89, 89, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
         [](auto& j) -> auto& { return processOf(j).setup_swivel; });

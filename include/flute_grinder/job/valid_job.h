@@ -71,7 +71,9 @@ EndTooth endToothOf(const GrindJob& job, int tooth);
 struct JobPass {
   ToothPass place;
   double depth = 0;  ///< depth of the pass where the flute is deepest [m]
-  double wear = 0;   ///< wear of the wheel's radius at the start of the pass, as the job predicts it [m]
+  /// What the pass compensates, as the job predicts it at the start of the pass: the wear of the wheel's radius, or
+  /// that of its face since the job began; see isByFace() [m].
+  double wear = 0;
 };
 
 /// A job that validate() accepts, with everything derived from it, computed once. Copies share it.
@@ -97,7 +99,7 @@ class ValidJob {
   /// The passes of all teeth, in grinding order.
   const std::vector<JobPass>& passes() const noexcept { return content_->passes; }
   double deepest() const noexcept { return content_->deepest; }  ///< maximum of depths() [m]
-  /// The wheel's wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
+  /// JobPass::wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
   std::vector<double> wearOfTeeth() const;
 
   /// The strokes of a tooth.
@@ -123,10 +125,10 @@ class ValidJob {
   /// Whether the strokes are straight, at constant A, and so have a faceStroke() and no laws.
   bool isStraight() const noexcept { return grinder::isStraight(content_->job.process().kind); }
   /// The stroke of a pass of an operation on the end, with A of the tooth's edge.
-  /// @param depth, wear as for depthLaw() [m].
+  /// @param depth, wear of the pass, see JobPass [m].
   /// @throw std::invalid_argument if withEdges() has not been called.
   FaceStroke faceStroke(int tooth, double depth, double wear) const;
-  /// The wheel in that stroke. @param wear wear of its radius [m].
+  /// The wheel in that stroke. @param wear of the pass, see JobPass [m].
   FaceWheel faceWheel(double wear) const noexcept;
 
   /// The path of a relief; null for flutes.

@@ -33,7 +33,7 @@ struct Move {
   std::uint16_t tooth = 0;
   std::uint16_t pass = 0;
   Axes to = Axes::Zero();  ///< end position [m], A [rad]
-  double wear = 0;         ///< wear of the wheel's radius, compensated in Y of the infeed and the stroke [m]
+  double wear = 0;         ///< wear of the wheel's radius, compensated in Y of infeed and stroke along a flute [m]
   double taper = 0;        ///< slope that the stroke adds to the cone's dY/dX
 };
 

@@ -107,6 +107,9 @@ class GroundCutter {
 
   /// The area removed in a section [m^2].
   double areaRemoved(const GroundSection& section) const { return areaRemoved(section.x, section.core_radius); }
+  /// The area that one more stroke would remove in a section [m^2].
+  /// @param angle angle of the stroke's tooth [rad].
+  double areaRemovedBy(const WheelSweep& stroke, double angle, double x) const;
 
   /// The range in which all flutes are complete, to 10 um.
   /// @param from,to range to examine [m].
@@ -133,6 +136,8 @@ class GroundCutter {
     double pitch;  ///< angle to that tooth [rad]
   };
   NextTooth next(std::size_t tooth) const;
+  /// Whether the lands of two teeth are bounded by the same flutes at the same distance.
+  bool landsAreAlike(std::size_t a, std::size_t b) const;
 
  private:
   /// Arcs of a flute on circles from the core outward; nothing where the flute is not that deep.
@@ -146,12 +151,13 @@ class GroundCutter {
   double coreRadius(const Flute& flute, double x) const { return leastRadius(flute, x, cutter_.radius(x)); }
   double coreRadius(double x) const;
   double areaRemoved(double x, double core_radius) const;
+  /// The arcs of a circle that flutes and reliefs of all teeth remove.
+  std::vector<Arc> arcsOn(double x, double r) const;
   bool isComplete(const Flute& flute, double x, double core_radius) const;
   bool arcIsComplete(const Flute& flute, double x, double r) const;
   bool isComplete(double x) const;
   void measureLand(std::size_t tooth, const std::vector<ToothSection>& measured, const std::vector<Arcs>& arcs,
                    ToothSection& section) const;
-  bool landsAreAlike(std::size_t a, std::size_t b) const;
 
   ConicalCutter cutter_;
   std::vector<Flute> flutes_;

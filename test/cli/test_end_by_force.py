@@ -174,6 +174,7 @@ class Tool:
 
 class RightHandEndByForce(unittest.TestCase):
     FILE = 'jobs/end_mill_d10_t4.yaml'
+    PARTS = [0.1, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured
 
     @classmethod
     def setUpClass(cls):
@@ -183,7 +184,7 @@ class RightHandEndByForce(unittest.TestCase):
         cls.end, cls.chamfer = cls.tool.cutter['end'], cls.tool.cutter['chamfer']
         cls.dish, cls.clearance = (math.tan(math.radians(cls.end[key])) for key in ('dish_deg', 'clearance_deg'))
         cls.corner = cls.tool.radius - cls.chamfer['width_mm']
-        cls.rs = numpy.array([0.1, 0.3, 0.6, 0.9]) * cls.corner
+        cls.rs = numpy.array(cls.PARTS) * cls.corner
 
     def near(self, tooth, name, values, asked, allowed):
         self.assertLessEqual(numpy.abs(values - asked).max(), allowed, '%s of tooth %d: %s' % (name, tooth + 1, values))
@@ -269,6 +270,11 @@ class RightHandEndByForce(unittest.TestCase):
 
 class LeftHandEndByForce(RightHandEndByForce):
     FILE = 'jobs/left_hand_end_mill_d8_t3.yaml'
+
+
+class SixTeethByForce(RightHandEndByForce):
+    FILE = 'jobs/end_mill_d12_t6.yaml'
+    PARTS = [0.2, 0.3, 0.6, 0.9]  # farther in, the next gash takes the secondary flank
 
 
 if __name__ == '__main__':

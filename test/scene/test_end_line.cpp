@@ -99,7 +99,7 @@ TEST(EndLine, OfAGashIsItsBottom) {
   }
 }
 
-// Whatever the pass, and with wear.
+// Whatever the pass, and with wear: of a gash of the rim, else of the face.
 TEST(EndLine, HasTheRimOfTheWheelOverItAllAlongTheStroke) {
   constexpr double kWear = 0.1 * kMillimetre;
   for (const ValidJob& job : allJobs()) {
@@ -124,10 +124,11 @@ TEST(EndLine, HasTheRimOfTheWheelOverItAllAlongTheStroke) {
         EXPECT_LT(place->error, 1e-12);
         const Vector3d centre =
             Vector3d(position[kX], kRadius + kWheel + position[kY], job->process().setup_height + position[kZ]);
-        const Vector3d rim = place->at - centre - (upper ? 0.5 : -0.5) * job->process().wheel_width * spindle;
-        EXPECT_NEAR(rim.norm(), kWheel - kWear, 1e-12);
-        EXPECT_NEAR(rim.dot(spindle), 0, 1e-12);
         const bool gash = job->process().kind == OperationKind::kGash;
+        const double half_width = job->process().wheel_width / 2 - (gash ? 0 : kWear);
+        const Vector3d rim = place->at - centre - (upper ? half_width : -half_width) * spindle;
+        EXPECT_NEAR(rim.norm(), kWheel - (gash ? kWear : 0), 1e-12);
+        EXPECT_NEAR(rim.dot(spindle), 0, 1e-12);
         expectNear(line.outward(), gash ? Vector3d(-rim.normalized()) : spindle, 1e-9);
       }
       EXPECT_GT(on_line, 3);

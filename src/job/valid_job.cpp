@@ -18,16 +18,34 @@ constexpr double kRunIn = 1e-3;  ///< length at either end of a relief's stroke 
 std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& depths) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(depths.size());
-  const bool tooth_major = job.process().order == GrindOrder::kToothMajor;
+  const GrindProcess& p = job.process();
   std::vector<JobPass> all;
   all.reserve(static_cast<std::size_t>(teeth) * depths.size());
-  for (int i = 0; i < teeth * passes; ++i) {
-    const ToothPass place = tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth};
-    all.push_back({place, depths[static_cast<std::size_t>(place.pass)],
-                   job.process().wheel_wear + i * job.process().wheel_wear_per_pass});
+  // Groups of passes, each tooth by tooth.
+  const auto grind = [&](int from, int to) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+      for (int pass = from; pass < to; ++pass) {
+        const double wear = p.wheel_wear + static_cast<double>(all.size()) * p.wheel_wear_per_pass;
+        all.push_back({{tooth, pass}, depths[static_cast<std::size_t>(pass)], wear});
+      }
+    }
+  };
+  switch (p.order) {
+    case GrindOrder::kToothMajor: grind(0, passes); break;
+    case GrindOrder::kPassMajor:
+      for (int pass = 0; pass < passes; ++pass) grind(pass, pass + 1);
+      break;
+    case GrindOrder::kFinishTogether: {
+      const int finishing = p.spark_out + (p.finish_infeed > 0 ? 1 : 0);
+      grind(0, passes - finishing);
+      grind(passes - finishing, passes);
+      break;
+    }
   }
   return all;
 }
+
+constexpr const char* kNoDepths = "the depths of its passes are not computed; see withLaws()";
 
 /// The travel of a relief's start in a stroke: X of the cutter [m].
 Range startOf(const ReliefPath& path, double length) {
@@ -205,8 +223,10 @@ ValidJob::ValidJob(GrindJob job) {
     takePasses(content);
   } else {
     content.deepest = job.process().deepest();
-    content.depths = passDepths(job.process());
-    content.passes = passesOf(job, content.depths);
+    if (!job.process().roughsByRemoval()) {
+      content.depths = passDepths(job.process());
+      content.passes = passesOf(job, content.depths);
+    }
     content.laws = lawsOf(job, content.cutters, {}, {});
     content.job = std::move(job);
   }
@@ -223,6 +243,9 @@ void ValidJob::takeReliefs(Content& content, const std::vector<CutterGeometry>& 
 
 void ValidJob::takePasses(Content& content) {
   const GrindProcess& p = content.job.process();
+  content.depths.clear();
+  content.passes.clear();
+  if (p.roughsByRemoval()) return;
   const double passes = content.deepest / p.infeed + p.spark_out + 2;
   if (!(passes * static_cast<double>(content.cutters.size()) <= kMaxPassesOfAll)) {
     throw InvalidJob(
@@ -233,7 +256,40 @@ void ValidJob::takePasses(Content& content) {
   content.passes = passesOf(content.job, content.depths);
 }
 
+const std::vector<double>& ValidJob::depths() const {
+  if (!hasPasses()) throw std::invalid_argument(kNoDepths);
+  return content_->depths;
+}
+
+const std::vector<JobPass>& ValidJob::passes() const {
+  if (!hasPasses()) throw std::invalid_argument(kNoDepths);
+  return content_->passes;
+}
+
+ValidJob ValidJob::withRoughing(std::vector<double> depths) const {
+  const GrindProcess& p = content_->job.process();
+  ValidJob job = *this;
+  Content content = *content_;
+  content.depths = passDepths(p, content.deepest, std::move(depths));
+  const std::size_t passes = content.depths.size() * content.cutters.size();
+  if (passes > static_cast<std::size_t>(kMaxPassesOfAll)) {
+    throw InvalidJob({otherReason(std::to_string(passes) + " passes of all teeth; allowed: up to " +
+                                  std::to_string(kMaxPassesOfAll))});
+  }
+  const double left = p.wheel_diameter / 2 - p.wheel_wear;
+  if (!(p.wheel_wear_per_pass * static_cast<double>(passes) < left)) {
+    throw InvalidJob({{ReasonKind::kNotBelow, 0, "process.wheel_wear_per_pass",
+                       "what is left of the wheel's radius, over the passes of all teeth", Unit::kMetre,
+                       p.wheel_wear_per_pass, 0, left / static_cast<double>(passes)}});
+  }
+  content.passes = passesOf(content.job, content.depths);
+  job.content_ = std::make_shared<const Content>(std::move(content));
+  return job;
+}
+
 std::vector<double> ValidJob::wearOfTeeth() const {
+  const GrindProcess& p = content_->job.process();
+  if (p.wheel_wear_per_pass == 0) return std::vector<double>(content_->cutters.size(), p.wheel_wear);
   const auto deepest = std::max_element(depths().begin(), depths().end()) - depths().begin();
   std::vector<double> wear(content_->cutters.size());
   for (const JobPass& pass : passes()) {

@@ -33,6 +33,7 @@ constexpr std::array<ShopUnit, kUnitCount> kShopUnits{{
     {" mm/min", kMillimetrePerMinute},
     {" um", kMicrometre},
     {" mm/rad", kMillimetrePerRadian},
+    {" mm^3/s", kMillimetre3},
 }};
 
 const ShopUnit& shopUnitOf(Unit unit) { return kShopUnits[static_cast<std::size_t>(unit)]; }

@@ -86,8 +86,6 @@ void printStatistics(const PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-constexpr double kMillimetre2 = kMillimetre * kMillimetre, kMillimetre3 = kMillimetre2 * kMillimetre;
-
 /// Prints what each pass of a tooth removes.
 void printText(const std::vector<PassRemoval>& passes) {
   for (std::size_t i = 0; i < passes.size(); ++i) {

@@ -15,6 +15,7 @@
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/tool/z_law.h"
 
 #include <cstdio>
 #include <optional>
@@ -142,11 +143,17 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
   return goal;
 }
 
+/// The job of a goal, with its passes.
+ValidJob withPassesOf(const flute_grinder::GrindGoal& goal) {
+  const ValidJob job(jobFromGoal(goal));
+  return job.hasPasses() ? job : withLaws(job);
+}
+
 }  // namespace
 
 int runJob(const std::string& node, const RunOptions& options) {
   flute_grinder::GrindGoal goal = goalFor(node, options);
-  const ValidJob job(jobFromGoal(goal));
+  const ValidJob job = withPassesOf(goal);
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
   Sent sent;

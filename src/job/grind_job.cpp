@@ -143,6 +143,34 @@ void checkWheel(Checker& checker, const GrindProcess& p) {
   }
 }
 
+/// Checks that exactly one key says how deep the roughing passes are.
+void checkRoughing(Checker& checker, const GrindProcess& p) {
+  constexpr double kMinInfeed = 0.1e-6;
+  const Quantity infeed{p.infeed, Unit::kMetre}, removal{p.removal, Unit::kCubicMetrePerSecond};
+  const Quantity roughing{static_cast<double>(p.roughing_passes), Unit::kNone};
+  const auto beside = [](const char* path, const Quantity& other) {
+    return "0 beside " + fieldName(path) + " = " + text(other);
+  };
+  if (isStraight(p.kind)) {
+    if (p.roughing_passes > 0) {
+      checker.refuse(ReasonKind::kNotAllowed, "process.roughing_passes", roughing, "0 for this operation");
+    }
+    if (p.removal > 0) checker.refuse(ReasonKind::kNotAllowed, "process.removal", removal, "0 for this operation");
+  } else if (p.roughing_passes > 0 && (p.infeed > 0 || p.removal > 0)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.roughing_passes", roughing,
+                   p.infeed > 0 ? beside("process.infeed", infeed) : beside("process.removal", removal));
+  } else if (p.removal > 0 && p.infeed > 0) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.removal", removal, beside("process.infeed", infeed));
+  }
+  if (!(p.infeed >= kMinInfeed * (1 - kRangeRounding)) && !(p.infeed == 0 && p.roughsByRemoval())) {
+    checker.refuse(
+        ReasonKind::kNotAllowed, "process.infeed", infeed,
+        "0.0001 to 50 mm" + std::string(isStraight(p.kind) ? ""
+                                                           : ", or " + fieldName("process.roughing_passes") + " or " +
+                                                                 fieldName("process.removal") + " in its place"));
+  }
+}
+
 bool has(const GrindJob& job, OperationKind kind) {
   const auto is_it = [kind](const GrindProcess& p) { return p.kind == kind; };
   return std::any_of(job.operations.begin(), job.operations.end(), is_it);
@@ -293,7 +321,7 @@ void checkTogether(Checker& checker, const GrindJob& job) {
     checker.refuse(ReasonKind::kAbove, "process.finish_infeed", {p.finish_infeed, Unit::kMetre}, "the depth", deepest);
   }
   const int allowed_passes = std::min(kMaxPasses, kMaxPassesOfAll / static_cast<int>(job.tooth_angles.size()));
-  if (!(deepest / p.infeed + p.spark_out + 2 <= allowed_passes)) {
+  if (!p.roughsByRemoval() && !(deepest / p.infeed + p.spark_out + 2 <= allowed_passes)) {
     checker.refuse(ReasonKind::kNotAllowed, "process.infeed", {p.infeed, Unit::kMetre},
                    "enough for the depth in " + std::to_string(allowed_passes) + " passes per tooth, " +
                        std::to_string(kMaxPassesOfAll) + " of all teeth");
@@ -325,6 +353,7 @@ std::vector<Reason> validate(const GrindJob& job) {
   checkWheelPoints(checker, job);
   visitJobChoices([&](const char* path, int max, auto of) { checker.whole(path, static_cast<int>(of(job)), max); });
   if (checker.good()) checkOperations(checker, job);
+  if (checker.good()) checkRoughing(checker, job.process());
   if (checker.good()) checkTogether(checker, job);
   return checker.take();
 }
@@ -377,6 +406,10 @@ std::vector<double> passDepths(const GrindProcess& process, double deepest) {
   const int rough_passes = static_cast<int>(std::ceil(rough / process.infeed - rounding));
   std::vector<double> depths;
   for (int i = 1; i <= rough_passes; ++i) depths.push_back(i == rough_passes ? rough : i * process.infeed);
+  return passDepths(process, deepest, std::move(depths));
+}
+
+std::vector<double> passDepths(const GrindProcess& process, double deepest, std::vector<double> depths) {
   if (process.finish_infeed > 0 || depths.empty()) depths.push_back(deepest);
   depths.insert(depths.end(), static_cast<std::size_t>(process.spark_out), deepest);
   return depths;

@@ -273,6 +273,9 @@ class OperationReader {
     takeOrInherit("process.spark_out", &GrindProcess::spark_out, [&](const std::string& key, int& value) {
       file_.take(key, otherJobKey("process.spark_out").allowed, value);
     });
+    const std::string roughing = keys_("process.roughing_passes");
+    if (file_.mayHave(roughing))
+      file_.take(roughing, otherJobKey("process.roughing_passes").allowed, p.roughing_passes);
     if (p.kind != OperationKind::kFlute) return;
     file_.takeOptionalChoice(keys_("process.z_law"), p.z_law);
     const std::string incomplete_ok = keys_("process.incomplete_ok");

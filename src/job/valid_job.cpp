@@ -15,19 +15,41 @@ namespace {
 
 constexpr double kRunIn = 1e-3;  ///< length at either end of a relief's stroke for reaching the feed and stopping [m]
 
+/// The wear that the first pass compensates: of a face, none, since touching off X has taken it up [m].
+double wearAtStart(const GrindProcess& p) { return isByFace(p.kind) ? 0 : p.wheel_wear; }
+
+/// The passes of all teeth, in grinding order.
 std::vector<JobPass> passesOf(const GrindJob& job, const std::vector<double>& depths) {
   const int teeth = static_cast<int>(job.tooth_angles.size());
   const int passes = static_cast<int>(depths.size());
-  const bool tooth_major = job.process().order == GrindOrder::kToothMajor;
-  const double wear = isByFace(job.process().kind) ? 0 : job.process().wheel_wear;
+  const GrindProcess& p = job.process();
   std::vector<JobPass> all;
   all.reserve(static_cast<std::size_t>(teeth) * depths.size());
-  for (int i = 0; i < teeth * passes; ++i) {
-    const ToothPass place = tooth_major ? ToothPass{i / passes, i % passes} : ToothPass{i % teeth, i / teeth};
-    all.push_back({place, depths[static_cast<std::size_t>(place.pass)], wear + i * job.process().wheel_wear_per_pass});
+  // Groups of passes, each tooth by tooth.
+  const auto grind = [&](int from, int to) {
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+      for (int pass = from; pass < to; ++pass) {
+        const double wear = wearAtStart(p) + static_cast<double>(all.size()) * p.wheel_wear_per_pass;
+        all.push_back({{tooth, pass}, depths[static_cast<std::size_t>(pass)], wear});
+      }
+    }
+  };
+  switch (p.order) {
+    case GrindOrder::kToothMajor: grind(0, passes); break;
+    case GrindOrder::kPassMajor:
+      for (int pass = 0; pass < passes; ++pass) grind(pass, pass + 1);
+      break;
+    case GrindOrder::kFinishTogether: {
+      const int finishing = p.spark_out + (p.finish_infeed > 0 ? 1 : 0);
+      grind(0, passes - finishing);
+      grind(passes - finishing, passes);
+      break;
+    }
   }
   return all;
 }
+
+constexpr const char* kNoDepths = "the depths of its passes are not computed; see withLaws()";
 
 /// The travel of a relief's start in a stroke: X of the cutter [m].
 Range startOf(const ReliefPath& path, double length) {
@@ -219,8 +241,10 @@ ValidJob::ValidJob(GrindJob job) {
     takePasses(content);
   } else {
     content.deepest = job.process().deepest();
-    content.depths = passDepths(job.process());
-    content.passes = passesOf(job, content.depths);
+    if (!job.process().roughsByRemoval()) {
+      content.depths = passDepths(job.process());
+      content.passes = passesOf(job, content.depths);
+    }
     content.laws = lawsOf(job, content.cutters, {}, {});
     content.job = std::move(job);
   }
@@ -238,6 +262,9 @@ void ValidJob::takeReliefs(Content& content, const std::vector<CutterGeometry>& 
 
 void ValidJob::takePasses(Content& content) {
   const GrindProcess& p = content.job.process();
+  content.depths.clear();
+  content.passes.clear();
+  if (p.roughsByRemoval()) return;
   const double passes = content.deepest / p.infeed + p.spark_out + 2;
   if (!(passes * static_cast<double>(content.cutters.size()) <= kMaxPassesOfAll)) {
     throw InvalidJob(
@@ -248,7 +275,35 @@ void ValidJob::takePasses(Content& content) {
   content.passes = passesOf(content.job, content.depths);
 }
 
+const std::vector<double>& ValidJob::depths() const {
+  if (!hasPasses()) throw std::invalid_argument(kNoDepths);
+  return content_->depths;
+}
+
+const std::vector<JobPass>& ValidJob::passes() const {
+  if (!hasPasses()) throw std::invalid_argument(kNoDepths);
+  return content_->passes;
+}
+
+ValidJob ValidJob::withRoughing(std::vector<double> depths) const {
+  const GrindProcess& p = content_->job.process();
+  ValidJob job = *this;
+  Content content = *content_;
+  content.depths = passDepths(p, content.deepest, std::move(depths));
+  const std::size_t passes = content.depths.size() * content.cutters.size();
+  if (passes > static_cast<std::size_t>(kMaxPassesOfAll)) {
+    throw InvalidJob({otherReason(std::to_string(passes) + " passes of all teeth; allowed: up to " +
+                                  std::to_string(kMaxPassesOfAll))});
+  }
+  requireWheelLasts(p, passes);
+  content.passes = passesOf(content.job, content.depths);
+  job.content_ = std::make_shared<const Content>(std::move(content));
+  return job;
+}
+
 std::vector<double> ValidJob::wearOfTeeth() const {
+  const GrindProcess& p = content_->job.process();
+  if (p.wheel_wear_per_pass == 0) return std::vector<double>(content_->cutters.size(), wearAtStart(p));
   const auto deepest = std::max_element(depths().begin(), depths().end()) - depths().begin();
   std::vector<double> wear(content_->cutters.size());
   for (const JobPass& pass : passes()) {

@@ -21,7 +21,8 @@ static_assert(is(flute_grinder::Reason::RADIAN_PER_SECOND3, Unit::kRadianPerSeco
 static_assert(is(flute_grinder::Reason::FEED_METRE_PER_SECOND, Unit::kFeedMetrePerSecond));
 static_assert(is(flute_grinder::Reason::DEVIATION_METRE, Unit::kDeviationMetre));
 static_assert(is(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN, Unit::kRotaryMetrePerRadian));
-static_assert(flute_grinder::Reason::ROTARY_METRE_PER_RADIAN + 1 == kUnitCount);
+static_assert(is(flute_grinder::Reason::CUBIC_METRE_PER_SECOND, Unit::kCubicMetrePerSecond));
+static_assert(flute_grinder::Reason::CUBIC_METRE_PER_SECOND + 1 == kUnitCount);
 static_assert(+flute_grinder::Reason::X == kX && +flute_grinder::Reason::Y == kY && +flute_grinder::Reason::Z == kZ &&
               +flute_grinder::Reason::A == kA);
 

@@ -33,16 +33,15 @@ double minDuration(const ValidJob& job, const ToothPass& first) {
   const auto lengthOf = [](const FaceStroke& s) { return (s.to - s.from).head<3>().matrix().norm(); };
   const double travel = job.isStraight() ? lengthOf(job.faceStroke(0, job.deepest(), 0))
                                          : std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
-  const auto teeth = static_cast<double>(job.teeth());
   double edge = std::numeric_limits<double>::infinity();  // shortest edge of all teeth, per axial travel
   for (int i = 0; i < job.teeth(); ++i) {
     edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
   }
   const double way = job.isStraight() ? travel : job->process().clearance + travel * edge;
-  const auto passes = static_cast<double>(job.depths().size());
-  const double before = job->process().order == GrindOrder::kToothMajor ? first.tooth * passes + first.pass
-                                                                        : first.pass * teeth + first.tooth;
-  return std::max(0.0, teeth * passes - before) * way / job->process().feed;
+  const std::vector<JobPass>& passes = job.passes();
+  const auto is_first = [&](const JobPass& pass) { return pass.place == first; };
+  const auto left = passes.end() - std::find_if(passes.begin(), passes.end(), is_first);
+  return static_cast<double>(left) * way / job->process().feed;
 }
 
 /// Checks periodically whether the job is too long and whether the plan is still wanted.

@@ -3,6 +3,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/tool/pass_removal.h"
 #include "flute_grinder/tool/z_law.h"
 #include "tool/end_check.h"
 
@@ -194,13 +195,18 @@ class Checker {
   std::vector<Reason> reasons_;
 };
 
+/// The wheel's wear in each tooth's deepest pass, also of a job without its passes [m].
+std::vector<double> wearOfTeeth(const ValidJob& job) {
+  return job->process().wheel_wear_per_pass > 0 ? withPasses(job).wearOfTeeth() : job.wearOfTeeth();
+}
+
 /// Adds the reliefs of a job, up to an operation, to flutes.
 /// @param flutes cutter with the flutes.
 GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last) {
   std::vector<Reliefs> reliefs(flutes.flutes().size());
   for (int i = 1; i <= last; ++i) {
     const ValidJob relief = i == job->operation ? job : job.ofOperation(i);
-    const std::vector<double> wear = relief.wearOfTeeth();
+    const std::vector<double> wear = wearOfTeeth(relief);
     for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
       if (own.size() >= static_cast<std::size_t>(i)) continue;  // a tooth that shares the flute has added it
@@ -223,7 +229,7 @@ GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
   if (job->process().kind != OperationKind::kFlute) {
     return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), lastReliefOf(*job));
   }
-  const std::vector<double> wear = job.wearOfTeeth();
+  const std::vector<double> wear = wearOfTeeth(job);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   const auto spiral = [&](std::size_t i) { return job.cutterOf(static_cast<int>(i)).spiral_angle; };

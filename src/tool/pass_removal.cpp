@@ -1,12 +1,14 @@
 #include "flute_grinder/tool/pass_removal.h"
 
 #include "flute_grinder/base/on_all_cores.h"
-#include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/ground_job.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <string>
+#include <utility>
 
 namespace grinder {
 
@@ -43,7 +45,153 @@ std::vector<AlikeTeeth> alikeTeeth(const ValidJob& job, const GroundCutter& befo
   return all;
 }
 
+/// The speed along the axis at the job's feed [m/s].
+double axialSpeed(const ValidJob& job, int tooth) {
+  return job->process().feed / ConicalCutter(job.cutterOf(tooth)).edgePerTravel();
+}
+
+/// What a pass of a depth removes from a section of a whole blank, per second at the feed: a monotone cubic through
+/// some depths, closer together toward where the wheel touches.
+class RemovalCurve {
+ public:
+  /// @param deepest depth of the last place [m].
+  /// @param touches whether a pass of a depth removes anything.
+  /// @param removal what it removes [m^3/s].
+  template <typename Touches, typename Removal>
+  RemovalCurve(double deepest, const Touches& touches, const Removal& removal) {
+    if (!touches(deepest)) return;
+    double touch = 0, below = deepest;
+    for (int i = 0; i < kHalvings; ++i) {
+      const double middle = (touch + below) / 2;
+      (touches(middle) ? below : touch) = middle;
+    }
+    from_ = touch, length_ = deepest - touch;
+    for (int i = 1; i <= kPlaces; ++i) {
+      const double part = static_cast<double>(i) / kPlaces;
+      values_[place(i)] = std::max(removal(from_ + length_ * part * part), values_[place(i - 1)]);
+    }
+    for (int i = 1; i < kPlaces; ++i) slopes_[place(i)] = slope(step(i), step(i + 1));
+    slopes_[kPlaces] = std::clamp(1.5 * step(kPlaces) - slopes_[kPlaces - 1] / 2, 0.0, 3 * step(kPlaces));
+  }
+
+  double at(double depth) const noexcept {
+    if (!(length_ > 0) || depth <= from_) return 0;
+    const double all = std::min(std::sqrt((depth - from_) / length_), 1.0) * kPlaces;
+    const int i = std::min(static_cast<int>(all), kPlaces - 1);
+    const double t = all - i, left = 1 - t;
+    return values_[place(i)] * left * left * (1 + 2 * t) + values_[place(i + 1)] * t * t * (3 - 2 * t) +
+           t * left * (slopes_[place(i)] * left - slopes_[place(i + 1)] * t);
+  }
+
+ private:
+  static constexpr int kPlaces = 12;
+  static constexpr int kHalvings = 14;
+
+  static std::size_t place(int i) { return static_cast<std::size_t>(i); }
+  double step(int i) const { return values_[place(i)] - values_[place(i - 1)]; }
+  /// Between two steps that rise, so that the curve never falls: their harmonic mean.
+  static double slope(double a, double b) { return a > 0 && b > 0 ? 2 * a * b / (a + b) : 0; }
+
+  double from_ = 0, length_ = 0;
+  std::array<double, kPlaces + 1> values_{}, slopes_{};
+};
+
+using RemovalCurves = std::vector<RemovalCurve>;
+
+/// The curves of all distinct teeth, in each of the sections that count.
+RemovalCurves curvesOf(const ValidJob& job, double deepest, const PlanWatch& watch) {
+  const GroundCutter ground = before(job);
+  const double wear = job->process().wheel_wear;
+  RemovalCurves curves;
+  for (const AlikeTeeth& alike : alikeTeeth(job, ground)) {
+    const int tooth = alike.first;
+    const double angle = job->tooth_angles[static_cast<std::size_t>(tooth)], speed = axialSpeed(job, tooth);
+    const auto sweep = [&](double depth) {
+      if (watch && !watch(0)) throw ReasonError(Reason{ReasonKind::kGivenUp});
+      return sweepOf(job, tooth, wear, strokeOf(job, tooth, depth, wear));
+    };
+    for (const double part : kSectionsOfArea) {
+      const double x = part * job->cutter.flute_length, radius = ground.cutter().radius(x);
+      curves.emplace_back(
+          deepest, [&](double depth) { return sweep(depth).minRadius(x, radius) < radius; },
+          [&](double depth) { return speed * ground.areaRemovedBy(sweep(depth), angle, x); });
+    }
+  }
+  return curves;
+}
+
+/// The most that a pass removes [m^3/s].
+double removalBetween(const RemovalCurves& curves, double from, double to) {
+  double most = 0;
+  for (const RemovalCurve& curve : curves) most = std::max(most, curve.at(to) - curve.at(from));
+  return most;
+}
+
+/// The depths of passes that each remove as much.
+/// @param removal what each removes; the last may remove less [m^3/s].
+/// @param count maximum number of passes.
+/// @return ascending; the last is `deepest` if the passes get there [m].
+std::vector<double> passesOf(const RemovalCurves& curves, double deepest, double removal, std::size_t count) {
+  constexpr int halvings = 40;
+  constexpr double steps = 1e8;  // per metre: depths are multiples of 10 nm
+  std::vector<double> depths;
+  for (double last = 0; depths.size() < count && last < deepest;) {
+    double next = deepest;
+    if (removalBetween(curves, last, deepest) > removal) {
+      double within = last, beyond = deepest;
+      for (int i = 0; i < halvings; ++i) {
+        const double middle = (within + beyond) / 2;
+        (removalBetween(curves, last, middle) > removal ? beyond : within) = middle;
+      }
+      next = std::floor(within * steps) / steps;
+      if (!(next > last)) return depths;  // no pass is so shallow
+    }
+    depths.push_back(last = next);
+  }
+  return depths;
+}
+
+/// The depths of the roughing passes of a job by removal.
+std::vector<double> roughingOf(const ValidJob& job, const PlanWatch& watch) {
+  const GrindProcess& p = job->process();
+  const double deepest = job.deepest() - p.finish_infeed;
+  if (!(deepest > 0)) return {};
+  const RemovalCurves curves = curvesOf(job, deepest, watch);
+  const double all = removalBetween(curves, 0, deepest);
+  if (!(all > 0)) return {};
+  const auto arrives = [&](const std::vector<double>& depths) { return !depths.empty() && depths.back() == deepest; };
+  auto count = static_cast<std::size_t>(p.roughing_passes);
+  if (p.removal > 0) {
+    const std::vector<double> depths = passesOf(curves, deepest, p.removal, kMaxRoughingPasses);
+    if (!arrives(depths)) {
+      throw ReasonError({ReasonKind::kNotAllowed, 0, "process.removal",
+                         "enough for " + std::to_string(kMaxRoughingPasses) + " roughing passes",
+                         Unit::kCubicMetrePerSecond, p.removal});
+    }
+    count = depths.size();
+  }
+  // The least that each of so many passes may remove.
+  constexpr int halvings = 50;
+  double too_little = 0, enough = all;
+  std::vector<double> found = passesOf(curves, deepest, enough, count);
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = (too_little + enough) / 2;
+    std::vector<double> depths = passesOf(curves, deepest, middle, count);
+    if (arrives(depths)) {
+      enough = middle;
+      found = std::move(depths);
+    } else {
+      too_little = middle;
+    }
+  }
+  return found;
+}
+
 }  // namespace
+
+ValidJob withPasses(const ValidJob& job, const PlanWatch& watch) {
+  return job.hasPasses() ? job : job.withRoughing(roughingOf(job, watch));
+}
 
 std::vector<PassRemoval> removalOfPasses(const ValidJob& job) {
   if (job.isStraight() || job.depths().size() > kMaxMeasuredPasses) return {};
@@ -82,9 +230,8 @@ std::vector<PassRemoval> removalOfPasses(const ValidJob& job) {
       if (i % sections.size() >= kSectionsOfArea.size()) {
         removal.volume += alike.count * area * length / kSectionsOfVolume;
       } else {
-        const double speed = job->process().feed / ConicalCutter(job.cutterOf(alike.first)).edgePerTravel();
         removal.area = std::max(removal.area, area);
-        removal.rate = std::max(removal.rate, area * speed);
+        removal.rate = std::max(removal.rate, area * axialSpeed(job, alike.first));
       }
     }
   }

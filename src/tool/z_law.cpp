@@ -3,6 +3,7 @@
 #include "flute_grinder/job/rounded_job.h"
 #include "flute_grinder/job/valid_job.h"
 #include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/pass_removal.h"
 #include "tool/rake_correction.h"
 
 #include <algorithm>
@@ -85,9 +86,9 @@ std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
   if (job->process().kind != OperationKind::kFlute) {
     const ValidJob flutes = withLaws(ValidJob(job->ofOperation(0)), watch);
-    return job.withEdges(flutes, edgesOf(flutes));
+    return withPasses(job.withEdges(flutes, edgesOf(flutes)), watch);
   }
-  if (job->process().z_law == ZLaw::kPublished) return job;
+  if (job->process().z_law == ZLaw::kPublished) return withPasses(job, watch);
   const ValidJob published =
       ValidJob(roundedOff(*job)).withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
   std::map<double, ZCorrection> by_spiral;
@@ -97,7 +98,7 @@ ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
     if (is_new) place->second = correctionOf(published, tooth, watch);
     corrections.push_back(place->second);
   }
-  return job.withZCorrections(std::move(corrections));
+  return withPasses(job.withZCorrections(std::move(corrections)), watch);
 }
 
 }  // namespace grinder

@@ -43,6 +43,7 @@ class TestRun(BagTest):
         with open(gc.package_file('jobs/left_hand_d8_t3.yaml')) as file:
             job = yaml.safe_load(file)
         setup = {'file': gc.package_file('jobs/left_hand_d8_t3.setup.yaml')}
+        del job['process']['roughing_passes']
         job['process'].update(infeed_mm=2, feed_mm_min=1000, setup=setup)
         return self.write('left_hand.yaml', yaml.safe_dump(job))
 

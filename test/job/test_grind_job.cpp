@@ -120,8 +120,24 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
          for (int i = 1; i < 65; ++i) j.tooth_angles.push_back(i * 0.09);
        },
        "cutter.teeth = 65; allowed: 1 to 64"},
-      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(2); }, "process.order = 2; allowed: 0 to 1"},
-      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(-1); }, "process.order = -1; allowed: 0 to 1"},
+      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(3); }, "process.order = 3; allowed: 0 to 2"},
+      {[](GrindJob& j) { j.process().order = static_cast<GrindOrder>(-1); }, "process.order = -1; allowed: 0 to 2"},
+      {[](GrindJob& j) { j.process().infeed = 0; },
+       "process.infeed_mm = 0 mm; allowed: 0.0001 to 50 mm, or process.roughing_passes or process.removal_mm3_s in its "
+       "place"},
+      {[](GrindJob& j) { j.process().infeed = 0.09e-6; },
+       "process.infeed_mm = 9e-05 mm; allowed: 0.0001 to 50 mm, or process.roughing_passes or process.removal_mm3_s in "
+       "its place"},
+      {[](GrindJob& j) { j.process().roughing_passes = 4; },
+       "process.roughing_passes = 4; allowed: 0 beside process.infeed_mm = 0.5 mm"},
+      {[](GrindJob& j) { j.process().removal = 8e-9; },
+       "process.removal_mm3_s = 8 mm^3/s; allowed: 0 beside process.infeed_mm = 0.5 mm"},
+      {[](GrindJob& j) { j.process().infeed = 0, j.process().roughing_passes = 4, j.process().removal = 8e-9; },
+       "process.roughing_passes = 4; allowed: 0 beside process.removal_mm3_s = 8 mm^3/s"},
+      {[](GrindJob& j) { j.process().infeed = 0, j.process().roughing_passes = 201; },
+       "process.roughing_passes = 201; allowed: 0 to 200"},
+      {[](GrindJob& j) { j.process().infeed = 0, j.process().removal = std::nan(""); },
+       "process.removal_mm3_s = nan mm^3/s; allowed: 0 to 10000 mm^3/s"},
       {[](GrindJob& j) { j.process().direction = static_cast<StrokeDirection>(2); },
        "process.direction = 2; allowed: 0 to 1"},
       {[](GrindJob& j) { j.process().z_law = static_cast<ZLaw>(2); }, "process.z_law = 2; allowed: 0 to 1"},
@@ -344,6 +360,45 @@ TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {
       << why;
   end.process().wheel_wear_per_pass = std::nan("");
   EXPECT_THROW(ValidJob{end}, InvalidJob);
+}
+
+TEST(ValidJob, FinishesAllTeethAfterTheRoughingOfAll) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 1};
+  job.process().depth = 1.5e-3;
+  job.process().infeed = 1e-3;
+  job.process().finish_infeed = 0.1e-3;
+  job.process().spark_out = 1;
+  job.process().wheel_wear_per_pass = 1e-6;
+  job.process().order = GrindOrder::kFinishTogether;
+  const ValidJob valid(job);
+  const std::vector<ToothPass> places{{0, 0}, {0, 1}, {1, 0}, {1, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}};
+  ASSERT_EQ(valid.passes().size(), places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) EXPECT_TRUE(valid.passes()[i].place == places[i]) << i;
+  // The finishing passes are two apart, and not four.
+  EXPECT_NEAR(valid.wearOfTeeth()[0], 4e-6, 1e-18);
+  EXPECT_NEAR(valid.wearOfTeeth()[1], 6e-6, 1e-18);
+}
+
+TEST(ValidJob, ByRemovalHasNoPassesBeforeTheyAreMeasured) {
+  GrindJob job = paperJob();
+  job.process().infeed = 0;
+  job.process().finish_infeed = 0.1e-3;
+  job.process().spark_out = 1;
+  job.process().roughing_passes = 2;
+  const ValidJob asked(job);
+  EXPECT_FALSE(asked.hasPasses());
+  EXPECT_THROW(asked.depths(), std::invalid_argument);
+  EXPECT_THROW(asked.passes(), std::invalid_argument);
+  const ValidJob roughed = asked.withRoughing({0.3e-3, 0.4e-3});
+  EXPECT_EQ(roughed.depths(), (std::vector<double>{0.3e-3, 0.4e-3, 0.5e-3, 0.5e-3}));
+  EXPECT_EQ(roughed.passes().size(), 4 * job.tooth_angles.size());
+  EXPECT_EQ(roughed.digest(), asked.digest());
+  job.process().roughing_passes = 3;
+  EXPECT_NE(ValidJob(job).digest(), asked.digest());
+  job.process().wheel_wear_per_pass = 0.99e-3;
+  job.process().wheel_diameter = 100e-3;
+  EXPECT_THROW(ValidJob(job).withRoughing(std::vector<double>(49, 0.4e-3)), InvalidJob);
 }
 
 TEST(ShankCut, IsByHowMuchTheShankStandsOut) {

@@ -151,6 +151,7 @@ GrindJob allowedJob(Dice& dice) {
   if (apex < 0) p.overtravel_end = std::min(-closes * close, 5e-3);
   if (apex > 0) p.overtravel_shank = std::max(0.0, std::min(closes * close - g.flute_length, 5e-3));
   p.depth = dice.scaled(1e-6, g.end_diameter / 4);
+  p.removal = 0;
   p.infeed = dice.once(4) ? p.depth / dice.below(4) : p.depth;
   p.finish_infeed = dice.once(3) ? p.depth * dice.within(0, 1) : 0;
   p.clearance = dice.scaled(0.1e-3, 2e-3);

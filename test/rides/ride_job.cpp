@@ -56,7 +56,9 @@ GrindProcess randomProcess(Random& random, const CutterGeometry& cutter) {
   p.clearance = between(random, 0.1e-3, 2e-3);
   p.overtravel_end = between(random, 0, 1e-3);
   p.overtravel_shank = between(random, 0, 1e-3);
-  p.order = flip(random, 0.5) ? GrindOrder::kToothMajor : GrindOrder::kPassMajor;
+  p.order = std::array{GrindOrder::kToothMajor, GrindOrder::kPassMajor,
+                       GrindOrder::kFinishTogether}[static_cast<std::size_t>(fraction(random) * 3)];
+  if (flip(random, 0.2)) p.infeed = 0, p.roughing_passes = 1 + static_cast<int>(fraction(random) * 3);
   p.direction = flip(random, 0.5) ? StrokeDirection::kFromEnd : StrokeDirection::kToEnd;
   p.wheel_diameter = 100e-3;
   p.wheel_width = 8e-3;
@@ -111,7 +113,7 @@ ValidJob withRelief(Random& random, GrindJob job) {
     relief.depth = relief.depth_end = relief.overtravel_end = relief.overtravel_shank = relief.setup_x_shift = 0;
     relief.z_law = ZLaw::kPublished;
     relief.finish_infeed = 0;
-    relief.infeed = between(random, 0.1e-3, 0.5e-3);
+    relief.infeed = relief.roughsByRemoval() ? 0 : between(random, 0.1e-3, 0.5e-3);
     relief.behind = 0;
     relief.setup_swivel = between(random, -0.2, 0.2);
     const double clearance = i == 0 ? c.clearance : c.second_clearance;
@@ -145,6 +147,7 @@ ValidJob withEnd(Random& random, GrindJob job) {
   constexpr OperationKind kinds[]{OperationKind::kChamfer, OperationKind::kGash, OperationKind::kGash,
                                   OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd};
   p.kind = kinds[static_cast<std::size_t>(fraction(random) * 5)];
+  p.roughing_passes = 0;
   p.wheel_diameter = between(random, 30e-3, 150e-3);
   p.wheel_width = between(random, 1e-3, 10e-3);
   p.stock = flip(random, 0.5) ? 0 : between(random, 0, 0.5e-3);
@@ -169,6 +172,18 @@ ValidJob withEnd(Random& random, GrindJob job) {
   const double z = ValidJob(job).withEdges(flutes, edges).faceStroke(0, 0, 0).to[kZ];
   job.process().setup_height = z + between(random, -1e-3, 1e-3);
   return ValidJob(job).withEdges(flutes, edges);
+}
+
+/// Of a job whose roughing passes follow from what they remove, some.
+ValidJob withRoughing(Random& random, const ValidJob& job) {
+  const double deepest = job.deepest() - job->process().finish_infeed;
+  std::vector<double> depths;
+  for (int left = job->process().roughing_passes; left > 1; --left) {
+    const double last = depths.empty() ? 0 : depths.back();
+    depths.push_back(last + (deepest - last) * between(random, 0.2, 0.8));
+  }
+  depths.push_back(deepest);
+  return job.withRoughing(std::move(depths));
 }
 
 ValidJob withCorrections(Random& random, const ValidJob& job) {
@@ -388,6 +403,7 @@ std::optional<RideJob> draw(Random& random) {
                  : flip(random, 0.5) ? withEnd(random, flutes)
                                      : ValidJob(flutes);
   if (job->process().z_law == ZLaw::kConstantRake) job = withCorrections(random, job);
+  if (!job.hasPasses()) job = withRoughing(random, job);
   Machine machine = randomMachine(random);
   if (job->process().z_law == ZLaw::kConstantRake) limitBends(random, job, machine.limits);
   const double clear = surfaceOf(job) + job->process().clearance;

@@ -48,7 +48,7 @@ std::string textsOf(const MarkerArray& array) {
 }
 
 MarkerArray plannedMarkers(const GrindJob& asked) {
-  const ValidJob job(asked);
+  const ValidJob job = withLaws(ValidJob(asked));
   return groundMarkers(groundCutterOf(job), job, "planned");
 }
 
@@ -269,7 +269,7 @@ double maxRadius(const std::vector<Marker>& solid, double from, double to) {
 
 TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
   for (const char* name : {"paper", "roughing_d10_t4", "micro_d05_t2"}) {
-    const ValidJob job(jobOf(name));
+    const ValidJob job = withLaws(ValidJob(jobOf(name)));
     const Reached reached{job.passes().front().place, PassPhase::kBefore, 0};
     const std::vector<Marker> solid = solidOf(markersSoFar(job, reached), "ground");
     ASSERT_EQ(solid.size(), 1U);
@@ -295,7 +295,7 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
     SCOPED_TRACE(neck);
     job.cutter.shank_diameter = shank * kMillimetre;
     job.cutter.neck_length = neck * kMillimetre;
-    const ValidJob valid(job);
+    const ValidJob valid = withLaws(ValidJob(job));
     for (const GroundCutter& cutter :
          {groundCutterOf(valid), groundSoFar(valid, Reached{{0, 0}, PassPhase::kBefore, 0})}) {
       const std::vector<Marker> solid = solidOf(groundMarkers(cutter, valid, "ground"), "ground");

@@ -68,6 +68,7 @@ TEST(SetupFile, IsRefusedForAnyOtherCutterOrWheel) {
                                      "cutter.chordal_rake_tolerance_deg",
                                      "process.feed_mm_min",
                                      "process.infeed_mm",
+                                     "process.removal_mm3_s",
                                      "process.finish_infeed_mm",
                                      "process.clearance_mm",
                                      "process.wheel.wear_per_pass_mm",

@@ -98,5 +98,67 @@ TEST(PassRemoval, HasTheRateOfTheSpeedAlongTheAxis) {
   }
 }
 
+/// That job, its roughing passes by what they remove.
+GrindJob byRemoval(GrindJob job, int roughing_passes, double removal) {
+  job.process().infeed = 0;
+  job.process().roughing_passes = roughing_passes;
+  job.process().removal = removal;
+  return job;
+}
+
+TEST(PassRemoval, IsTheSameForEachOfSomeRoughingPassesOfASlot) {
+  for (const double from : {-1.5 * kMillimetre, -4.5 * kMillimetre, -6 * kMillimetre}) {
+    SCOPED_TRACE(from);
+    const ValidJob job = withLaws(ValidJob(byRemoval(slots(from), 4, 0)));
+    const double roughing = job.deepest() - job->process().finish_infeed, all = slotArea(from, roughing);
+    ASSERT_EQ(job.depths().size(), 6u);
+    EXPECT_EQ(job.depths()[3], roughing);
+    EXPECT_EQ(job.depths()[4], job.deepest());
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(slotArea(from, job.depths()[i]), static_cast<double>(i + 1) / 4 * all, 2e-3 * all) << i;
+    }
+    EXPECT_EQ(withLaws(ValidJob(*job)).depths(), job.depths());
+  }
+}
+
+TEST(PassRemoval, NeedsAsManyRoughingPassesAsItsLimitTakes) {
+  const double from = -4.5 * kMillimetre;
+  const GrindJob slot = slots(from);
+  const double roughing = slot.process().depth - slot.process().finish_infeed;
+  const double all = slotArea(from, roughing) * slot.process().feed;
+  for (const double parts : {0.5, 2.9, 3.1}) {
+    const ValidJob job = withLaws(ValidJob(byRemoval(slot, 0, all / parts)));
+    EXPECT_EQ(job.depths().size(), std::ceil(parts) + 2) << parts;
+    for (const PassRemoval& pass : removalOfPasses(job)) EXPECT_LT(pass.rate, 1.002 * all / parts);
+  }
+  try {
+    withLaws(ValidJob(byRemoval(slot, 0, all / 201)));
+    FAIL();
+  } catch (const std::invalid_argument& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("process.removal_mm3_s = "), std::string::npos);
+    EXPECT_NE(std::string(refusal.what()).find("mm^3/s; allowed: enough for 200 roughing passes"), std::string::npos);
+  }
+}
+
+TEST(PassRemoval, IsTheSameForEachRoughingPassOfAnyTool) {
+  for (const std::string name : {"unequal_d12_t4", "taper_reamer_d6_t6"}) {
+    for (const GrindJob& asked : readJobFile("jobs/" + name + ".yaml", "1").ofAllOperations()) {
+      const ValidJob job = withLaws(ValidJob(byRemoval(asked, 3, 0)));
+      SCOPED_TRACE(name + ", " + asked.operationText());
+      const std::vector<PassRemoval> passes = removalOfPasses(job);
+      ASSERT_GE(passes.size(), 3u);
+      const double mean = (passes[0].rate + passes[1].rate + passes[2].rate) / 3;
+      for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(passes[i].rate, mean, 0.02 * mean) << i;
+    }
+  }
+}
+
+// A roughing pass that would only grind air is left out.
+TEST(PassRemoval, LeavesOutRoughingBeforeTheWheelTouches) {
+  GrindJob slot = byRemoval(slots(-6 * kMillimetre), 3, 0);
+  slot.process().finish_infeed = slot.process().depth - 0.5 * kMillimetre;
+  EXPECT_EQ(withLaws(ValidJob(slot)).depths(), (std::vector<double>{slot.process().depth, slot.process().depth}));
+}
+
 }  // namespace test_pass_removal
 }  // namespace grinder

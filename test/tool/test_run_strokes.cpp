@@ -82,7 +82,10 @@ RunStrokes runOf(const ValidJob& job, const std::vector<Read>& read, std::option
   return strokes;
 }
 
-RunStrokes runOf(const GrindJob& job, const Error& error) { return runOf(ValidJob(job), readOf(ValidJob(job), error)); }
+RunStrokes runOf(const GrindJob& job, const Error& error) {
+  const ValidJob valid = withLaws(ValidJob(job));
+  return runOf(valid, readOf(valid, error));
+}
 
 const Error kExact = [](const Setpoint&) { return Axes(Axes::Zero()); };
 

@@ -20,8 +20,9 @@ enum class Unit : std::uint8_t {
   kFeedMetrePerSecond,    ///< mm/min
   kDeviationMetre,        ///< path deviation and its tolerance; um
   kRotaryMetrePerRadian,  ///< mm/rad
+  kCubicMetrePerSecond,   ///< volume removed per second; mm^3/s
 };
-constexpr int kUnitCount = 13;
+constexpr int kUnitCount = 14;
 
 /// A number with its unit.
 struct Quantity {

@@ -18,7 +18,7 @@
 namespace grinder {
 
 /// The order of teeth and passes.
-enum class GrindOrder { kToothMajor, kPassMajor };
+enum class GrindOrder { kToothMajor, kPassMajor, kFinishTogether };
 /// The direction of the strokes.
 enum class StrokeDirection { kFromEnd, kToEnd };
 
@@ -26,6 +26,7 @@ enum class StrokeDirection { kFromEnd, kToEnd };
 inline constexpr EnumRow<GrindOrder> kGrindOrders[]{
     {GrindOrder::kToothMajor, "tooth_major"},
     {GrindOrder::kPassMajor, "pass_major"},
+    {GrindOrder::kFinishTogether, "finish_together"},
 };
 inline constexpr EnumRow<StrokeDirection> kStrokeDirections[]{
     {StrokeDirection::kFromEnd, "from_end"},
@@ -72,10 +73,14 @@ constexpr bool isByFace(OperationKind kind) noexcept { return isEndFlank(kind) |
 /// overtravels, `setup_x_shift` and the law of Z follow from the other members, and are 0 here.
 struct GrindProcess {
   OperationKind kind = OperationKind::kFlute;
-  double feed = 0;              ///< feed along the cutting edge, and during infeed [m/s]
-  double depth = 0;             ///< flute depth at the small end, radial [m]
-  double depth_end = 0;         ///< radial flute depth at the flute's end, linear in between; 0: as `depth` [m]
-  double infeed = 0;            ///< infeed per pass where the flute is deepest; the last may be smaller [m]
+  double feed = 0;       ///< feed along the cutting edge, and during infeed [m/s]
+  double depth = 0;      ///< flute depth at the small end, radial [m]
+  double depth_end = 0;  ///< radial flute depth at the flute's end, linear in between; 0: as `depth` [m]
+  /// Infeed per pass where the flute is deepest; the last may be smaller. Exactly one of this and the next two is not 0
+  /// [m].
+  double infeed = 0;
+  int roughing_passes = 0;      ///< number of roughing passes that remove equal amounts
+  double removal = 0;           ///< the most that a roughing pass removes per second at the feed [m^3/s]
   double finish_infeed = 0;     ///< infeed of a single finishing pass at the end; 0: none [m]
   int spark_out = 0;            ///< number of passes without infeed at the end
   double clearance = 0;         ///< distance between wheel and workpiece, for moves outside the cut [m]
@@ -108,6 +113,8 @@ struct GrindProcess {
 
   double depthEnd() const noexcept { return depth_end > 0 ? depth_end : depth; }  ///< depth at the flute's end [m]
   double deepest() const noexcept { return std::max(depth, depthEnd()); }         ///< the larger of the two depths [m]
+  /// Whether the depths of roughing passes follow from what they remove.
+  bool roughsByRemoval() const noexcept { return roughing_passes > 0 || removal > 0; }
 };
 
 /// How the flutes are interpolated.
@@ -159,6 +166,8 @@ Range askedSpiral(const GrindJob& job);
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< maximum variation of the rake with kConstantRake [rad]
 constexpr int kMaxWheelPoints = 100;                  ///< maximum number of points of a wheel's profile
 constexpr int kMaxSparkOut = 100;
+constexpr int kMaxRoughingPasses =
+    200;  ///< maximum number of roughing passes whose depths follow from what they remove
 constexpr int kMaxOperations = countOf<OperationKind>();
 constexpr int kMaxPassesOfAll = 20000;    ///< maximum number of passes of all teeth together
 constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
@@ -174,6 +183,8 @@ std::vector<Reason> validateWheel(const GrindJob& job);
 std::vector<double> passDepths(const GrindProcess& process);
 /// The depths of the passes if the last pass is `deepest` deep [m].
 std::vector<double> passDepths(const GrindProcess& process, double deepest);
+/// The depths of the passes after roughing passes: these, the finishing pass and spark-out [m].
+std::vector<double> passDepths(const GrindProcess& process, double deepest, std::vector<double> roughing);
 
 /// The asked diameter of the core at `x`, linear between the flute's ends [m].
 /// @param x from the small end [m].

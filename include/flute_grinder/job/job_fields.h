@@ -43,7 +43,7 @@ template <typename Visit>
 void visitJobFields(const Visit& visit) {
   using F = JobField;
   constexpr Unit mm = Unit::kMetre, deg = Unit::kRadian, mm_min = Unit::kFeedMetrePerSecond;
-  constexpr Unit um = Unit::kDeviationMetre, mm_rad = Unit::kRotaryMetrePerRadian;
+  constexpr Unit mm3_s = Unit::kCubicMetrePerSecond, um = Unit::kDeviationMetre, mm_rad = Unit::kRotaryMetrePerRadian;
   const double min_feed = kMinFeed / shopScale(mm_min);
   // clang-format off
   visit(F{"cutter.end_diameter", "cutter.end_diameter_mm", mm, 0.1, 100, "diameter at the small end, X = 0"},
@@ -110,8 +110,10 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).depth; });
   visit(F{"process.depth_end", "process.depth_end_mm", mm, 0, 50, "radial depth at the flute's end, linear in between: a core taper; less than the cutter's radius there", "0, as `process.depth_mm`", F::Of::kFlute},
         [](auto& j) -> auto& { return processOf(j).depth_end; });
-  visit(F{"process.infeed", "process.infeed_mm", mm, 0.0001, 50, "radial infeed per pass where the flute is deepest; the last may be smaller"},
+  visit(F{"process.infeed", "process.infeed_mm", mm, 0, 50, "radial infeed per pass where the flute is deepest, 0.0001 or more; the last may be smaller. Exactly one of this, `process.roughing_passes` and `process.removal_mm3_s` is more than 0", "0"},
         [](auto& j) -> auto& { return processOf(j).infeed; });
+  visit(F{"process.removal", "process.removal_mm3_s", mm3_s, 0, 10000, "in place of `process.infeed_mm`: the most that a roughing pass removes per second at the feed; as many passes as that takes remove equal amounts", "0"},
+        [](auto& j) -> auto& { return processOf(j).removal; });
   visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10, "infeed of a final finishing pass; 0 for none"},
         [](auto& j) -> auto& { return processOf(j).finish_infeed; });
   visit(F{"process.clearance", "process.clearance_mm", mm, 0.1, 100, "between wheel and work outside the cut"},
@@ -164,6 +166,7 @@ void visitJobChoices(const Visit& visit) {
   // clang-format off
   visit("cutter.cut", countOf<CutDirection>() - 1, [](auto& j) -> auto& { return j.cutter.cut; });
   visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return processOf(j).kind; });
+  visit("process.roughing_passes", kMaxRoughingPasses, [](auto& j) -> auto& { return processOf(j).roughing_passes; });
   visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return processOf(j).spark_out; });
   visit("process.order", countOf<GrindOrder>() - 1, [](auto& j) -> auto& { return processOf(j).order; });
   visit("process.direction", countOf<StrokeDirection>() - 1, [](auto& j) -> auto& { return processOf(j).direction; });

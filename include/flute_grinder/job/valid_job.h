@@ -95,11 +95,19 @@ class ValidJob {
 
   /// The depth of every pass of a tooth in order, where the flute is deepest: infeed steps, the finishing pass,
   /// spark-out. [m]
-  const std::vector<double>& depths() const noexcept { return content_->depths; }
+  /// @throw std::invalid_argument if they follow from what passes remove, and withLaws() has not been called.
+  const std::vector<double>& depths() const;
   /// The passes of all teeth, in grinding order.
-  const std::vector<JobPass>& passes() const noexcept { return content_->passes; }
+  /// @throw like depths().
+  const std::vector<JobPass>& passes() const;
+  bool hasPasses() const noexcept { return !content_->depths.empty(); }  ///< whether depths() and passes() are known
+  /// The job with roughing passes.
+  /// @param depths their depths, ascending; may be empty [m].
+  /// @throw InvalidJob if the job has too many passes then, or the wheel wears away.
+  ValidJob withRoughing(std::vector<double> depths) const;
   double deepest() const noexcept { return content_->deepest; }  ///< maximum of depths() [m]
   /// JobPass::wear in each tooth's deepest pass: the first at full depth, when the wheel is largest [m].
+  /// @throw like depths(), if the wheel wears from pass to pass.
   std::vector<double> wearOfTeeth() const;
 
   /// The strokes of a tooth.

@@ -1,11 +1,12 @@
 #pragma once
 
+#include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/motion/job_plan.h"
+
 #include <cstddef>
 #include <vector>
 
 namespace grinder {
-
-class ValidJob;
 
 /// What a pass of an operation removes.
 struct PassRemoval {
@@ -22,5 +23,14 @@ constexpr std::size_t kMaxMeasuredPasses = 100;  ///< passes of a tooth above wh
 /// @return one for each of ValidJob::depths(); empty for an operation on the end, and for too many passes.
 /// @throw like wheelOf().
 std::vector<PassRemoval> removalOfPasses(const ValidJob& job);
+
+/// The job with its passes. Where these follow from what they remove, the roughing passes remove equal amounts per
+/// second, each measured where it is largest: at the flute's ends or amid it. A pass that would remove nothing is left
+/// out. That takes some tenths of a second for each distinct spiral angle; the same job gives the same bits.
+/// @param job job with its law of Z, or with its edges.
+/// @param watch if given, it may stop the computation, within some milliseconds.
+/// @throw ReasonError if the job's removal would take too many passes, or if it was stopped.
+/// @throw like wheelOf() and ValidJob::withRoughing().
+ValidJob withPasses(const ValidJob& job, const PlanWatch& watch = {});
 
 }  // namespace grinder

@@ -132,14 +132,23 @@ def wheel_text(wheel):
         ', %g deg at the %s face' % (wheel['angle_deg'], wheel['side']) if wheel.get('side') else '')
 
 
+def roughing_text(process):
+    """How deep the roughing passes are; records of older versions have infeeds alone."""
+    if process.get('roughing_passes'):
+        return '%d equal roughing passes' % process['roughing_passes']
+    if process.get('removal_mm3_s'):
+        return 'up to %g mm^3/s' % process['removal_mm3_s']
+    return 'infeed %g mm' % process['infeed_mm']
+
+
 def process_facts(process):
     setup = process['setup']
     return [('wheel', wheel_text(process['wheel'])), ('wear', '%g mm of the radius' % process['wheel']['wear_mm']),
             ('set-up', 'swivel %g deg, height %g mm%s' % (
                 setup['swivel_deg'], setup['height_mm'], ', shift in X %g mm' % setup['x_shift_mm'] if setup.get('x_shift_mm') else '')),
-            ('depth' if 'depth_mm' in process else 'operation', '%s%s, infeed %g mm' % (
+            ('depth' if 'depth_mm' in process else 'operation', '%s%s, %s' % (
                 '%g mm' % process['depth_mm'] if 'depth_mm' in process else operation_name(process),
-                ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', process['infeed_mm'])),
+                ', %g mm at the shank' % process['depth_end_mm'] if process.get('depth_end_mm') else '', roughing_text(process))),
             ('feed', '%g mm/min' % process['feed_mm_min'])]
 
 

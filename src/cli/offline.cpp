@@ -99,17 +99,6 @@ void printText(const std::vector<PassRemoval>& passes) {
   }
 }
 
-Json toJson(const std::vector<PassRemoval>& passes) {
-  Json json = Json::array();
-  for (const auto& [depth, area, rate, volume] : passes) {
-    json.push_back({{"depth_mm", depth / kMillimetre},
-                    {"area_mm2", area / kMillimetre2},
-                    {"rate_mm3_s", rate / kMillimetre3},
-                    {"volume_mm3", volume / kMillimetre3}});
-  }
-  return json;
-}
-
 /// What the passes of a plan remove; empty for a plan without a program.
 std::vector<PassRemoval> removalOf(const PlannedJob& plan) {
   return plan.program ? removalOfPasses(plan.program->job()) : std::vector<PassRemoval>();

@@ -6,6 +6,7 @@
 #include "cli/tool_output.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/report/findings.h"
+#include "flute_grinder/tool/pass_removal.h"
 #include "flute_grinder/tool/z_law.h"
 
 #include <spawn.h>
@@ -105,6 +106,7 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
   RunFindings findings(run, asked, draws);
   addRows(path, run, asked, findings, context);
   Json document = findings.json(context);
+  if (context.tool) document["removal"] = toJson(removalOfPasses(*asked));
   if (draws) document["plots"] = findings.plots();
   return document;
 }

@@ -59,11 +59,8 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 /// Writes the cutter as a solid, with the part of the shank into which the flutes run out and one diameter more.
 void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
-  const GrindProcess& p = job.process();
-  const double length = job.cutter.flute_length;
-  const double run_out = std::sqrt(p.wheel_diameter * p.deepest()) + p.overtravel_shank;
-  const SolidExtent extent{tool.end.blank_x, length, job.cutter.shank_diameter,
-                           length + run_out + job.cutter.shank_diameter};
+  const SolidExtent extent{tool.end.blank_x, job.cutter.flute_length, job.cutter.shank_diameter,
+                           groundTo(job) + job.cutter.shank_diameter};
   const CutterSolid solid = cutterSolid(tool.cutter, extent, {}, tool.end.removed);
   std::ostringstream stl;
   writeStl(stl, solid);

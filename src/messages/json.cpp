@@ -3,6 +3,7 @@
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_fields.h"
+#include "flute_grinder/tool/pass_removal.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -100,6 +101,17 @@ Json toJson(const std::vector<FeedLimit>& limits) {
   for (const FeedLimit& limit : limits) {
     json.push_back(
         {{"cause", limit.cause}, {"from_x_mm", limit.from_x / kMillimetre}, {"to_x_mm", limit.to_x / kMillimetre}});
+  }
+  return json;
+}
+
+Json toJson(const std::vector<PassRemoval>& passes) {
+  Json json = Json::array();
+  for (const auto& [depth, area, rate, volume] : passes) {
+    json.push_back({{"depth_mm", depth / kMillimetre},
+                    {"area_mm2", area / kMillimetre2},
+                    {"rate_mm3_s", rate / kMillimetre3},
+                    {"volume_mm3", volume / kMillimetre3}});
   }
   return json;
 }

@@ -4,6 +4,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
+#include "flute_grinder/tool/pass_removal.h"
 #include "report/motion.h"
 #include "report/plots.h"
 
@@ -246,7 +247,10 @@ Json findingsOfTool(const ToolRecords& tool, const ReportContext& context) {
   data.erase("job_file");
   data.erase("tool");
   data["operations"] = Json::array();
-  for (const ToolRecords::Operation& operation : tool.operations()) data["operations"].push_back(documentOf(operation));
+  for (const ToolRecords::Operation& operation : tool.operations()) {
+    Json& one = data["operations"].emplace_back(documentOf(operation));
+    if (context.tool && operation.job) one["removal"] = toJson(removalOfPasses(*operation.job));
+  }
   data["left_out"] = {
       "Pictures of the axes: a record has each stroke's figures; a bag (bag:=true) has every setpoint."};
   addTool(data, context);

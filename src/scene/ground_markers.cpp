@@ -5,6 +5,7 @@
 #include "flute_grinder/tool/cutter_solid.h"
 #include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/ground_tool.h"
 
 #include <algorithm>
 #include <array>
@@ -89,12 +90,11 @@ std::optional<double> shankOf(const CutterGeometry& cutter) {
 
 /// The part of the cutter that the wheel may touch. The rest is round.
 SolidExtent extentOf(const ValidJob& job) {
-  const auto& p = job->process();
-  const double stroke_end = job->cutter.flute_length + p.overtravel_shank;
+  const double stroke_end = job->cutter.flute_length + job->operations.front().overtravel_shank;
+  const double end = groundTo(*job);
   const auto shank = shankOf(job->cutter);
-  const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job->cutter)));
-  if (!shank) return {0, stroke_end, job->cutter.shank_diameter, stroke_end + run_out};
-  return {0, std::min(*shank, stroke_end + run_out), job->cutter.shank_diameter, 0};
+  if (!shank) return {0, stroke_end, job->cutter.shank_diameter, end};
+  return {0, std::min(*shank, end), job->cutter.shank_diameter, 0};
 }
 
 /// The finest resolution with this number of triangles.

@@ -5,6 +5,7 @@
 #include "tool/end_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <string>
@@ -52,6 +53,17 @@ bool GroundTool::allTeethGround() const {
     if (stroke.move == MoveKind::kStroke) teeth.insert(stroke.place.tooth);
   }
   return teeth.size() == job->tooth_angles.size();
+}
+
+double groundTo(const GrindJob& job) {
+  double end = 0;
+  for (int i = 0; i <= job.operation; ++i) {
+    const GrindProcess& p = job.operations[static_cast<std::size_t>(i)];
+    if (isStraight(p.kind)) continue;
+    const double run_out = std::sqrt(p.wheel_diameter * (p.deepest() + shankCut(job.cutter)));
+    end = std::max(end, job.cutter.flute_length + p.overtravel_shank + run_out);
+  }
+  return end;
 }
 
 std::vector<double> evenSections(const GrindJob& job, int count) {

@@ -532,8 +532,17 @@ class TestRecordOfTheGrinder(ReportCase):
                 self.assertAlmostEqual(mine['measured'], theirs['measured'], delta=1e-3, msg=mine['name'])
         self.assertEqual(record['machine'], bag['machine'])
         self.assertEqual(record['job']['file'], bag['job']['file'])
-
+        self.check_removal(page, record['operations'][0]['removal'], bag)
         self.check_page(page)
+
+    def check_removal(self, page, removal, bag):
+        """The single pass of the one tooth took what the tool lacks."""
+        self.assertEqual(removal, bag['removal'])
+        one, = removal
+        largest = max(bag['tool']['sections'][i]['area_removed_mm2'] for i in (0, 8, 16))
+        self.assertAlmostEqual(one['area_mm2'], largest, delta=0.002 * largest)
+        self.assertIn(['1', '%.4f' % one['depth_mm'], '%.3g' % one['area_mm2'], '%.3g' % one['rate_mm3_s'], '█' * 24],
+                      page.tables['Teeth and passes: flute'])
 
     def check_page(self, page):
         self.assert_page(page, TOOL)

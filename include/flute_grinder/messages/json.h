@@ -11,6 +11,7 @@
 namespace grinder {
 
 struct GrindJob;
+struct PassRemoval;
 
 /// JSON output: keys in a fixed order, with the operator's unit in the name; numbers to full precision.
 #if NLOHMANN_JSON_VERSION_MAJOR > 3 || NLOHMANN_JSON_VERSION_MINOR >= 9
@@ -25,6 +26,9 @@ Json toJson(const Axes& value, const std::string& per_time);
 
 /// The causes that keep the feed of a plan below the programmed feed, and their places.
 Json toJson(const std::vector<FeedLimit>& limits);
+
+/// What the passes of an operation remove.
+Json toJson(const std::vector<PassRemoval>& passes);
 
 /// A job in the keys and units of a job file. Written as YAML it is a job file, and reading that gives the same job, to
 /// the last bit if the job came from a file. A wheel that has a file of its own is written inline.

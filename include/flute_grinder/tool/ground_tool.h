@@ -40,6 +40,10 @@ constexpr double kBadGouge = 10e-6;
 /// Number of sections for judging a tool.
 constexpr int kJudgedSections = 17;
 
+/// X beyond which no wheel of the flutes and reliefs up to the job's operation touches the cutter: the strokes' ends,
+/// and the run-out of the deepest pass [m].
+double groundTo(const GrindJob& job);
+
 /// X of `count` equidistant sections over the flute, including its ends [m].
 /// @param count 2 or more.
 std::vector<double> evenSections(const GrindJob& job, int count);

@@ -26,6 +26,7 @@ PAGE = '''<!DOCTYPE html>
 LEVELS = ['OK', 'WARN', 'ERROR', 'STALE']
 MOST_ROWS = 1000  # most rows of a table; --json has all
 MOST_PLACES = 6  # most places of missing strokes named
+BAR = 24  # characters of the longest bar
 ROUNDING = 1e-6  # deviation [um] below which it is rounding
 PROFILES = {'straight': 'straight', 'angled': 'angled', 'full_radius': 'full radius', 'cup': 'cup', 'points': 'by points'}
 
@@ -157,7 +158,7 @@ def operations_of(data):
     if 'operations' in data or not data.get('job'):
         return data.get('operations', [])
     file = data['job']['file']
-    return [{'operation': file['operation'], 'process': process_of(file), 'runs': [data], 'missing': []}]
+    return [{'operation': file['operation'], 'process': process_of(file), 'runs': [data], 'missing': [], 'removal': data.get('removal')}]
 
 
 def who_and_when(data):
@@ -306,6 +307,18 @@ def stroke_table(data):
     return table.html()
 
 
+def removal_table(removal):
+    """What each pass takes from a tooth, as computed."""
+    table = Table(['pass', 'depth mm', 'mm²', 'mm³/s', ''], (1, 2, 3))
+    most = max(row['area_mm2'] for row in removal)
+    for i, row in enumerate(removal):
+        spark_out = i > 0 and row['depth_mm'] == removal[i - 1]['depth_mm']
+        bar = '█' * round(BAR * row['area_mm2'] / most) if most > 0 else ''
+        table.add(i + 1, number(row['depth_mm'], 4), three_digits(row['area_mm2']), three_digits(row['rate_mm3_s']),
+                  bar or ('spark-out' if spark_out else '' if row['area_mm2'] > 0 else 'removes nothing'))
+    return '<div class="keep"><p>What each pass removes from a section of a tooth, as computed:</p>\n%s</div>' % table.html()
+
+
 def events_between(data):
     """The holds and overrides outside the strokes."""
     inside = ' '.join(events_of(data, stroke) for stroke in data['strokes'])
@@ -395,6 +408,7 @@ def runs(data):
                 body.append('<h2>Teeth and passes%s</h2>' % text(': ' + operation['operation'] if operation['operation'] else ''))
             if operation['process']:
                 body.append(facts(process_facts(operation['process']) + run_facts(run)))
+                body += [removal_table(operation['removal'])] if operation.get('removal') else []
             elif 'setpoints' in run:
                 body.append(facts(run_facts(run)))
             body += [stroke_table(run) if run.get('strokes') else '', events_between(run)]

@@ -86,24 +86,6 @@ void printStatistics(const PathStatistics& s) {
   axes("odd-even ripple", s.ripple_acceleration, "mm/s^2", "deg/s^2");
 }
 
-/// Prints what each pass of a tooth removes.
-void printText(const std::vector<PassRemoval>& passes) {
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    const auto& [depth, area, rate, volume] = passes[i];
-    std::printf("%-20s %.4f mm deep, ", format("pass %zu", i + 1).c_str(), depth / kMillimetre);
-    if (area > 0) {
-      std::printf("%.4g mm^2 of a section, %.3g mm^3/s\n", area / kMillimetre2, rate / kMillimetre3);
-    } else {
-      std::printf(i > 0 && depth == passes[i - 1].depth ? "spark-out\n" : "removes nothing\n");
-    }
-  }
-}
-
-/// What the passes of a plan remove; empty for a plan without a program.
-std::vector<PassRemoval> removalOf(const PlannedJob& plan) {
-  return plan.program ? removalOfPasses(plan.program->job()) : std::vector<PassRemoval>();
-}
-
 }  // namespace
 
 int runTable(const TableOptions& options) {
@@ -143,6 +125,19 @@ void printPlan(const flute_grinder::PlanReport& plan) {
   }
 }
 
+void printPasses(const ValidJob& job) {
+  const std::vector<PassRemoval> passes = removalOfPasses(job);
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const auto& [depth, area, rate, volume] = passes[i];
+    std::printf("%-20s %.4f mm deep, ", format("pass %zu", i + 1).c_str(), depth / kMillimetre);
+    if (area > 0) {
+      std::printf("%.4g mm^2 of a section, %.3g mm^3/s\n", area / kMillimetre2, rate / kMillimetre3);
+    } else {
+      std::printf(i > 0 && depth == passes[i - 1].depth ? "spark-out\n" : "removes nothing\n");
+    }
+  }
+}
+
 int runPlan(const PlanOptions& options) {
   const ValidJob job(readJobFile(options.job, options.operation));
   const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
@@ -158,11 +153,11 @@ int runPlan(const PlanOptions& options) {
   if (options.json) {
     Json json = toJson(plan);
     json["shank_cut_mm"] = shankCut(job->cutter) / kMillimetre;
-    json["passes"] = toJson(removalOf(plan));
+    json["passes"] = plan.good() ? toJson(removalOfPasses(plan.program->job())) : Json::array();
     print(json);
   } else {
     printPlan(resultOf(plan).plan);
-    printText(removalOf(plan));
+    if (plan.good()) printPasses(plan.program->job());
   }
   for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason).c_str());

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/PlanReport.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
+#include "flute_grinder/job/valid_job.h"
 
 #include <optional>
 #include <string>
@@ -37,5 +38,8 @@ int runPlan(const PlanOptions& options);
 /// which the flutes are complete, the two bodies that come closest to each other, and the cut of the first pass into
 /// the shank. Unknown and empty values are left out.
 void printPlan(const flute_grinder::PlanReport& plan);
+
+/// Prints what each pass of a tooth removes. @param job job from withLaws().
+void printPasses(const ValidJob& job);
 
 }  // namespace grinder

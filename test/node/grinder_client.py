@@ -30,7 +30,7 @@ import rosunit.xmlrunner
 import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
-                               ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
+                               ProbeActionFeedback, ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
 from flute_grinder.srv import ConfirmSwivel, ConfirmWheel, InjectFault, SetFeedOverride, SetOffset, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
@@ -488,16 +488,15 @@ class Grinder:
 
     @contextlib.contextmanager
     def probing(self, within, cycle=ProbeGoal.END_FACE, **fields):
-        """Has a probing cycle run for a client that repeats that it is alive. Gives the action's client, whose `touches` are
-        the places and touches of the feedback."""
+        """Has a probing cycle run for a client that repeats that it is alive. Gives the action's client, with its `feedback`."""
         client = actionlib.SimpleActionClient('/%s/probe' % self.name, ProbeAction)
         assert client.wait_for_server(rospy.Duration(PATIENCE)), 'no action server'
-        client.touches = []
         with contextlib.ExitStack() as stack:
             alive = publisher(stack.callback, '/%s/probe_alive' % self.name, Header)
             stack.callback(rospy.Timer(rospy.Duration(0.05), lambda _: alive.publish(Header(stamp=rospy.Time.now()))).shutdown)
-            client.send_goal(ProbeGoal(cycle=cycle, within=within, **fields),
-                             feedback_cb=lambda feedback: client.touches.append((feedback.place, feedback.touch)))
+            # actionlib's client drops what comes after the result, which has a connection of its own.
+            client.feedback = received(stack.callback, '/%s/probe/feedback' % self.name, ProbeActionFeedback)
+            client.send_goal(ProbeGoal(cycle=cycle, within=within, **fields))
             yield client
 
     def probe(self, within, cycle=ProbeGoal.END_FACE, **fields):

@@ -43,7 +43,8 @@ class Commands {
 // One function for each group of commands, in the order of the help. Its commands refer to `commands`, which must
 // outlive their actions.
 
-/// The commands for a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `goal`, `report`, `history`.
+/// The commands for a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `goal`, `report`, `history`,
+/// `measured`.
 void addJobCommands(Commands& commands);
 
 /// The commands for a wheel, its zeros, and the machine's files: `wheel`, `zeros`, `machine`.

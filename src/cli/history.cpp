@@ -220,6 +220,11 @@ class Listing {
   Table table_;
 };
 
+FileError unreadable(const std::string& folder, const std::filesystem::filesystem_error& error) {
+  return FileError(folder + ": cannot be read: " + error.code().message() +
+                   "; allowed: --from, if the grinder keeps its records elsewhere");
+}
+
 /// The paths of the records in a folder, the newest last. Prints the names of skipped files.
 std::vector<std::string> pathsIn(const std::string& folder) {
   try {
@@ -229,8 +234,7 @@ std::vector<std::string> pathsIn(const std::string& folder) {
     }
     return files.records;
   } catch (const std::filesystem::filesystem_error& error) {
-    throw FileError(folder + ": cannot be read: " + error.code().message() +
-                    "; allowed: --from, if the grinder keeps its records elsewhere");
+    throw unreadable(folder, error);
   }
 }
 
@@ -368,6 +372,15 @@ std::string lastRecord(const std::string& node, const std::string& folder) {
   const std::vector<std::string> paths = pathsIn(path);
   if (paths.empty()) throw FileError(path + ": has no record of a job");
   return paths.back();
+}
+
+std::vector<ToolNumber> toolsOf(const std::string& node, const std::string& folder, const GrindJob& job) {
+  const std::string path = folder.empty() ? historyFolder(node) : folder;
+  try {
+    return toolsIn(path, jobDigest(job));
+  } catch (const std::filesystem::filesystem_error& error) {
+    throw unreadable(path, error);
+  }
 }
 
 std::string doneOperations(const std::string& node, const std::string& job) {

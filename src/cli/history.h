@@ -1,5 +1,7 @@
 #pragma once
 
+#include "flute_grinder/record/measured.h"
+
 #include <string>
 #include <vector>
 
@@ -28,6 +30,10 @@ std::string historyFolder(const std::string& node);
 /// historyFolder().
 /// @throw FileError if there is none.
 std::string lastRecord(const std::string& node, const std::string& folder);
+
+/// The tools of a job's operation in a grinder's folder. @param folder empty for the default folder. @param node see
+/// historyFolder(). @throw FileError if the folder cannot be read.
+std::vector<ToolNumber> toolsOf(const std::string& node, const std::string& folder, const GrindJob& job);
 
 /// The operations of a job file that the records show as done, as text for people. An operation counts only if neither
 /// it nor an earlier one has changed since. @param node see historyFolder(). @return empty for a file that cannot be

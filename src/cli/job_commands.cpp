@@ -3,6 +3,7 @@
 #include "cli/completion.h"
 #include "cli/goal.h"
 #include "cli/history.h"
+#include "cli/measured.h"
 #include "cli/offline.h"
 #include "cli/online.h"
 #include "cli/report.h"
@@ -25,6 +26,12 @@ void addRecorded(CLI::App& command, const char* words, Options& options) {
   last->excludes(file);
   command.add_option("--from", options.folder, "folder of the records (default: the grinder's below ~/.ros)")
       ->needs(last)
+      ->type_name(kFolder);
+}
+
+/// Adds the folder of one grinder's records.
+void addRecords(CLI::App& command, std::string& folder) {
+  command.add_option("--from", folder, "folder of the records (default: the grinder's below ~/.ros)")
       ->type_name(kFolder);
 }
 
@@ -169,6 +176,24 @@ void addHistory(Commands& commands) {
   addCsv(command, options->csv, "write the list to this file");
 }
 
+void addMeasured(Commands& commands) {
+  const auto options = std::make_shared<MeasuredOptions>();
+  auto& command = commands.add("measured", "keep what was measured of a ground tool in its record",
+                               "jobs/paper.yaml core@2=7.16 rake@15=8.3",
+                               [&commands, options] { return keepMeasured(commands.node, *options); });
+  addJob(command, options->job);
+  command.add_option("FIGURE=VALUE", options->figures, "figures at their X, such as rake@15=8.3, in mm or deg")
+      ->required()
+      ->type_name("FIGURE@X=VALUE");
+  addOperation(command, options->operation);
+  command
+      .add_option("--tool", options->tool,
+                  "the number with which the tool's record begins (default: the last tool of the job)")
+      ->type_name("NUMBER")
+      ->check(within(1, 9999999999, "as in 'grind history --json'"));
+  addRecords(command, options->folder);
+}
+
 }  // namespace
 
 void addJobCommands(Commands& commands) {
@@ -180,6 +205,7 @@ void addJobCommands(Commands& commands) {
   addGoal(commands);
   addReport(commands);
   addHistory(commands);
+  addMeasured(commands);
 }
 
 }  // namespace grinder

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "flute_grinder/base/enum_table.h"
+#include "flute_grinder/base/quantity.h"
+#include "flute_grinder/job/valid_job.h"
+#include "flute_grinder/tool/tool_figure.h"
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <vector>
+
+/// @file
+/// The figures of a planned flute over small changes of its set-up.
+namespace grinder {
+
+/// A number of a flute's set-up that an operator or a job can change.
+enum class SetupTurn : std::uint8_t { kY, kZ, kSwivel, kEndDepth, kShift };
+struct SetupTurnRow : EnumRow<SetupTurn> {
+  Unit unit = Unit::kMetre;
+  double step = 0;  ///< for differences: small beside a tolerance, large beside what a section is measured to
+};
+inline constexpr SetupTurnRow kSetupTurns[] = {
+    {{SetupTurn::kY, "y"}, Unit::kMetre, 5e-6},                 ///< wheel away from the cutter's axis
+    {{SetupTurn::kZ, "z"}, Unit::kMetre, 5e-6},                 ///< wheel up
+    {{SetupTurn::kSwivel, "swivel"}, Unit::kRadian, 2e-4},      ///
+    {{SetupTurn::kEndDepth, "end_depth"}, Unit::kMetre, 5e-6},  ///< deeper at the flute's end, X = 0 as it is
+    {{SetupTurn::kShift, "x_shift"}, Unit::kMetre, 5e-6},       ///< of A's curve, see LogCurve
+};
+constexpr const auto& rowsOf(SetupTurn) noexcept { return kSetupTurns; }
+constexpr int kSetupTurnCount = countOf<SetupTurn>();
+
+/// A value for each SetupTurn, in the order of the table [m], of the swivel [rad].
+using Turns = Eigen::Matrix<double, kSetupTurnCount, 1>;
+
+constexpr Eigen::Index indexOf(SetupTurn turn) noexcept { return static_cast<Eigen::Index>(turn); }
+
+/// A figure in a section.
+struct FigureAt {
+  ToolFigure figure{};
+  double x = 0;  ///< from the small end [m]
+};
+
+/// The figures of a job's first tooth, near its planned set-up: planned + slope * turns.
+struct FigureModel {
+  std::vector<FigureAt> figures;
+  Eigen::VectorXd planned;    ///< with the planned set-up [m], [rad]
+  Eigen::VectorXd asked;      ///< [m], [rad]
+  Eigen::VectorXd tolerance;  ///< [m], [rad]
+  Eigen::Matrix<double, Eigen::Dynamic, kSetupTurnCount> slope;
+};
+
+/// The figures in which a flute is judged when its set-up is corrected: rake and core near both ends and in the middle.
+std::vector<FigureAt> judgedFigures(const CutterGeometry& cutter);
+
+/// The figures of the first tooth that a job's strokes grind on a machine whose set-up is off.
+/// @param job flutes, with their laws.
+/// @param off how far the set-up is off.
+/// @return NaN where there is no figure [m], [rad].
+Eigen::VectorXd figuresOffBy(const ValidJob& job, const std::vector<FigureAt>& figures, const Turns& off);
+
+/// Measures the planned tooth with each turn a little to either side; takes some ten milliseconds.
+/// @param job flutes, with their laws.
+/// @throw std::invalid_argument naming a figure that is not asked, or that the planned tooth does not have.
+FigureModel figureModel(const ValidJob& job, const std::vector<FigureAt>& figures);
+
+}  // namespace grinder

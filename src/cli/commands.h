@@ -44,7 +44,7 @@ class Commands {
 // outlive their actions.
 
 /// The commands for a job and its record: `table`, `plan`, `setup`, `simulate`, `run`, `goal`, `report`, `history`,
-/// `measured`.
+/// `measured`, `correct`.
 void addJobCommands(Commands& commands);
 
 /// The commands for a wheel, its zeros, and the machine's files: `wheel`, `zeros`, `machine`.

@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
+#include "cli/correct.h"
 #include "cli/goal.h"
 #include "cli/history.h"
 #include "cli/measured.h"
@@ -33,6 +34,13 @@ void addRecorded(CLI::App& command, const char* words, Options& options) {
 void addRecords(CLI::App& command, std::string& folder) {
   command.add_option("--from", folder, "folder of the records (default: the grinder's below ~/.ros)")
       ->type_name(kFolder);
+}
+
+/// Adds the choice of a tool by the number with which its record's name begins.
+void addTool(CLI::App& command, const char* name, std::uint64_t& number, const char* description) {
+  command.add_option(name, number, description)
+      ->type_name("NUMBER")
+      ->check(within(1, 9999999999, "as its record's name begins"));
 }
 
 void addTable(Commands& commands) {
@@ -186,12 +194,21 @@ void addMeasured(Commands& commands) {
       ->required()
       ->type_name("FIGURE@X=VALUE");
   addOperation(command, options->operation);
-  command
-      .add_option("--tool", options->tool,
-                  "the number with which the tool's record begins (default: the last tool of the job)")
-      ->type_name("NUMBER")
-      ->check(within(1, 9999999999, "as in 'grind history --json'"));
+  addTool(command, "--tool", options->tool, "the tool (default: the last one of the job)");
   addRecords(command, options->folder);
+}
+
+void addCorrect(Commands& commands) {
+  const auto options = std::make_shared<CorrectOptions>();
+  auto& command =
+      commands.add("correct", "print what to set so that the next tool is as planned, by measured tools",
+                   "jobs/paper.yaml", [&commands, options] { return printCorrection(commands.node, *options); });
+  addJob(command, options->job);
+  addOperation(command, options->operation);
+  addTool(command, "--since", options->since, "the first tool that counts (default: with the present zero points)");
+  addRecords(command, options->folder);
+  addMachine(command, options->parameters, options->urdf);
+  addJson(command, options->json);
 }
 
 }  // namespace
@@ -206,6 +223,7 @@ void addJobCommands(Commands& commands) {
   addReport(commands);
   addHistory(commands);
   addMeasured(commands);
+  addCorrect(commands);
 }
 
 }  // namespace grinder

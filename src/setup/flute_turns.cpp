@@ -1,4 +1,4 @@
-#include "setup/flute_turns.h"
+#include "flute_grinder/setup/flute_turns.h"
 
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"

@@ -1,4 +1,4 @@
-#include "setup/setup_estimate.h"
+#include "flute_grinder/setup/setup_estimate.h"
 
 #include "flute_grinder/base/units.h"
 

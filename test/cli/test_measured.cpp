@@ -1,10 +1,14 @@
 // What `grind measured` and `grind correct` do with a folder of records.
 
+#include "cli/correct.h"
 #include "cli/measured.h"
 #include "flute_grinder/base/format.h"
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/measured.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/z_law.h"
 #include "refusal.h"
 #include "temp_folder.h"
 
@@ -26,14 +30,18 @@ class MeasuredTools : public ::testing::Test {
     return folder_.path() / (format("%010d", number) + "_20261122T170413.123Z.json");
   }
 
-  /// A record of a tool that was ground to its end.
-  void keep(int number) {
+  /// A record of a tool that was ground to its end, with a zero point of Y.
+  void keep(int number, double y_mm = 1.5, const char* method = "touch_off", const char* set_at = "monday") {
     Record record;
     record.head.digest = digest_;
     record.head.outcome = "done";
     record.head.tool = "a cone";
     record.head.ended = "2026-11-22T17:05:13.123Z";
-    record.body = {{"not_ground", "by \x1b"}};
+    record.body = {{"not_ground", "by \x1b"},
+                   {"work_offsets", {{"y_mm", y_mm}, {"z_mm", -7.0}}},
+                   {"zero_points",
+                    {{"y", {{"set_at", set_at}, {"set_for", {{"method", method}}}}},
+                     {"z", {{"set_at", "sunday"}, {"set_for", {{"method", "touch_off"}}}}}}}};
     std::ofstream(pathOf(number)) << text(record);
   }
 
@@ -50,6 +58,38 @@ class MeasuredTools : public ::testing::Test {
     return said();
   }
 
+  /// A tool that was ground with Y and Z off, and measured with a gauge of 0.01 deg and 0.1 um.
+  void grind(int number, double y_um, double z_um, double y_mm = 1.5, const char* method = "touch_off",
+             const char* set_at = "monday") {
+    GrindJob job = readJobFile(kJob);
+    job.process().depth -= y_um * units::kMicrometre;
+    job.process().depth_end -= y_um * units::kMicrometre;
+    job.process().setup_height += z_um * units::kMicrometre;
+    const GroundCutter tool = groundCutterOf(withLaws(ValidJob(job)));
+    std::vector<std::string> figures;
+    for (const double x : {2.0, 15.0, 28.0}) {
+      const GroundSection section = tool.section(x * units::kMillimetre);
+      figures.push_back(format("rake@%g=%.2f", x, section.teeth[0].rake.value() / units::kDegree));
+      figures.push_back(format("core@%g=%.4f", x, 2 * section.core_radius / units::kMillimetre));
+    }
+    keep(number, y_mm, method, set_at);
+    measure(figures, static_cast<std::uint64_t>(number));
+  }
+
+  /// @return the JSON that is printed.
+  Json correct(int status, std::uint64_t since = 0) {
+    return Json::parse(
+        printed({kJob, "", since, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", true}, status));
+  }
+  std::string printed(const CorrectOptions& options, int status) {
+    ::testing::internal::CaptureStdout();
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(printCorrection("grinder", options), status);
+    err_ = ::testing::internal::GetCapturedStderr();
+    return ::testing::internal::GetCapturedStdout();
+  }
+
+  std::string err_;
   const std::string digest_ = jobDigest(readJobFile(kJob));
   const test_support::TempFolder folder_;
 };
@@ -81,6 +121,78 @@ TEST_F(MeasuredTools, KeepNothingIfOneOfTheEntriesIsRefused) {
   EXPECT_EQ(refused({"core@15=9.43", "cor@15=9"}, 3).find("figure = cor; allowed: "), 0U);
   EXPECT_EQ(refused({"core@15=9.43"}, 4), "tool = 4; allowed: 3");
   EXPECT_EQ(test_support::readFile(pathOf(3)), before);
+}
+
+TEST_F(MeasuredTools, SayWhatToSet) {
+  for (const int number : {1, 2, 3, 4}) grind(number, 15, -10);
+  const Json said = correct(0);
+  EXPECT_EQ(said["tools"], 4);
+  EXPECT_EQ(said["measured"], 4);
+  EXPECT_NEAR(said["turn"]["y_mm"], -0.015, 0.002);
+  EXPECT_NEAR(said["turn"]["z_mm"], 0.010, 0.003);
+  EXPECT_EQ(said["turn"]["swivel_deg"], 0.0);
+  EXPECT_NEAR(said["offsets"]["y_mm"], 1.5 - 0.015, 0.002);
+  EXPECT_NEAR(said["offsets"]["z_mm"], -7 + 0.010, 0.003);
+  EXPECT_EQ(said["figures"].size(), 6U);
+  for (const Json& figure : said["figures"]) {
+    const bool is_core = figure["figure"] == "core_diameter";
+    const std::string unit = is_core ? "_mm" : "_deg";
+    EXPECT_NEAR(figure["after" + unit], figure["planned" + unit], is_core ? 0.002 : 0.05) << text(figure);
+  }
+  // By the edge circle: 1.865 of Y and 0.72 of Z.
+  EXPECT_EQ(said["figures"][3]["x_mm"], 2.0);
+  EXPECT_NEAR(said["figures"][3]["now_mm"].get<double>() - said["figures"][3]["planned_mm"].get<double>(),
+              1.865 * 0.015 - 0.72 * 0.010, 0.001);
+  const std::string table =
+      printed({kJob, "", 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false}, 0);
+  EXPECT_NE(table.find("since tool 1: 4 ground, 4 measured; zero points as of tool 4\n"), std::string::npos) << table;
+  EXPECT_NE(table.find(" mm: grind offsets --set y=1.48"), std::string::npos) << table;
+}
+
+TEST_F(MeasuredTools, KnowACorrectionByHandAndForgetWhatATouchOffReplaces) {
+  for (const int number : {1, 2, 3}) grind(number, 15, 0);
+  grind(4, 0, 0, 1.485, "by_hand", "tuesday");
+  const Json by_hand = correct(0);
+  EXPECT_EQ(by_hand["tools"], 4);
+  EXPECT_TRUE(by_hand["left_out"].empty());
+  EXPECT_TRUE(by_hand["in_dead_band"]);
+  EXPECT_EQ(by_hand["offsets"]["y_mm"], 1.485);
+  grind(5, 40, 0, 1.6, "touch_off", "wednesday");
+  const Json anew = correct(0);
+  EXPECT_EQ(anew["since"], 5);
+  EXPECT_EQ(anew["measured"], 1);
+  EXPECT_LT(anew["turn"]["y_mm"], -0.02);
+}
+
+TEST_F(MeasuredTools, SetNothingByAWrongEntry) {
+  for (const int number : {1, 2, 3}) grind(number, 2, 0);
+  grind(7, 2, 0);
+  measure({"core@2=7.252"}, 7);
+  const Json wrong = correct(1);
+  EXPECT_TRUE(wrong["alarm"]);
+  EXPECT_EQ(wrong["measured"], 3);
+  EXPECT_EQ(wrong["offsets"]["y_mm"], 1.5);
+  EXPECT_EQ(err_.find("tool 7: core_diameter@2 = 7.252 mm; allowed: 7.1"), 0U) << err_;
+  measure({"core@2=7.152"}, 7);
+  EXPECT_FALSE(correct(0)["alarm"]);
+  measure({"core@2=7.252"}, 2);  // an earlier one is left out
+  const Json earlier = correct(0);
+  EXPECT_EQ(earlier["measured"], 3);
+  EXPECT_EQ(earlier["left_out"].size(), 1U);
+  const Json later = correct(0, 7);
+  EXPECT_EQ(later["since"], 7);
+  EXPECT_EQ(later["measured"], 1);
+}
+
+TEST_F(MeasuredTools, NeedSomethingMeasuredOfTheFlutes) {
+  const auto refused = [&](const char* job, const char* operation) {
+    const CorrectOptions options{job, operation, 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false};
+    return test_support::refusalOf<std::invalid_argument>([&] { printCorrection("grinder", options); });
+  };
+  EXPECT_EQ(refused(kJob, ""), "no tool of this job and set-up is in the records");
+  keep(1);
+  EXPECT_EQ(refused(kJob, "").find("nothing is measured of the tools since the zero points were set"), 0U);
+  EXPECT_EQ(refused("jobs/end_mill_d10_t4.yaml", "primary").find("operation = primary; allowed: flute"), 0U);
 }
 
 }  // namespace test_cli_measured

@@ -54,6 +54,7 @@ MESSAGES = {
     'src/messages/continue_job.cpp': (),
     'src/record/measured.cpp': (),
     'src/cli/measured.cpp': (),
+    'src/cli/correct.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),
     'src/node/goal_server.cpp': ('planned and checked; nothing moved',),
     'src/node/grinder_node.cpp': ('of the parameter server',),

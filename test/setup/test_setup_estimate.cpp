@@ -1,7 +1,7 @@
 // What measured tools say of a set-up, against the edge circle of the paper's wheel in closed form, and in batches of
 // tools on a machine with errors of its own.
 
-#include "setup/setup_estimate.h"
+#include "flute_grinder/setup/setup_estimate.h"
 
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/tool/ground_job.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "setup/flute_turns.h"
+#include "flute_grinder/setup/flute_turns.h"
 
 #include <optional>
 

@@ -3,6 +3,7 @@
 #include "cli/history.h"
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
+#include "cli/online.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
@@ -112,7 +113,7 @@ struct Findings {
   FigureModel model;
   SetupEstimate estimate{usualSpread()};
   std::uint64_t since = 0;            ///< the first tool that counts
-  int tools = 0, measured = 0;        ///< that count; of these, measured and believed
+  int tools = 0, measured = 0;        ///< tools that count; measured tools among them that were not left out
   MeasuredTool last;                  ///< the last tool
   std::vector<std::string> left_out;  ///< tools that are not believed, in words
   bool alarm = false;                 ///< whether the last measured tool is one of them
@@ -229,7 +230,7 @@ void printFigures(const Findings& found) {
                 figure.asked, figure.tolerance, figure.planned, figure.now, figure.after, unitOf(at),
                 isSeen(at.figure, found.model.tolerance[static_cast<Eigen::Index>(i)])
                     ? ""
-                    : "; a gauge can hardly see it: its tolerance is too narrow");
+                    : "; tolerance too narrow for a gauge");
   }
 }
 
@@ -252,7 +253,7 @@ void printSettings(const Findings& found, const CorrectOptions& options) {
 
 void printTable(const Findings& found, const CorrectOptions& options) {
   const Turns off = found.estimate.expected();
-  std::printf("since tool %ju: %d ground, %d measured; zero points as of tool %ju\n", std::uintmax_t{found.since},
+  std::printf("since tool %ju: %d ground, %d measured; zero points of tool %ju\n", std::uintmax_t{found.since},
               found.tools, found.measured, std::uintmax_t{found.last.number});
   std::printf("the set-up is off by Y %+.4f mm, Z %+.4f mm, swivel %+.3f deg; Y drifts by %+.4f mm a tool\n",
               turned(off, SetupTurn::kY), turned(off, SetupTurn::kZ), turned(off, SetupTurn::kSwivel),
@@ -282,16 +283,16 @@ int printCorrection(const std::string& node, const CorrectOptions& options) {
   for (const std::string& tool : found.left_out) std::fprintf(stderr, "%s\n", tool.c_str());
   if (found.measured == 0 && !found.alarm) {
     throw std::invalid_argument(
-        "nothing is measured of the tools since the zero points were set; 'grind measured' first");
+        "no tool has been measured since its zero points were found; run 'grind measured' first");
   }
   const Turns most = found.alarm ? Turns(Turns::Zero()) : mostOf(options);
   found.correction = correctionOf(found.model, found.estimate.expected(), most);
   if (options.json) print(toJson(found));
   if (found.alarm) {
-    std::fprintf(stderr,
-                 "nothing is to be set by it: measure the tool again, enter it anew by 'grind measured', or, if "
-                 "the machine was changed, look for why, and begin with 'grind correct --since'\n");
-    return 1;
+    return fail(
+        "no correction: measure the tool again and enter it with 'grind measured'; if the machine has changed, find "
+        "out "
+        "why, and use 'grind correct --since' with the next tool");
   }
   if (!options.json) printTable(found, options);
   return 0;

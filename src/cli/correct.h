@@ -9,7 +9,7 @@ namespace grinder {
 struct CorrectOptions {
   std::string job;
   std::string operation;    ///< one of several operations; empty for the only one
-  std::uint64_t since = 0;  ///< number of the first tool that counts; 0 for all with the present zero points
+  std::uint64_t since = 0;  ///< number of the first tool that counts; 0 for the first with the zero points of the last
   std::string folder;       ///< folder of the records; empty for the default folder of the grinder
   std::string parameters;   ///< YAML of the machine
   std::string urdf;

@@ -205,7 +205,8 @@ void addCorrect(Commands& commands) {
                    "jobs/paper.yaml", [&commands, options] { return printCorrection(commands.node, *options); });
   addJob(command, options->job);
   addOperation(command, options->operation);
-  addTool(command, "--since", options->since, "the first tool that counts (default: with the present zero points)");
+  addTool(command, "--since", options->since,
+          "the first tool that counts (default: the first with the zero points of the last)");
   addRecords(command, options->folder);
   addMachine(command, options->parameters, options->urdf);
   addJson(command, options->json);

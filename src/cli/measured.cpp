@@ -26,12 +26,12 @@ int keepMeasured(const std::string& node, const MeasuredOptions& options) {
   const ToolNumber& tool = toolOf(tools, options.tool);
   Record record = readRecord(tool.path);
   for (const MeasuredFigure& measured : figures) addMeasured(record, measured);
+  const ValidJob asked(job);
   try {
     replaceFile(tool.path, text(record));
   } catch (const std::system_error& error) {
     throw FileError(tool.path + ": what was measured cannot be kept: " + error.code().message());
   }
-  const ValidJob asked(job);
   std::printf("tool %ju, %s, ground until %s\n", std::uintmax_t{tool.number}, record.head.tool.c_str(),
               record.head.ended.c_str());
   for (const MeasuredFigure& measured : figures) std::printf("%s\n", text(measured, asked).c_str());

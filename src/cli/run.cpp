@@ -101,11 +101,9 @@ void printStream(const StreamWatch& stream, std::uint64_t written) {
 }
 
 /// Prints the outcome of a goal. @param end nothing if the connection was lost before. @return the exit status.
-int printOutcome(const std::optional<flute_grinder::GrindActionResult>& end, const ValidJob& job,
-                 const StreamWatch& stream) {
+int printOutcome(const std::optional<flute_grinder::GrindActionResult>& end, const StreamWatch& stream) {
   if (end) {
     printPlan(end->result.plan);
-    if (end->result.plan.valid) printPasses(withLaws(job));
     if (succeeded(*end)) {
       for (const flute_grinder::Need& need : end->result.plan.needs) {
         std::fprintf(stderr, "to start it: %s\n", escaped(need.text).c_str());
@@ -180,7 +178,10 @@ int runJob(const std::string& node, const RunOptions& options) {
     showProgress(sent, client, bar);
     bar.end();
     if (sent.end && !goal.dry_run && addAnswers(sent.end->result.plan.needs, goal.answers)) continue;
-    return closeStream(stream, options.csv, printOutcome(sent.end, job, stream));
+    const bool is_planned = goal.dry_run && sent.end && sent.end->result.plan.valid;
+    const int status = closeStream(stream, options.csv, printOutcome(sent.end, stream));
+    if (is_planned) printPasses(withLaws(job));
+    return status;
   }
 }
 

@@ -98,6 +98,11 @@ class RemovalCurve {
 
 using RemovalCurves = std::vector<RemovalCurve>;
 
+/// @throw ReasonError if the plan is no longer wanted.
+void keepOn(const PlanWatch& watch) {
+  if (watch && !watch(0)) throw ReasonError(Reason{ReasonKind::kGivenUp});
+}
+
 /// The curves of all distinct teeth, in each of the sections that count.
 RemovalCurves curvesOf(const ValidJob& job, double deepest, const PlanWatch& watch) {
   const GroundCutter ground = before(job);
@@ -107,7 +112,7 @@ RemovalCurves curvesOf(const ValidJob& job, double deepest, const PlanWatch& wat
     const int tooth = alike.first;
     const double angle = job->tooth_angles[static_cast<std::size_t>(tooth)], speed = axialSpeed(job, tooth);
     const auto sweep = [&](double depth) {
-      if (watch && !watch(0)) throw ReasonError(Reason{ReasonKind::kGivenUp});
+      keepOn(watch);
       return sweepOf(job, tooth, wear, strokeOf(job, tooth, depth, wear));
     };
     for (const double part : kSectionsOfArea) {
@@ -131,11 +136,13 @@ double removalBetween(const RemovalCurves& curves, double from, double to) {
 /// @param removal what each removes; the last may remove less [m^3/s].
 /// @param count maximum number of passes.
 /// @return ascending; the last is `deepest` if the passes get there [m].
-std::vector<double> passesOf(const RemovalCurves& curves, double deepest, double removal, std::size_t count) {
+std::vector<double> passesOf(const RemovalCurves& curves, double deepest, double removal, std::size_t count,
+                             const PlanWatch& watch) {
   constexpr int halvings = 40;
   constexpr double steps = 1e8;  // per metre: depths are multiples of 10 nm
   std::vector<double> depths;
   for (double last = 0; depths.size() < count && last < deepest;) {
+    keepOn(watch);
     double next = deepest;
     if (removalBetween(curves, last, deepest) > removal) {
       double within = last, beyond = deepest;
@@ -162,7 +169,7 @@ std::vector<double> roughingOf(const ValidJob& job, const PlanWatch& watch) {
   const auto arrives = [&](const std::vector<double>& depths) { return !depths.empty() && depths.back() == deepest; };
   auto count = static_cast<std::size_t>(p.roughing_passes);
   if (p.removal > 0) {
-    const std::vector<double> depths = passesOf(curves, deepest, p.removal, kMaxRoughingPasses);
+    const std::vector<double> depths = passesOf(curves, deepest, p.removal, kMaxRoughingPasses, watch);
     if (!arrives(depths)) {
       throw ReasonError({ReasonKind::kNotAllowed, 0, "process.removal",
                          "enough for " + std::to_string(kMaxRoughingPasses) + " roughing passes",
@@ -173,10 +180,10 @@ std::vector<double> roughingOf(const ValidJob& job, const PlanWatch& watch) {
   // The least that each of so many passes may remove.
   constexpr int halvings = 50;
   double too_little = 0, enough = all;
-  std::vector<double> found = passesOf(curves, deepest, enough, count);
+  std::vector<double> found = passesOf(curves, deepest, enough, count, watch);
   for (int i = 0; i < halvings; ++i) {
     const double middle = (too_little + enough) / 2;
-    std::vector<double> depths = passesOf(curves, deepest, middle, count);
+    std::vector<double> depths = passesOf(curves, deepest, middle, count, watch);
     if (arrives(depths)) {
       enough = middle;
       found = std::move(depths);

@@ -145,7 +145,7 @@ TEST_F(MeasuredTools, SayWhatToSet) {
               1.865 * 0.015 - 0.72 * 0.010, 0.001);
   const std::string table =
       printed({kJob, "", 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false}, 0);
-  EXPECT_NE(table.find("since tool 1: 4 ground, 4 measured; zero points as of tool 4\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("since tool 1: 4 ground, 4 measured; zero points of tool 4\n"), std::string::npos) << table;
   EXPECT_NE(table.find(" mm: grind offsets --set y=1.48"), std::string::npos) << table;
 }
 
@@ -191,7 +191,7 @@ TEST_F(MeasuredTools, NeedSomethingMeasuredOfTheFlutes) {
   };
   EXPECT_EQ(refused(kJob, ""), "no tool of this job and set-up is in the records");
   keep(1);
-  EXPECT_EQ(refused(kJob, "").find("nothing is measured of the tools since the zero points were set"), 0U);
+  EXPECT_EQ(refused(kJob, "").find("no tool has been measured since its zero points were found"), 0U);
   EXPECT_EQ(refused("jobs/end_mill_d10_t4.yaml", "primary").find("operation = primary; allowed: flute"), 0U);
 }
 

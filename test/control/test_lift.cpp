@@ -304,6 +304,19 @@ TEST(AfterARestart, ACupOfWhichNothingIsKnownBacksOffToTheEndOfXBeforeItRises) {
   }
 }
 
+TEST(AfterARestart, ACupThatReadsBeyondTheEndOfXWithoutTheReferenceIsLiftedThere) {
+  const AxisLimits limits = machineConfig().machine.limits;
+  Rig<FakeDrive> rig(machineConfig(), unknownWheel(limits, true));
+  rig.drive.status.homed = false;
+  rig.drive.position[kX] = limits.min_position[kX] - 1e-3;
+  rig.enable();
+  rig.run(500);
+  ASSERT_NO_FATAL_FAILURE(rig.lift());
+  EXPECT_EQ(rig.last().command[kX], limits.min_position[kX] - 1e-3);
+  EXPECT_EQ(rig.last().command[kY], limits.max_position[kY]);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+}
+
 TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
   WithoutTheReference machine(kLift);
   auto& rig = machine.rig;

@@ -65,9 +65,11 @@ class WheelWatch {
   ///        is known, and a lift that was stopped continues.
   /// @param at commanded position of the axes [m], A [rad].
   LiftTarget liftTarget(bool x_homed, bool y_homed, const Axes& at) const noexcept {
-    // For an unknown job the targets are the ends of the travels, unless the wheel is already beyond them.
-    const bool to_front = !wheel_.known && at[kX] > wheel_.clear_x, to_top = !wheel_.known && at[kY] < wheel_.clear_y;
-    LiftTarget target{to_front ? wheel_.clear_x : at[kX] - wheel_.back, to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
+    // For an unknown job the targets are the ends of the travels. Without the reference X may read beyond its end, and
+    // stays; a wheel that reads above the top is lifted by the whole travel.
+    const bool to_top = !wheel_.known && at[kY] < wheel_.clear_y;
+    LiftTarget target{wheel_.known ? at[kX] - wheel_.back : wheel_.clear_x,
+                      to_top ? wheel_.clear_y : at[kY] + wheel_.lift};
     if (last_target_) target = *last_target_;
     if (x_homed) target.x = wheel_.clear_x;
     if (y_homed) target.y = wheel_.clear_y;

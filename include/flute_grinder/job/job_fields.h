@@ -112,7 +112,7 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).depth_end; });
   visit(F{"process.infeed", "process.infeed_mm", mm, 0, 50, "radial infeed per pass where the flute is deepest, 0.0001 or more; the last may be smaller. Exactly one of this, `process.roughing_passes` and `process.removal_mm3_s` is more than 0", "0"},
         [](auto& j) -> auto& { return processOf(j).infeed; });
-  visit(F{"process.removal", "process.removal_mm3_s", mm3_s, 0, 10000, "in place of `process.infeed_mm`: the most that a roughing pass removes per second at the feed; as many passes as that takes remove equal amounts", "0"},
+  visit(F{"process.removal", "process.removal_mm3_s", mm3_s, 0, 10000, "maximum removal rate of a roughing pass at the feed, in place of `process.infeed_mm`; the fewest passes that keep within it are used, with equal removal", "0"},
         [](auto& j) -> auto& { return processOf(j).removal; });
   visit(F{"process.finish_infeed", "process.finish_infeed_mm", mm, 0, 10, "infeed of a final finishing pass; 0 for none"},
         [](auto& j) -> auto& { return processOf(j).finish_infeed; });
@@ -136,7 +136,7 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).wheel_rim; });
   visit(F{"process.wheel_wear", "process.wheel.wear_mm", mm, 0, 100, "by which the radius is below half of `process.wheel.diameter_mm`; compensated by Y"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear; });
-  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "added to that by each pass of any tooth; compensated at the next infeed. Of a flank of the end or a chamfer it is the wear of the face that grinds, compensated by X and Z", "0"},
+  visit(F{"process.wheel_wear_per_pass", "process.wheel.wear_per_pass_mm", mm, 0, 1, "wear of the radius by each pass of any tooth, added to `process.wheel.wear_mm` and compensated by Y at the next infeed; for a flank of the end or a chamfer, wear of the face that grinds, compensated by X and Z", "0"},
         [](auto& j) -> auto& { return processOf(j).wheel_wear_per_pass; });
   visit(F{"process.setup_swivel", "process.setup.swivel_deg", deg, -89, 89, "of the wheel's plane against the cutter's axis; positive for right-hand flutes; within the limits of the joint `wheel_swivel`"},
         [](auto& j) -> auto& { return processOf(j).setup_swivel; });

@@ -133,10 +133,10 @@ class ValidJob {
   /// Whether the strokes are straight, at constant A, and so have a faceStroke() and no laws.
   bool isStraight() const noexcept { return grinder::isStraight(content_->job.process().kind); }
   /// The stroke of a pass of an operation on the end, with A of the tooth's edge.
-  /// @param depth, wear of the pass, see JobPass [m].
+  /// @param depth,wear JobPass::depth and JobPass::wear of the pass [m].
   /// @throw std::invalid_argument if withEdges() has not been called.
   FaceStroke faceStroke(int tooth, double depth, double wear) const;
-  /// The wheel in that stroke. @param wear of the pass, see JobPass [m].
+  /// The wheel in that stroke. @param wear JobPass::wear of the pass [m].
   FaceWheel faceWheel(double wear) const noexcept;
 
   /// The path of a relief; null for flutes.

@@ -59,7 +59,7 @@ class GrindProgram {
  public:
   /// @throw std::invalid_argument if `run.first` is not a pass of the job, if `machine` or `run` are out of range, if
   ///        the park position is in the work, if the machine cannot swivel to the job's set-up, if the feed would have
-  ///        to be reduced below kMinFeed, or like ValidJob::zCorrectionOf().
+  ///        to be reduced below kMinFeed, or like ValidJob::zCorrectionOf() and passes().
   GrindProgram(const ValidJob& job, const Machine& machine, const RunStart& run);
 
   const ValidJob& job() const noexcept { return job_; }

@@ -38,7 +38,7 @@ struct OffsetBasis {
   double end_diameter = 0;    ///< end diameter of the cutter [m]
   double wheel_diameter = 0;  ///< wheel diameter to which Y = 0 is set [m]
   double wheel_width = 0;     ///< width of the wheel [m]
-  double wheel_rim = 0;       ///< width of a cup's rim; 0 for any other wheel [m]
+  double wheel_rim = 0;       ///< width of a cup's rim; 0 if it does not matter [m]
   double swivel = 0;          ///< swivel of the job's set-up [rad]
   double height = 0;          ///< height of the job's set-up [m]
   std::string tool_digest;    ///< toolDigest() of the job; empty if the offset was set for no particular job
@@ -64,7 +64,7 @@ struct MountedWheel {
   std::string name;            ///< name, see OffsetBasis::wheel_name
   std::string digest;          ///< digest, see OffsetBasis::wheel_digest; empty until a wheel is confirmed
   double diameter = 0;         ///< nominal diameter [m]
-  double rim = 0;              ///< width of a cup's rim; 0 for any other wheel [m]
+  double rim = 0;              ///< width of a cup's rim; 0 if it does not matter [m]
   std::uint32_t mounting = 0;  ///< number that grows with every wheel change; X, Y and Z count for one mounting
 
   bool isKnown() const noexcept { return !digest.empty(); }

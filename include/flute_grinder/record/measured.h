@@ -17,7 +17,7 @@ struct MeasuredFigure {
   ToolFigure figure{};
   double x = 0;          ///< from the small end; 0 for a figure of the end [m]
   double value = 0;      ///< [m], [rad]
-  std::string when, by;  ///< time as of utcText(), and `user@host`
+  std::string when, by;  ///< time in the form of utcText(), and `user@host`
 };
 
 /// Reads `FIGURE=VALUE` or `FIGURE@X=VALUE`, in mm or deg; `core` stands for `core_diameter`. Without X, the middle of
@@ -51,7 +51,7 @@ std::vector<MeasuredFigure> measuredOf(const Record& record);
 
 /// A tool in a folder of records: the record of the run that ground an operation to its end.
 struct ToolNumber {
-  std::uint64_t number = 0;  ///< of the record, with which its name begins
+  std::uint64_t number = 0;  ///< number at the beginning of the record's file name
   std::string path;
 };
 

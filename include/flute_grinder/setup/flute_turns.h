@@ -23,9 +23,9 @@ struct SetupTurnRow : EnumRow<SetupTurn> {
 inline constexpr SetupTurnRow kSetupTurns[] = {
     {{SetupTurn::kY, "y"}, Unit::kMetre, 5e-6},                 ///< wheel away from the cutter's axis
     {{SetupTurn::kZ, "z"}, Unit::kMetre, 5e-6},                 ///< wheel up
-    {{SetupTurn::kSwivel, "swivel"}, Unit::kRadian, 2e-4},      ///
+    {{SetupTurn::kSwivel, "swivel"}, Unit::kRadian, 2e-4},      ///< swivel of the wheel's plane
     {{SetupTurn::kEndDepth, "end_depth"}, Unit::kMetre, 5e-6},  ///< deeper at the flute's end, X = 0 as it is
-    {{SetupTurn::kShift, "x_shift"}, Unit::kMetre, 5e-6},       ///< of A's curve, see LogCurve
+    {{SetupTurn::kShift, "x_shift"}, Unit::kMetre, 5e-6},       ///< shift of A's curve along X, see LogCurve
 };
 constexpr const auto& rowsOf(SetupTurn) noexcept { return kSetupTurns; }
 constexpr int kSetupTurnCount = countOf<SetupTurn>();

@@ -73,7 +73,7 @@ struct Correction {
   Turns turn = Turns::Zero();
   Eigen::VectorXd now, after;  ///< expected differences from the plan, per tolerance
   bool by_swivel = false;      ///< whether Y and Z alone would leave more than half a tolerance
-  bool in_dead_band = false;   ///< whether it would change no figure by what is worth it, so that nothing is turned
+  bool in_dead_band = false;   ///< whether no figure would change by 0.15 of its tolerance; nothing is turned then
 };
 
 /// The turns that bring the figures nearest to the plan: of Y and Z, and of the swivel, which a person sets, only if

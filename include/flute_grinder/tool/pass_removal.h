@@ -12,7 +12,7 @@ namespace grinder {
 struct PassRemoval {
   double depth = 0;   ///< as in ValidJob::depths() [m]
   double area = 0;    ///< from a section of a tooth: the largest of those amid the flute and at both ends [m^2]
-  double rate = 0;    ///< that area, times the speed along the axis at the job's feed [m^3/s]
+  double rate = 0;    ///< the largest product of such an area and the axial speed of its tooth at the feed [m^3/s]
   double volume = 0;  ///< from all teeth, over the length of the flute [m^3]
 };
 
@@ -26,7 +26,7 @@ std::vector<PassRemoval> removalOfPasses(const ValidJob& job);
 
 /// The job with its passes. Where these follow from what they remove, the roughing passes remove equal amounts per
 /// second, each measured where it is largest: at the flute's ends or amid it. A pass that would remove nothing is left
-/// out. That takes some tenths of a second for each distinct spiral angle; the same job gives the same bits.
+/// out. That takes some tenths of a second for each distinct tooth; the same job gives the same bits.
 /// @param job job with its law of Z, or with its edges.
 /// @param watch if given, it may stop the computation, within some milliseconds.
 /// @throw ReasonError if the job's removal would take too many passes, or if it was stopped.

@@ -3,6 +3,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/ground_tool.h"
 
 #include "brute_force.h"
 #include "jobs.h"
@@ -348,6 +349,18 @@ TEST(GroundJob, AnOvertravelThatGrindsIntoTheFluteAgainIsRefused) {
   }
   // Too short is too short.
   EXPECT_FALSE(groundCutterOf(ValidJob(nearApex(8))).section(0).teeth[0].complete);
+}
+
+TEST(GroundJob, TheFlutesRunOutIsThatOfTheWholeToolToItsLastOperation) {
+  const GrindJob mill = readJobFile("jobs/end_mill_d10_t4.yaml", "chamfer");
+  const GrindProcess& flute = mill.operations.front();
+  // No less than half the rim's chord in the depth d that it cuts into the shank, which is sqrt(D d - d^2).
+  const double run_out =
+      std::sqrt(flute.wheel_diameter * (std::max(flute.depth, flute.depth_end) + shankCut(mill.cutter)));
+  const double expected = mill.cutter.flute_length + flute.overtravel_shank + run_out;
+  for (const int operation : {0, 1, mill.operation}) {
+    EXPECT_NEAR(groundTo(mill.ofOperation(operation)), expected, 1e-12) << operation;
+  }
 }
 
 }  // namespace test_ground_job

@@ -130,7 +130,7 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, 0, periphery(tooth), {}};
+    EndPlace place{cutter_, {}, 0, periphery(tooth), {}, {}};
     const double radius = cutter_.end_diameter / 2;
     const bool has_edge = hasEdges(job_, next_), all_flanks = hasAllFlanks(*job_);
     const double pitch = endToothOf(*job_, static_cast<int>(tooth)).pitch;

@@ -12,11 +12,11 @@ void addJob(CLI::App& command, std::string& job) {
   command.add_option("JOB", job, "job file (YAML, mm, deg, mm/min)")->required()->type_name(kYamlFile);
 }
 
-void addOperation(CLI::App& command, std::string& operation) {
-  command
-      .add_option("--operation", operation,
-                  "which of the job's operations, by number or kind: 1 or flute, 2 or primary, ...")
-      ->type_name("NAME");
+CLI::Option& addOperation(CLI::App& command, std::string& operation) {
+  return *command
+              .add_option("--operation", operation,
+                          "which of the job's operations, by number or kind: 1 or flute, 2 or primary, ...")
+              ->type_name("NAME");
 }
 
 void addCsv(CLI::App& command, std::string& csv, const char* description) {

@@ -28,7 +28,7 @@ inline auto within(double min, double max, const char* unit) {
 void addJob(CLI::App& command, std::string& job);
 
 /// Adds `--operation`, which chooses one of a job file's operations.
-void addOperation(CLI::App& command, std::string& operation);
+CLI::Option& addOperation(CLI::App& command, std::string& operation);
 
 /// Adds `--csv`, a file to write.
 void addCsv(CLI::App& command, std::string& csv, const char* description);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace grinder {
 
@@ -14,12 +15,14 @@ struct CorrectOptions {
   std::string parameters;   ///< YAML of the machine
   std::string urdf;
   bool json = false;
+  bool apply = false;                ///< set the work offsets
+  std::vector<std::string> answers;  ///< answers given beforehand
 };
 
-/// Prints what the measured tools of a job say of its set-up, and what to set so that the next tool is as planned.
-/// Moves and sets nothing. @param node see historyFolder().
-/// @return the exit status: 1 if the last measured tool is a surprise, so that nothing should be set by it.
+/// Prints what the measured tools of a job say of its set-up, and what to set so that the next tool is as planned; sets
+/// the work offsets of Y and Z if asked to. @param node name of the grinder's node, see also historyFolder().
+/// @return the exit status: 1 if the last measured tool is a surprise, so that nothing is set by it.
 /// @throw FileError, std::invalid_argument
-int printCorrection(const std::string& node, const CorrectOptions& options);
+int correct(const std::string& node, const CorrectOptions& options);
 
 }  // namespace grinder

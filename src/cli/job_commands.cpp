@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 #include "cli/completion.h"
 #include "cli/correct.h"
+#include "cli/figure_history.h"
 #include "cli/goal.h"
 #include "cli/history.h"
 #include "cli/measured.h"
@@ -158,11 +159,35 @@ void addDate(CLI::App& command, const char* name, std::string& date, bool last, 
   command.add_option(name, date, description)->type_name("DATE")->check(check);
 }
 
+/// Adds the options of a figure over the tools of a job, which go with --from of one folder and --json alone.
+void addFigureHistory(CLI::App& command, FigureHistoryOptions& options) {
+  auto* figure =
+      command.add_option("--figure", options.figure, "instead, what was measured of this figure of a job's tools")
+          ->type_name("FIGURE[@X]");
+  auto* job = command.add_option("--job", options.job, "with --figure: the job")->type_name(kYamlFile);
+  figure->needs(job);
+  job->needs(figure);
+  addOperation(command, options.operation).needs(figure);
+  command.add_option("--svg", options.svg, "with --figure: draw it into this file")->needs(figure)->type_name(kAnyFile);
+  for (const char* other : {"--grinder", "--tool", "--since", "--until", "--verdict", "--judge-again", "--csv"}) {
+    figure->excludes(other);
+  }
+}
+
 void addHistory(Commands& commands) {
   const auto options = std::make_shared<HistoryOptions>();
+  const auto figure = std::make_shared<FigureHistoryOptions>();
   auto& command = commands.add("history", "list the records of one or many grinders' last jobs, the newest last",
-                               "--from left right --since 2026-11-01 --verdict failed",
-                               [&commands, options] { return printHistory(commands.node, *options); });
+                               "--from left right --since 2026-11-01 --verdict failed", [&commands, options, figure] {
+                                 if (figure->figure.empty()) return printHistory(commands.node, *options);
+                                 if (options->folders.size() > 1) {
+                                   throw std::invalid_argument(
+                                       "--figure shows the tools of one grinder; allowed: one "
+                                       "folder of --from");
+                                 }
+                                 const std::string folder = options->folders.empty() ? "" : options->folders.front();
+                                 return printFigureHistory(commands.node, folder, *figure, options->json);
+                               });
   auto* from = command.add_option("--from", options->folders,
                                   "folders of the records, one for each grinder (default: the grinder's below ~/.ros)");
   from->type_name(kFolder);
@@ -182,6 +207,7 @@ void addHistory(Commands& commands) {
   addTolerances(command, options->tolerances, "what they are judged by").needs(again);
   addJson(command, options->json);
   addCsv(command, options->csv, "write the list to this file");
+  addFigureHistory(command, *figure);
 }
 
 void addMeasured(Commands& commands) {
@@ -200,13 +226,16 @@ void addMeasured(Commands& commands) {
 
 void addCorrect(Commands& commands) {
   const auto options = std::make_shared<CorrectOptions>();
-  auto& command =
-      commands.add("correct", "print what to set so that the next tool is as planned, by measured tools",
-                   "jobs/paper.yaml", [&commands, options] { return printCorrection(commands.node, *options); });
+  const auto act = [&commands, options] { return correct(commands.node, *options); };
+  auto& command = commands.add(
+      "correct", "print, or set, what makes the next tool as planned, by measured tools", "jobs/paper.yaml",
+      [options, act, online = commands.online(act)] { return options->apply ? online() : act(); });
   addJob(command, options->job);
   addOperation(command, options->operation);
   addTool(command, "--since", options->since,
           "the first tool that counts (default: the first with the zero points of the last)");
+  command.add_flag("--apply", options->apply, "set the work offsets of Y and Z");
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset});
   addRecords(command, options->folder);
   addMachine(command, options->parameters, options->urdf);
   addJson(command, options->json);

@@ -54,13 +54,16 @@ Json toJson(const std::string& node, const flute_grinder::WorkOffsets& offsets,
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
     const std::string unit = axis == kA ? "_deg" : "_mm";
-    const bool set = !offsets.set_at[i].isZero();
+    const auto time = [](const ros::Time& at) {
+      return at.isZero() ? Json(nullptr) : Json(timeText(at.toSec(), true));
+    };
     axes[std::string(1, kAxisLetters[i])] = {
         {"offset" + unit, toShop(axis, offsets.values[i])},
         {"machine" + unit, toShop(axis, state.position[i])},
         {"work" + unit, toShop(axis, state.work_position[i])},
-        {"set_by", set ? Json(offsets.set_by[i]) : Json(nullptr)},
-        {"set_at", set ? Json(timeText(offsets.set_at[i].toSec(), true)) : Json(nullptr)},
+        {"set_by", offsets.set_at[i].isZero() ? Json(nullptr) : Json(offsets.set_by[i])},
+        {"set_at", time(offsets.set_at[i])},
+        {"found_at", time(offsets.found_at[i])},
         {"set_for", grinder::toJson(fromMessage(offsets.basis[i]))}};
   }
   const WorkOffsets all = fromMessage(offsets);

@@ -195,8 +195,8 @@ int writeReport(const std::string& node, const ReportOptions& options) {
   return draws ? draw(document, files) : 0;
 }
 
-int drawTool(const std::string& json, OutputFile& svg) {
-  const int status = drawBy({programPath() / "tool.py", svg.forProgram()}, json);
+int drawPicture(const char* program, const Json& document, OutputFile& svg) {
+  const int status = drawBy({programPath() / program, svg.forProgram()}, text(document));
   if (status == 0) svg.close();
   return status;
 }

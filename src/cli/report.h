@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cli/output_file.h"
+#include "flute_grinder/messages/json.h"
 
 #include <string>
 
@@ -28,8 +29,9 @@ struct ReportOptions {
 /// @return the exit status.
 int writeReport(const std::string& node, const ReportOptions& options);
 
-/// Draws a tool into an SVG file. @param json output of `grind simulate --json`. @return the exit status, with the
-/// reason on stderr. @throw FileError if the program is missing.
-int drawTool(const std::string& json, OutputFile& svg);
+/// Draws a document into an SVG file. @param program a Python program beside that of the report: tool.py for the output
+/// of `grind simulate --json`, measured.py for that of `grind history --figure --json`. @return the exit status, with
+/// the reason on stderr. @throw FileError if the program is missing.
+int drawPicture(const char* program, const Json& document, OutputFile& svg);
 
 }  // namespace grinder

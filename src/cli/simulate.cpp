@@ -142,7 +142,7 @@ int runSimulate(const std::string& node, const SimulateOptions& options) {
     const Json document = options.json || svg ? toJson(tool) : Json();
     const int status = show(tool, options.json ? &document : nullptr);
     if (stl) writeStlFile(tool, *stl);
-    const int drawn = svg ? drawTool(text(document), *svg) : 0;
+    const int drawn = svg ? drawPicture("tool.py", document, *svg) : 0;
     return drawn != 0 ? drawn : status;
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "%s\n", error.what());

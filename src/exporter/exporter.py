@@ -35,6 +35,7 @@ CALLER = '/flute_grinder_exporter'  # name given to the master and the grinder; 
 SILENCE = 5  # [s] of silence after which a peer that sends ten times a second counts as lost
 WINDOW = 60  # [s] over which the worst figure is shown: longer than the time between two scrapes
 LONGEST = 1 << 18  # longest message [bytes]
+LOOKED_BACK = 100  # records in which measured figures are looked for
 RECORD = re.compile(r'\d{10}_\d{8}T\d{6}\.\d{3}Z\.json')
 
 
@@ -121,6 +122,20 @@ def like(value, model):
     return type(value) in (int, float) and 0 <= value <= sys.float_info.max
 
 
+def measured_in(record):
+    """What was measured of a record's tool [m] or [rad], by job, operation and figure. A record that cannot be read has nothing:
+    `grind history` names it."""
+    try:
+        whole, figures = json.loads(record.read_text(encoding='utf-8')), {}
+        head = whole['head']
+        for one in whole['body'].get('measured', []):
+            value = one['value_mm'] / 1e3 if 'value_mm' in one else math.radians(one['value_deg'])
+            figures[str(head['job']), str(head['operation']), '%s@%g' % (one['figure'], one['x_mm'])] = value
+        return figures
+    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError):
+        return {}
+
+
 class Records:
     """The sums over all records of a folder, including records since removed.
 
@@ -134,6 +149,7 @@ class Records:
                      'tools': 0, 'strokes': 0, 'setpoints': 0, 'seconds': 0, 'wheels': {}}
         self.counted = set()
         self.skipped = set()
+        self.bodies = {}  # by name: time of the last change, and what was measured
         try:
             self.sums, self.counted = self.kept()
         except FileNotFoundError:
@@ -174,6 +190,23 @@ class Records:
                 self.sums = before
                 say(self.folder / entry['name'], 'not counted: %r' % error)
         self.save()
+
+    def measured(self):
+        """What was measured last of each figure, by job, operation and figure."""
+        names = sorted(self.counted)[-LOOKED_BACK:]
+        self.bodies = {name: body for name, body in self.bodies.items() if name in names}
+        figures = {}
+        for name in names:
+            file = self.folder / name
+            try:
+                changed = file.stat().st_mtime_ns
+            except OSError:
+                continue
+            # A figure is entered long after the record was counted.
+            if self.bodies.get(name, [None])[0] != changed:
+                self.bodies[name] = changed, measured_in(file)
+            figures.update(self.bodies[name][1])
+        return figures
 
     def names(self):
         """The names of the records. Reports each skipped file once."""
@@ -338,6 +371,11 @@ class Grinder:
                     {name: wheel['wear'] for name, wheel in wheels.items()}, 'wheel')
         yield gauge('wheel_tools_since_dressing', 'Tools ground to their end since the wheel was dressed, or first used',
                     {name: wheel['tools'] for name, wheel in wheels.items()}, 'wheel')
+        measured = GaugeMetricFamily('flute_grinder_measured', 'Last measured of a tool: length [m] or angle [rad]',
+                                     labels=['job', 'operation', 'figure'])
+        for labels, value in self.records.measured().items():
+            measured.add_metric(labels, value)
+        yield measured
         if os.path.isdir(str(folder)):
             disk = os.statvfs(str(folder))
             yield gauge('records_free_bytes', 'Free on the disk of the records', disk.f_bavail * disk.f_frsize)

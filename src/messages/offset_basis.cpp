@@ -102,8 +102,9 @@ OffsetBasis fromMessage(const flute_grinder::OffsetBasis& message) {
 WorkOffsets fromMessage(const flute_grinder::WorkOffsets& message) {
   WorkOffsets offsets;
   for (std::size_t i = 0; i < offsets.axes.size(); ++i) {
-    offsets.axes[i] = {message.values[i], message.set_by[i], message.set_at[i].toSec(), fromMessage(message.basis[i]),
-                       message.mounting[i]};
+    offsets.axes[i] = {message.values[i],         message.set_by[i],
+                       message.set_at[i].toSec(), fromMessage(message.basis[i]),
+                       message.mounting[i],       message.found_at[i].toSec()};
   }
   const flute_grinder::MountedWheel& wheel = message.wheel;
   offsets.wheel = {wheel.name, wheel.digest, wheel.diameter, wheel.rim, wheel.mounting};
@@ -120,6 +121,7 @@ flute_grinder::WorkOffsets toMessage(const WorkOffsets& offsets) {
     message.set_at[i] = ros::Time(offsets.axes[i].set_at);
     message.basis[i] = toMessage(offsets.axes[i].basis);
     message.mounting[i] = offsets.axes[i].mounting;
+    message.found_at[i] = ros::Time(offsets.axes[i].found_at);
   }
   message.wheel.name = offsets.wheel.name;
   message.wheel.digest = offsets.wheel.digest;

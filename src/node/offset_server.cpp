@@ -72,10 +72,12 @@ std::string wheelRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis
          " once it is mounted: grind confirm-wheel JOB";
 }
 
-/// Sets an offset and the state that depends on it. @param offset the offset, without its mounting.
+/// Sets an offset and the state that depends on it. @param offset the offset, without its mounting and found_at.
 void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
-  offset.mounting = offsets.wheel.mounting;
+  WorkOffset& was = offsets.axes[static_cast<std::size_t>(axis)];
   const OffsetBasis& basis = offset.basis;
+  offset.mounting = offsets.wheel.mounting;
+  offset.found_at = basis.method == OffsetMethod::kCorrection ? was.found_at : offset.set_at;
   if (axis == kA) {
     const bool probed = basis.method == OffsetMethod::kProbe && !basis.tool_digest.empty();
     const bool same = probed && basis.tool_digest == offsets.tool.digest;
@@ -86,7 +88,7 @@ void setIn(WorkOffsets& offsets, int axis, WorkOffset offset) {
       offsets.tool.forget(TeethUnknown::kSet);
     }
   }
-  offsets.axes[static_cast<std::size_t>(axis)] = std::move(offset);
+  was = std::move(offset);
 }
 
 /// The offset as set, for the log.
@@ -316,6 +318,9 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   offset.set_at = ros::WallTime::now().toSec();
   refused = wheelRefusal(store_.offsets(), axis, offset.basis);
   if (!refused.empty()) return refused;
+  if (offset.basis.method == OffsetMethod::kCorrection && !(store_.offsets().axes[i].found_at > 0)) {
+    return "a zero point that was never found cannot be corrected; touch it off first";
+  }
   offset.value = offset_at(status.position[i]);
   refused = travelRefusal(limits_, axis, offset.value);
   if (!refused.empty()) return refused;

@@ -19,6 +19,7 @@ void StateForm<WorkOffsets>::visit(StateFields& field, WorkOffsets& offsets) {
     field(joint + "_" + axisUnit(axis), offset.value, {-kMaxOffset, kMaxOffset, true});
     field(joint + "_set_by", offset.set_by);
     field(joint + "_set_at", offset.set_at, {0, kLatest});
+    field(joint + "_found_at", offset.found_at, {0, kLatest});
     field(joint + "_mounting", offset.mounting);
     field(joint + "_method", offset.basis.method);
     field(joint + "_job", offset.basis.job_name);

@@ -6,6 +6,7 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/setup/touch_off.h"
+#include "panel/beside.h"
 #include "panel/click_guard.h"
 #include "panel/panel_button.h"
 #include "panel/plain_words.h"
@@ -13,6 +14,7 @@
 #include "panel/wheel_guard.h"
 
 #include <rviz/panel_dock_widget.h>
+#include <QFileInfo>
 #include <QGridLayout>
 #include <QScrollArea>
 #include <QTime>
@@ -24,6 +26,7 @@
 #include <exception>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace grinder {
 
@@ -145,6 +148,7 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(touch_off_, &TouchOffBox::wanted, this, &GrindPanel::askToTouchOff);
   connect(touch_off_, &TouchOffBox::backWanted, this, &GrindPanel::askToTakeBack);
   connect(touch_off_, &TouchOffBox::reclampedWanted, this, &GrindPanel::askReclamped);
+  connect(touch_off_, &TouchOffBox::measuredWanted, this, &GrindPanel::openCorrection);
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
   connect(choose_node_, &QPushButton::clicked, this, [this] { node_dialog_->ask(node_); });
   connect(node_dialog_, &NodeDialog::chosen, this, [this](const QString& node) {
@@ -284,6 +288,7 @@ void GrindPanel::setNode(const QString& node) {
   sent_.reset();
   job_->discardPlan();  // the plan is for another machine
   offerBack(std::nullopt);
+  if (correction_) correction_->close();
   override_->reset();
   link_.reset();
   name_.clear();
@@ -343,7 +348,8 @@ void GrindPanel::refresh() {
   lamps_->show(view);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, view.machine ? view.machine->jog_timeout : 0, master == Master::kAnswers);
-  touch_off_->refresh(view, master == Master::kAnswers);
+  touch_off_->refresh(view, master == Master::kAnswers, job_->job() != nullptr);
+  if (correction_) correction_->refresh(view.offsets, master == Master::kAnswers && TouchOffBox::maySet(view));
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
   progress_->show(view, job_runs);
@@ -565,6 +571,31 @@ void GrindPanel::askReclamped() {
       "Was a tool clamped? Where its teeth are is then not known, and an unfinished job cannot be continued.",
       {{"now", "then"}, {{"tool", QString::fromStdString(tool), "a blank, or to be probed"}}},
       [this] { link_->sayReclamped(reply("reclamped: where the teeth are is not known")); });
+}
+
+void GrindPanel::openCorrection() {
+  if (correction_) correction_->close();
+  const std::string operation = job_->operation();
+  correction_ = new CorrectionDialog(job_->file(), operation, QFileInfo(job_->file()).fileName(), name_, this);
+  connect(correction_, &CorrectionDialog::wanted, this, [this, dialog = correction_](const auto& requests) {
+    setOffsets(requests, [this, dialog](const std::string& refusal) {
+      showMessage(refusal.empty() ? "correction: the work offsets of Y and Z are set" : refusal);
+      if (dialog) dialog->showAnswer(refusal);
+    });
+  });
+  moveBeside(*correction_, *this);
+  correction_->show();
+}
+
+void GrindPanel::setOffsets(std::vector<flute_grinder::SetOffset::Request> requests,
+                            const GrinderClient::OnAnswer& on_answer) {
+  if (requests.empty()) return on_answer("");
+  const flute_grinder::SetOffset::Request next = requests.front();
+  requests.erase(requests.begin());
+  link_->setOffset(next, [this, requests = std::move(requests), on_answer](const std::string& refusal) {
+    if (!refusal.empty()) return on_answer(refusal);
+    setOffsets(requests, on_answer);
+  });
 }
 
 /// The basis of an offset: the chosen job, if there is one. @throw std::exception with the reason if it is unknown.

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/client/grinder_client.h"
 #include "flute_grinder/network/master_watch.h"
+#include "panel/correction_dialog.h"
 #include "panel/hold_key.h"
 #include "panel/job_box.h"
 #include "panel/jog_box.h"
@@ -17,6 +18,7 @@
 
 #include <rviz/panel.h>
 #include <QPlainTextEdit>
+#include <QPointer>
 #include <QPushButton>
 #include <QTabWidget>
 #include <QTimer>
@@ -94,6 +96,9 @@ class GrindPanel : public rviz::Panel {
   void offerBack(const std::optional<Touched>& touched);
   void askToTakeBack();
   void askReclamped();
+  void openCorrection();
+  /// Sets work offsets one after the other, until one is refused.
+  void setOffsets(std::vector<flute_grinder::SetOffset::Request> requests, const GrinderClient::OnAnswer& on_answer);
   OffsetBasis touchedFor(int axis) const;
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception with the reason if it
   /// cannot.
@@ -134,6 +139,7 @@ class GrindPanel : public rviz::Panel {
   QPlainTextEdit* messages_;
   QPushButton* choose_node_;
   NodeDialog* node_dialog_;
+  QPointer<CorrectionDialog> correction_;
   RvizWindow* rviz_window_;            ///< window around this panel
   QString moves_;                      ///< text on what moves, as last known; empty if nothing does
   std::atomic<bool> has_news_{false};  ///< refresh() has been called for, and has not begun

@@ -25,12 +25,6 @@ constexpr double kFarthest = 9999;  ///< largest entry [mm or deg]
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
 const char* unitName(int axis) { return axis == kA ? "deg" : "mm"; }
 
-/// Whether the grinder can set offsets in its present state.
-bool mayTouchOff(const flute_grinder::GrinderState& state) {
-  return (state.state == flute_grinder::GrinderState::READY || state.state == flute_grinder::GrinderState::DISABLED) &&
-         state.homed != 0;
-}
-
 }  // namespace
 
 TouchOffBox::TouchOffBox(QWidget* parent)
@@ -41,6 +35,8 @@ TouchOffBox::TouchOffBox(QWidget* parent)
           new PanelButton("touch_off", "Touch off", "Set the axis' work offset from where it is now; nothing moves")),
       back_(new PanelButton("touch_back", "Back", "Set the offset that was touched off last to what it was before")),
       reclamped_(new PanelButton("reclamped", "New clamping", "Say that a tool was clamped: another one, or anew")),
+      measured_(new PanelButton("measured", "Measured...",
+                                "Enter what was measured of the job's last tool, and correct the zero points by it")),
       offset_(namedLabel("work_offset")),
       tool_(namedLabel("tool")),
       question_(new Question("touch", kLinesOfChange)),
@@ -64,14 +60,16 @@ TouchOffBox::TouchOffBox(QWidget* parent)
   layout->addWidget(back_, 1, 2, Qt::AlignTop);
   layout->addWidget(tool_, 2, 0, 1, 2);
   layout->addWidget(reclamped_, 2, 2, Qt::AlignTop);
+  layout->addWidget(measured_, 3, 2, Qt::AlignTop);
   layout->setColumnStretch(1, 1);
-  layout->setRowStretch(3, 1);
+  layout->setRowStretch(4, 1);
   connect(axis_, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &TouchOffBox::chooseAxis);
   connect(touch_, &QPushButton::clicked, this, [this] {
     if (at_->isGood()) Q_EMIT wanted(axis(), at_->value() * scaleOf(axis()));
   });
   connect(back_, &QPushButton::clicked, this, &TouchOffBox::backWanted);
   connect(reclamped_, &QPushButton::clicked, this, &TouchOffBox::reclampedWanted);
+  connect(measured_, &QPushButton::clicked, this, &TouchOffBox::measuredWanted);
   connect(question_, &Question::answered, this, [this] { pages_->setCurrentIndex(0); });
   auto* around = new QVBoxLayout(this);
   around->setContentsMargins(6, 6, 6, 6);
@@ -112,14 +110,21 @@ void TouchOffBox::chooseAxis() {
                            : "Where the axis is, in work coordinates");
 }
 
-void TouchOffBox::refresh(const GrinderView& view, bool has_services) {
+bool TouchOffBox::maySet(const GrinderView& view) {
+  using State = flute_grinder::GrinderState;
+  return view.state && (view.state->state == State::READY || view.state->state == State::DISABLED) &&
+         view.state->homed != 0;
+}
+
+void TouchOffBox::refresh(const GrinderView& view, bool has_services, bool has_job) {
   if (view.state) position_ = view.state->position[static_cast<std::size_t>(axis())];
   if (!view.state || !(std::abs(position_ - asked_at_) <= kMoved)) pages_->setCurrentIndex(0);
   const bool given = at_->isGood() && (axis() != kY || at_->value() > 0);
-  const bool may = has_services && view.state && mayTouchOff(*view.state);
+  const bool may = has_services && maySet(view);
   touch_->setEnabled(may && given);
   back_->setEnabled(may && back_axis_ < kAxisCount && view.offsets);
   reclamped_->setEnabled(has_services && view.state && !isInJob(static_cast<MachineState>(view.state->state)));
+  measured_->setEnabled(has_job);
   const QString tool = view.offsets ? QString::fromStdString(toolText(fromMessage(*view.offsets).tool)) : "";
   tool_->setToolTip(tool);
   tool_->setText("Tool: " + tool);

@@ -23,8 +23,11 @@ class TouchOffBox : public QWidget {
  public:
   explicit TouchOffBox(QWidget* parent = nullptr);
 
-  /// @param has_services whether requests with an answer can be sent.
-  void refresh(const GrinderView& view, bool has_services);
+  /// @param has_services whether requests with an answer can be sent. @param has_job whether a job is chosen.
+  void refresh(const GrinderView& view, bool has_services, bool has_job);
+
+  /// Whether the grinder can set offsets in its present state.
+  static bool maySet(const GrinderView& view);
 
   /// Asks before a change counts; the question disappears when the axis moves.
   /// @param done action if the operator agrees.
@@ -40,6 +43,7 @@ class TouchOffBox : public QWidget {
   void wanted(int axis, double at);
   void backWanted();
   void reclampedWanted();
+  void measuredWanted();
 
  private:
   int axis() const { return axis_->currentIndex(); }
@@ -52,6 +56,7 @@ class TouchOffBox : public QWidget {
   QPushButton* touch_;
   QPushButton* back_;
   QPushButton* reclamped_;
+  QPushButton* measured_;
   QLabel* offset_;
   QLabel* tool_;
   Question* question_;

@@ -75,11 +75,13 @@ void JobRecord::addGround(const Setpoint& setpoint, const CycleSample& sample) {
 }
 
 Json JobRecord::zeroPointsJson() const {
+  const auto timeOrNull = [](double time) { return time > 0 ? Json(utcText(time)) : Json(nullptr); };
   Json json = Json::object();
   for (std::size_t i = 0; i < offsets_.axes.size(); ++i) {
     const WorkOffset& offset = offsets_.axes[i];
     json[std::string(1, "xyza"[i])] = {{"set_by", offset.wasSet() ? Json(offset.set_by) : Json(nullptr)},
-                                       {"set_at", offset.wasSet() ? Json(utcText(offset.set_at)) : Json(nullptr)},
+                                       {"set_at", timeOrNull(offset.set_at)},
+                                       {"found_at", timeOrNull(offset.found_at)},
                                        {"set_for", grinder::toJson(offset.basis)}};
   }
   json["said_right"] = offsets_said_right_;

@@ -2,15 +2,18 @@
 
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
+#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/job/valid_job.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 namespace grinder {
@@ -48,9 +51,8 @@ double placeOf(ToolFigure figure, const std::optional<std::string>& place, const
   }
   if (!place) {
     if (isSameAlong(cutter)) return cutter.flute_length / 2;
-    throw std::invalid_argument(
-        text + "; allowed: " + nameOf(figure) +
-        "@X=VALUE, with X in mm from the small end, since the flute is not the same everywhere");
+    throw std::invalid_argument(text + "; allowed: " + nameOf(figure) +
+                                "@X, with X in mm from the small end, since the flute is not the same everywhere");
   }
   const double x = numberIn(*place) * units::kMillimetre;
   if (!(x >= 0 && x <= cutter.flute_length)) {
@@ -92,17 +94,18 @@ ToolFigure measurableOf(const std::string& name, const std::vector<ToolFigure>& 
   throw std::invalid_argument("figure = " + name + "; allowed: " + names);
 }
 
+FigureAt figureFrom(const std::string& text, const GrindJob& job) {
+  const std::size_t at = text.find('@');
+  const ToolFigure figure = measurableOf(text.substr(0, at), measurableOf(job));
+  const auto x = at == std::string::npos ? std::nullopt : std::optional(text.substr(at + 1));
+  return {figure, placeOf(figure, x, job.cutter, text)};
+}
+
 MeasuredFigure measuredFrom(const std::string& text, const GrindJob& job) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) throw std::invalid_argument(text + kForm);
-  const std::string place = text.substr(0, equals), value = text.substr(equals + 1);
-  const std::size_t at = place.find('@');
-  MeasuredFigure measured;
-  measured.figure = measurableOf(place.substr(0, at), measurableOf(job));
-  const auto x = at == std::string::npos ? std::nullopt : std::optional(place.substr(at + 1));
-  measured.x = placeOf(measured.figure, x, job.cutter, text);
-  measured.value = valueOf(measured.figure, measured.x, value, job.cutter);
-  return measured;
+  const FigureAt at = figureFrom(text.substr(0, equals), job);
+  return {at.figure, at.x, valueOf(at.figure, at.x, text.substr(equals + 1), job.cutter), "", ""};
 }
 
 std::optional<AskedFigure> askedAt(const ValidJob& job, ToolFigure figure, double x) {
@@ -133,6 +136,22 @@ void addMeasured(Record& record, const MeasuredFigure& measured) {
                                      {valueKey(measured.figure), shopNumber(measured.value, unit)},
                                      {"when", measured.when},
                                      {"by", measured.by}});
+}
+
+Record keepMeasured(const ToolNumber& tool, std::vector<MeasuredFigure> figures, const std::string& by) {
+  Record record = readRecord(tool.path);
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  for (MeasuredFigure& measured : figures) {
+    measured.when = utcText(std::chrono::duration<double>(now).count());
+    measured.by = by;
+    addMeasured(record, measured);
+  }
+  try {
+    replaceFile(tool.path, text(record));
+  } catch (const std::system_error& error) {
+    throw FileError(tool.path + ": what was measured cannot be kept: " + error.code().message());
+  }
+  return record;
 }
 
 std::vector<MeasuredFigure> measuredOf(const Record& record) {

@@ -64,14 +64,14 @@ RunStrokes groundStrokes(const ValidJob& job, const std::vector<Record>& records
 
 }  // namespace
 
-ToolRecords::ToolRecords(const std::string& path) {
+ToolRecords::ToolRecords(const std::string& path) : folder_(folderOf(path)) {
   const GrindJob job = parseJob(readRecord(path).body.at("job_file").dump(), path);
   std::map<std::string, int> by_digest;
   for (const GrindJob& operation : job.ofAllOperations()) {
     operations_.push_back({operation, {}, {}, {}});
     by_digest[jobDigest(operation)] = operation.operation;
   }
-  std::vector<Run> runs = runsIn(folderOf(path), by_digest);
+  std::vector<Run> runs = runsIn(folder_, by_digest);
   const auto has_path = [&](const Run& run) {
     return std::any_of(run.paths.begin(), run.paths.end(), [&](const std::string& one) { return isSame(one, path); });
   };

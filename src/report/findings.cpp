@@ -1,9 +1,11 @@
 #include "flute_grinder/report/findings.h"
 
+#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/record/cycle_figures.h"
 #include "flute_grinder/record/job_events.h"
+#include "flute_grinder/record/measured_tools.h"
 #include "flute_grinder/tool/pass_removal.h"
 #include "report/motion.h"
 #include "report/plots.h"
@@ -196,6 +198,21 @@ Json documentOf(const ToolRecords::Operation& operation) {
           {"missing", missing}};
 }
 
+/// What was measured of an operation, each figure with those of the other tools.
+/// @throw FileError if the record of one of them cannot be read.
+Json measuredOver(const std::string& folder, const ToolRecords::Operation& operation) {
+  Json all = Json::array();
+  const Record& last = operation.records.back();
+  const std::vector<MeasuredFigure> figures = measuredOf(last);
+  const std::vector<MeasuredTool> tools =
+      figures.empty() ? std::vector<MeasuredTool>() : measuredTools(toolsIn(folder, last.head.digest));
+  for (const MeasuredFigure& measured : figures) {
+    Json& history = all.emplace_back(figureHistory(*operation.job, tools, {measured.figure, measured.x}));
+    history["value"] = shopNumber(measured.value, rowOf(measured.figure).unit);
+  }
+  return all;
+}
+
 /// The criteria of the runs, each with its operation if there are several.
 void addRuns(std::vector<Criterion>& criteria, const ToolRecords& tool, const Tolerances& tolerances) {
   for (const ToolRecords::Operation& operation : tool.operations()) {
@@ -247,12 +264,19 @@ Json findingsOfTool(const ToolRecords& tool, const ReportContext& context) {
   data.erase("job_file");
   data.erase("tool");
   data["operations"] = Json::array();
+  Json left_out =
+      Json::array({"Pictures of the axes: a record has each stroke's figures; a bag (bag:=true) has every setpoint."});
   for (const ToolRecords::Operation& operation : tool.operations()) {
     Json& one = data["operations"].emplace_back(documentOf(operation));
     if (context.tool && operation.job) one["removal"] = toJson(removalOfPasses(*operation.job));
+    if (!operation.job) continue;
+    try {
+      one["measured"] = measuredOver(tool.folder(), operation);
+    } catch (const FileError& error) {
+      left_out.push_back(std::string("What was measured: ") + error.what());
+    }
   }
-  data["left_out"] = {
-      "Pictures of the axes: a record has each stroke's figures; a bag (bag:=true) has every setpoint."};
+  data["left_out"] = left_out;
   addTool(data, context);
   std::vector<Criterion> criteria =
       criteriaOfTool(*tool.last().job, context.tool ? &*context.tool : nullptr, context.tolerances);

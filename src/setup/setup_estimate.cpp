@@ -102,7 +102,8 @@ std::optional<Surprise> SetupEstimate::take(const FigureModel& model, const Eige
     slope << model.slope.row(i).transpose(), 0;
     const double expected = model.planned[i] + slope.dot(state), off = measured[i] - expected;
     const double variance = slope.dot(covariance * slope) + spread[i] * spread[i];
-    if (!(std::abs(off) <= kSurprise * std::sqrt(variance))) return Surprise{i, expected, std::sqrt(variance)};
+    const double most = kSurprise * std::sqrt(variance);
+    if (!(std::abs(off) <= most)) return Surprise{i, {expected - most, expected + most}};
     const State gain = covariance * slope / variance;
     state += gain * off;
     // Joseph's form stays symmetric and positive.
@@ -137,6 +138,18 @@ Correction correctionOf(const FigureModel& model, const Turns& error, const Turn
   if (correction.in_dead_band) correction.turn.setZero(), correction.by_swivel = false;
   correction.after = left();
   return correction;
+}
+
+std::vector<CorrectedFigure> correctedFigures(const FigureModel& model, const Correction& correction) {
+  std::vector<CorrectedFigure> figures;
+  for (std::size_t i = 0; i < model.figures.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double planned = model.planned[row], tolerance = model.tolerance[row];
+    figures.push_back({model.figures[i], model.asked[row], tolerance, planned,
+                       planned + correction.now[row] * tolerance, planned + correction.after[row] * tolerance,
+                       isSeen(model.figures[i].figure, tolerance)});
+  }
+  return figures;
 }
 
 }  // namespace grinder

@@ -30,8 +30,8 @@ class MeasuredTools : public ::testing::Test {
     return folder_.path() / (format("%010d", number) + "_20261122T170413.123Z.json");
   }
 
-  /// A record of a tool that was ground to its end, with a zero point of Y.
-  void keep(int number, double y_mm = 1.5, const char* method = "touch_off", const char* set_at = "monday") {
+  /// A record of a tool that was ground to its end, with a zero point of Y found in an hour of that day.
+  void keep(int number, double y_mm = 1.5, int found_at = 7) {
     Record record;
     record.head.digest = digest_;
     record.head.outcome = "done";
@@ -40,8 +40,8 @@ class MeasuredTools : public ::testing::Test {
     record.body = {{"not_ground", "by \x1b"},
                    {"work_offsets", {{"y_mm", y_mm}, {"z_mm", -7.0}}},
                    {"zero_points",
-                    {{"y", {{"set_at", set_at}, {"set_for", {{"method", method}}}}},
-                     {"z", {{"set_at", "sunday"}, {"set_for", {{"method", "touch_off"}}}}}}}};
+                    {{"y", {{"found_at", format("2026-11-22T%02d:00:00.000Z", found_at)}}},
+                     {"z", {{"found_at", "2026-11-21T18:00:00.000Z"}}}}}};
     std::ofstream(pathOf(number)) << text(record);
   }
 
@@ -59,8 +59,7 @@ class MeasuredTools : public ::testing::Test {
   }
 
   /// A tool that was ground with Y and Z off, and measured with a gauge of 0.01 deg and 0.1 um.
-  void grind(int number, double y_um, double z_um, double y_mm = 1.5, const char* method = "touch_off",
-             const char* set_at = "monday") {
+  void grind(int number, double y_um, double z_um, double y_mm = 1.5, int found_at = 7) {
     GrindJob job = readJobFile(kJob);
     job.process().depth -= y_um * units::kMicrometre;
     job.process().depth_end -= y_um * units::kMicrometre;
@@ -72,7 +71,7 @@ class MeasuredTools : public ::testing::Test {
       figures.push_back(format("rake@%g=%.2f", x, section.teeth[0].rake.value() / units::kDegree));
       figures.push_back(format("core@%g=%.4f", x, 2 * section.core_radius / units::kMillimetre));
     }
-    keep(number, y_mm, method, set_at);
+    keep(number, y_mm, found_at);
     measure(figures, static_cast<std::uint64_t>(number));
   }
 
@@ -84,7 +83,7 @@ class MeasuredTools : public ::testing::Test {
   std::string printed(const CorrectOptions& options, int status) {
     ::testing::internal::CaptureStdout();
     ::testing::internal::CaptureStderr();
-    EXPECT_EQ(printCorrection("grinder", options), status);
+    EXPECT_EQ(grinder::correct("grinder", options), status);
     err_ = ::testing::internal::GetCapturedStderr();
     return ::testing::internal::GetCapturedStdout();
   }
@@ -146,18 +145,20 @@ TEST_F(MeasuredTools, SayWhatToSet) {
   const std::string table =
       printed({kJob, "", 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false}, 0);
   EXPECT_NE(table.find("since tool 1: 4 ground, 4 measured; zero points of tool 4\n"), std::string::npos) << table;
-  EXPECT_NE(table.find(" mm: grind offsets --set y=1.48"), std::string::npos) << table;
+  EXPECT_NE(table.find("work offset of Y: -0.01"), std::string::npos) << table;
+  EXPECT_NE(table.find(" mm, to 1.48"), std::string::npos) << table;
+  EXPECT_NE(table.find("nothing is set yet"), std::string::npos) << table;
 }
 
-TEST_F(MeasuredTools, KnowACorrectionByHandAndForgetWhatATouchOffReplaces) {
+TEST_F(MeasuredTools, KnowACorrectionAndForgetWhatATouchOffReplaces) {
   for (const int number : {1, 2, 3}) grind(number, 15, 0);
-  grind(4, 0, 0, 1.485, "by_hand", "tuesday");
-  const Json by_hand = correct(0);
-  EXPECT_EQ(by_hand["tools"], 4);
-  EXPECT_TRUE(by_hand["left_out"].empty());
-  EXPECT_TRUE(by_hand["in_dead_band"]);
-  EXPECT_EQ(by_hand["offsets"]["y_mm"], 1.485);
-  grind(5, 40, 0, 1.6, "touch_off", "wednesday");
+  grind(4, 0, 0, 1.485);
+  const Json corrected = correct(0);
+  EXPECT_EQ(corrected["tools"], 4);
+  EXPECT_TRUE(corrected["left_out"].empty());
+  EXPECT_TRUE(corrected["in_dead_band"]);
+  EXPECT_EQ(corrected["offsets"]["y_mm"], 1.485);
+  grind(5, 40, 0, 1.6, 8);
   const Json anew = correct(0);
   EXPECT_EQ(anew["since"], 5);
   EXPECT_EQ(anew["measured"], 1);
@@ -187,7 +188,7 @@ TEST_F(MeasuredTools, SetNothingByAWrongEntry) {
 TEST_F(MeasuredTools, NeedSomethingMeasuredOfTheFlutes) {
   const auto refused = [&](const char* job, const char* operation) {
     const CorrectOptions options{job, operation, 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false};
-    return test_support::refusalOf<std::invalid_argument>([&] { printCorrection("grinder", options); });
+    return test_support::refusalOf<std::invalid_argument>([&] { grinder::correct("grinder", options); });
   };
   EXPECT_EQ(refused(kJob, ""), "no tool of this job and set-up is in the records");
   keep(1);

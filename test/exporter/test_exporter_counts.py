@@ -47,11 +47,11 @@ class Folder(unittest.TestCase):
     def value(self, name, **labels):
         return self.registry.get_sample_value('flute_grinder_' + name, labels)
 
-    def write(self, minute, outcome='done', number=None, seconds=1, file='test/jobs/paper.yaml', **fields):
+    def write(self, minute, outcome='done', number=None, seconds=1, file='test/jobs/paper.yaml', body=(), **fields):
         """A record of a job that started at a minute."""
         head = head_of(file, '2026-11-22T17:%02d:00.000Z' % minute, '2026-11-22T17:%02d:%06.3fZ' % (minute, seconds), outcome, **fields)
         with open(os.path.join(self.folder, name_of(minute, number)), 'w') as text:
-            text.write(text_of(head))
+            text.write(text_of(head, body))
 
     def remove(self, minute):
         os.remove(os.path.join(self.folder, name_of(minute)))
@@ -174,6 +174,26 @@ class TestRecords(Folder):
             self.start()  # kept over restarts
             self.assertEqual((self.value('tools_total'), self.value('wheel_tools_since_dressing', wheel=wheel)), (tools, of_wheel))
 
+    def test_show_what_was_measured_last_of_each_figure_also_if_it_is_entered_later(self):
+        def core(value, x=15):
+            return {'figure': 'core_diameter', 'x_mm': x, 'value_mm': value}
+
+        rake = {'figure': 'rake', 'x_mm': 2.5, 'value_deg': 9}
+        self.write(1, body={'measured': [core(6.5), rake]})
+        self.write(2)
+        self.write(3, operation='flute', body={'measured': [core(5, 1)]})
+        self.assertAlmostEqual(self.measured('core_diameter@15'), 6.5e-3, delta=1e-12)
+        self.assertAlmostEqual(self.measured('rake@2.5'), math.pi / 20, delta=1e-12)
+        self.assertAlmostEqual(self.measured('core_diameter@1', 'flute'), 5e-3, delta=1e-12)
+        self.write(2, body={'measured': [core(7), core(6.75)]})
+        self.assertAlmostEqual(self.measured('core_diameter@15'), 6.75e-3, delta=1e-12)
+        for wrong in ({'measured': [{}]}, {'measured': [3]}, {'measured': 3}, {'measured': [dict(core(7), value_mm='7')]}):
+            self.write(2, body=wrong)
+            self.assertAlmostEqual(self.measured('core_diameter@15'), 6.5e-3, delta=1e-12, msg=wrong)
+
+    def measured(self, figure, operation=''):
+        return self.value('measured', job='job', operation=operation, figure=figure)
+
     def test_have_the_tool_that_a_state_has(self):
         self.write(1, file='jobs/unequal_d12_t4.yaml')
         entry, = json.loads(gc.grind('history', '--from', self.folder, '--json').stdout)
@@ -227,7 +247,7 @@ class TestMessages(Folder):
         self.grinder.hear_state(state)
         self.grinder.hear_feedback(GrindActionFeedback())
         self.report(x=0, late=0)
-        self.write(1)
+        self.write(1, body={'measured': [{'figure': 'land', 'x_mm': 2, 'value_mm': 1}]})
         return prometheus_client.generate_latest(self.registry).decode()
 
     def test_metrics_are_those_of_the_page_and_all_that_alerts_ask_for(self):

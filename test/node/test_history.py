@@ -153,6 +153,46 @@ class TestRecords(gc.OwnNode):
             self.assertEqual(json.loads(self.grind('--json').stdout), again)
             self.assertRegex(re.split('  +', self.grind().stdout.splitlines()[2])[-1], '^FAILED: the job ended as canceled')
 
+    def test_of_a_measured_tool_correct_the_zero_points(self):
+        job = gc.package_file('test/jobs/paper.yaml')
+        self.grinder.make_ready()
+        self.client = self.grinder
+        y, z = self.correctable('--set', 'x=0', '--set', 'y=0', '--set', 'z=0', '--answer', 'set-offset')
+        self.assertEqual((y['found_at'], z['found_at']), (y['set_at'], z['set_at']))
+        self.record_of(lambda: self.command(0, 'run', job))
+        self.assertIn('no tool has been measured', self.command(2, 'correct', job, '--apply').stderr)
+        self.command(0, 'measured', job, 'core@15=%.4f' % (self.planned_core(job) + 0.03))
+        said = json.loads(self.command(0, 'correct', job, '--json').stdout)
+        self.assertLess(said['turn']['y_mm'], -0.002)
+        self.assertEqual([axis['offset_mm'] for axis in self.correctable()], [0, 0])
+        for _ in range(2):  # the second time it is as it should be
+            self.assertIn('the work offsets of Y and Z are set', self.command(0, 'correct', job, '--apply').stdout)
+            corrected = self.correctable()
+            for axis, found, asked in zip(corrected, (y, z), ('y_mm', 'z_mm')):
+                self.assertAlmostEqual(axis['offset_mm'], said['offsets'][asked], delta=1e-9)
+                self.assertEqual((axis['set_for']['method'], axis['found_at']), ('correction', found['found_at']))
+        y, _ = self.correctable('--set', 'y=0.001')
+        self.assertEqual((y['set_for']['method'], y['found_at']), ('by_hand', y['set_at']))
+        refused = self.command(1, 'correct', job, '--apply')
+        self.assertIn('the zero point of Y is not the one of tool 1, the last one ground', refused.stderr)
+        self.assertEqual(self.correctable(), [y, corrected[1]])
+
+    def correctable(self, *arguments):
+        """Y and Z of `grind offsets`."""
+        job = ('--job', gc.package_file('test/jobs/paper.yaml')) if arguments else ()
+        axes = json.loads(self.command(0, 'offsets', '--json', *arguments, *job).stdout)['axes']
+        return [axes['y'], axes['z']]
+
+    def planned_core(self, job):
+        figures = json.loads(self.command(0, 'plan', job, '--json').stdout)['figures']
+        return next(figure['mean_mm'] for figure in figures if figure['name'] == 'core_diameter')
+
+    def command(self, status, *arguments):
+        """A command for this grinder."""
+        done = gc.grind('--node', self.name, *arguments, environment=dict(HOME=self.home))
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done
+
     def test_ros_home_moves_it_with_the_launch_file(self):
         for value, ros_home in ((self.home + '/ros', self.home + '/ros'), ('', self.home + '/.ros')):
             launch = subprocess.run(['roslaunch', '--dump-params', 'flute_grinder', 'grinder.launch'], check=True,

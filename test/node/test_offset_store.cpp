@@ -67,6 +67,7 @@ TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
     OffsetStore store(path_, "/grinder");
     store.change([](WorkOffsets& offsets) {
       offsets.axes[kY].mounting = 4;
+      offsets.axes[kY].found_at = 1.25e9;
       offsets.wheel = {"a: b.yaml", std::string(64, 'f'), 0.1, 0.006, 5};
       offsets.tool = {std::string(64, 'd'), "my job.yaml", 0b101, TeethUnknown::kHomed, 7};
     });
@@ -83,6 +84,7 @@ TEST_F(OffsetStoreTest, KeepsAllThatWasSet) {
   EXPECT_TRUE(all(kept.axes[kY]) == all(kSome));
   EXPECT_TRUE(all(kept.axes[kA]) == all(kOther));
   EXPECT_EQ(kept.axes[kY].mounting, 4U);
+  EXPECT_EQ(kept.axes[kY].found_at, 1.25e9);
   EXPECT_TRUE(std::tie(kept.wheel.name, kept.wheel.digest, kept.wheel.diameter, kept.wheel.rim, kept.wheel.mounting) ==
               std::make_tuple("a: b.yaml", std::string(64, 'f'), 0.1, 0.006, 5U));
   EXPECT_TRUE(std::tie(kept.tool.digest, kept.tool.job_name, kept.tool.ground, kept.tool.unknown, kept.tool.clamping) ==

@@ -99,13 +99,14 @@ class TestSetting(OffsetsTest):
         self.check_refused(self.client.set_offset(X, 0.3001),
                            'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
         self.check_refused(self.client.touch_off(A, math.nan), ' deg, the travel of the axis')
-        for wrong, text in (({'method': 5}, 'basis.method = 5; allowed: 0 to 4'), ({'kind': 7}, 'basis.kind = 7; allowed: 0 to 6'),
+        for wrong, text in (({'method': 6}, 'basis.method = 6; allowed: 0 to 5'), ({'kind': 7}, 'basis.kind = 7; allowed: 0 to 6'),
                             ({'swivel': math.nan}, 'not finite'),
                             ({'wheel_digest': 'A' * 64}, 'allowed: 64 hexadecimal digits'),
                             ({'job_name': '\n'}, 'basis.job_name'), ({'wheel_name': 256 * 'w'}, 'basis.wheel_name')):
             self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)
         self.check_refused(self.client.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
         self.check_refused(self.client.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
+        self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(method=OffsetBasis.CORRECTION)), 'was never found')
         self.check_refused(self.client.set_offset(X, 0, answers=['yes']), 'answer = yes; allowed: ')
         run = self.client.send(gc.SHORT, answers=['yes']).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))

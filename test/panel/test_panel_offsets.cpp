@@ -1,8 +1,10 @@
 // The panel and zero points that were set for another job, against a grinder of the test's own.
 
 #include "flute_grinder/messages/conversions.h"
+#include "flute_grinder/record/measured.h"
 #include "stage.h"
 
+#include <QDir>
 #include <QScrollBar>
 #include <QTextEdit>
 
@@ -158,6 +160,104 @@ TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
   WAIT_FOR(touches().size() == 2);
   EXPECT_NEAR(touches()[1].position, 0.05, 1e-12);
   EXPECT_TRUE(touches()[1].answers.empty()) << "the limit of a change is another question";
+}
+
+/// Where the grinder keeps its records there is one tool of the paper's job.
+class MeasuredTool : public ZeroPoints {
+ protected:
+  MeasuredTool() {
+    ros::param::set("/cell/stage/history", folder_.path().toStdString());
+    for (const char* axis : {"axis_y", "axis_z"}) {
+      ros::param::set(std::string("/cell/stage/offset_change_limit/") + axis, 0.005);
+    }
+    QDir(folder_.path()).mkpath("cell/stage");
+    Record record;
+    record.head.digest = digestOf(kPaper);
+    record.head.outcome = "done";
+    record.head.ended = "2026-11-22T17:05:13.123Z";
+    const Json zero = {{"found_at", utcText(kFoundAt)}};
+    record.body = {{"work_offsets", {{"y_mm", 1.5}, {"z_mm", -7.0}}}, {"zero_points", {{"y", zero}, {"z", zero}}}};
+    QFile file(path());
+    file.open(QFile::WriteOnly);
+    file.write(QByteArray::fromStdString(grinder::text(record)));
+    publishZeros(kFoundAt);
+  }
+  ~MeasuredTool() override {
+    for (const char* name : {"history", "offset_change_limit"}) ros::param::del(std::string("/cell/stage/") + name);
+  }
+
+  QString path() const { return folder_.filePath("cell/stage/0000000007_20261122T170413.123Z.json"); }
+  void publishZeros(double y_found_at) {
+    WorkOffsets zeros;
+    zeros.axes[kY].value = 0.0015, zeros.axes[kZ].value = -0.007;
+    zeros.axes[kY].set_at = zeros.axes[kY].found_at = y_found_at;
+    zeros.axes[kZ].set_at = zeros.axes[kZ].found_at = kFoundAt;
+    stage.publishOffsets(toMessage(zeros));
+  }
+  void open() {
+    panel.openTab("Zero");
+    WAIT_FOR(panel.enabled("measured"));
+    panel.click("measured");
+    WAIT_FOR(panel.widget().findChild<QLineEdit*>("measured_0"));
+  }
+  void enter(const char* box, const char* figure) { panel.the<QLineEdit>(box).setText(figure); }
+
+  static constexpr double kFoundAt = 1.7e9;
+  const QTemporaryDir folder_;
+};
+
+TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  EXPECT_FALSE(panel.enabled("apply_correction")) << "nothing is measured";
+  EXPECT_TRUE(panel.shows("measured_tool", "Tool 7, the last of this job"));
+  EXPECT_TRUE(panel.shows("correction", "no tool has been measured"));
+  panel.picture("nothing_measured");
+  // The core in the middle, too thick by 0.05 mm, half the tolerance.
+  enter("measured_4", "9,8");
+  panel.click("keep_measured");
+  WAIT_FOR(panel.enabled("apply_correction"));
+  const std::vector<MeasuredFigure> kept = measuredOf(readRecord(path().toStdString()));
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_NEAR(kept[0].value, 9.8e-3, 1e-12);
+  EXPECT_NEAR(kept[0].x, 15e-3, 1e-12);
+  panel.picture("measured_tool");
+  panel.click("apply_correction");
+  panel.press("confirm_correction");
+  WAIT_FOR(panel.shows("correction", "The work offsets of Y and Z are set."));
+  auto set = stage.get(&Stage::offsets_set);
+  ASSERT_EQ(set.size(), 2U);
+  EXPECT_EQ(std::pair(set[0].axis, set[1].axis), std::pair(std::uint8_t{kY}, std::uint8_t{kZ}));
+  EXPECT_LT(set[0].value, 0.0015) << "the wheel goes deeper";
+  EXPECT_EQ(set[0].basis.method, flute_grinder::OffsetBasis::CORRECTION);
+  EXPECT_EQ(set[0].basis.job_name, "paper.yaml");
+  panel.press("correct_back");
+  panel.press("confirm_correction");
+  WAIT_FOR(stage.get(&Stage::offsets_set).size() == 4);
+  set = stage.get(&Stage::offsets_set);
+  EXPECT_EQ(std::pair(set[2].value, set[3].value), std::pair(0.0015, -0.007));
+  EXPECT_EQ(set[2].basis.method, flute_grinder::OffsetBasis::CORRECTION);
+}
+
+TEST_F(MeasuredTool, SetsNothingByAWrongEntryOrForZeroPointsFoundAnew) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  for (const char* wrong : {"98", "9.8 mm", "nan"}) {
+    enter("measured_4", wrong);
+    panel.press("keep_measured");
+    EXPECT_TRUE(panel.shows("correction", std::string("core_diameter = ") + wrong + "; allowed: "));
+  }
+  EXPECT_TRUE(measuredOf(readRecord(path().toStdString())).empty());
+  enter("measured_4", "8.8");  // a digit
+  panel.press("keep_measured");
+  WAIT_FOR(panel.shows("correction", "no correction: measure the tool again"));
+  EXPECT_TRUE(panel.shows("correction", "tool 7: core_diameter@15 = 8.8 mm; allowed: "));
+  EXPECT_FALSE(panel.enabled("apply_correction"));
+  enter("measured_4", "9.8");
+  panel.press("keep_measured");
+  WAIT_FOR(panel.enabled("apply_correction"));
+  publishZeros(kFoundAt + 60);
+  WAIT_FOR(!panel.enabled("apply_correction"));
+  EXPECT_NE(
+      panel.the<QPushButton>("apply_correction").toolTip().indexOf("the zero point of Y is not the one of tool 7"), -1);
 }
 
 }  // namespace grinder::test_panel_offsets

@@ -15,7 +15,7 @@ namespace grinder {
 constexpr double kMaxOffset = 1000;
 
 /// The way in which a work offset was set.
-enum class OffsetMethod { kUnknown, kTouchOff, kProbe, kByHand, kComputed };
+enum class OffsetMethod { kUnknown, kTouchOff, kProbe, kByHand, kComputed, kCorrection };
 
 struct OffsetMethodRow : EnumRow<OffsetMethod> {
   const char* done = "set";  ///< participle for a sentence: "Y was ..."
@@ -25,7 +25,7 @@ struct OffsetMethodRow : EnumRow<OffsetMethod> {
 inline constexpr OffsetMethodRow kOffsetMethods[]{
     {{OffsetMethod::kUnknown, "unknown"}, "set"},        {{OffsetMethod::kTouchOff, "touch_off"}, "touched off"},
     {{OffsetMethod::kProbe, "probe"}, "probed"},         {{OffsetMethod::kByHand, "by_hand"}, "set by hand"},
-    {{OffsetMethod::kComputed, "computed"}, "computed"},
+    {{OffsetMethod::kComputed, "computed"}, "computed"}, {{OffsetMethod::kCorrection, "correction"}, "corrected"},
 };
 constexpr auto& rowsOf(OffsetMethod) noexcept { return kOffsetMethods; }
 
@@ -55,6 +55,7 @@ struct WorkOffset {
   double set_at = 0;   ///< time of setting since the epoch; 0 if it was never set [s]
   OffsetBasis basis{};
   std::uint32_t mounting = 0;  ///< MountedWheel::mounting when it was set
+  double found_at = 0;         ///< time of setting other than by a correction, since the epoch; 0 if never [s]
 
   bool wasSet() const noexcept { return set_at > 0; }
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/record/record_file.h"
+#include "flute_grinder/setup/setup_turns.h"
 #include "flute_grinder/tool/tool_figure.h"
 
 #include <cstdint>
@@ -19,6 +20,9 @@ struct MeasuredFigure {
   double value = 0;      ///< [m], [rad]
   std::string when, by;  ///< time in the form of utcText(), and `user@host`
 };
+
+/// Reads `FIGURE` or `FIGURE@X`, in mm; see measuredFrom().
+FigureAt figureFrom(const std::string& text, const GrindJob& job);
 
 /// Reads `FIGURE=VALUE` or `FIGURE@X=VALUE`, in mm or deg; `core` stands for `core_diameter`. Without X, the middle of
 /// a flute that is the same everywhere is meant.
@@ -42,18 +46,22 @@ std::optional<AskedFigure> askedAt(const ValidJob& job, ToolFigure figure, doubl
 /// A figure in words, e.g. "core diameter at X = 15 mm: 6.62 mm; asked 6.8 mm within 0.02 mm".
 std::string text(const MeasuredFigure& measured, const ValidJob& job);
 
-/// Appends a figure to a record, whose earlier ones stay.
-void addMeasured(Record& record, const MeasuredFigure& measured);
-
-/// The figures measured of a record's tool; of those of one figure and place, the last.
-/// @throw std::exception for JSON that addMeasured() does not write.
-std::vector<MeasuredFigure> measuredOf(const Record& record);
-
 /// A tool in a folder of records: the record of the run that ground an operation to its end.
 struct ToolNumber {
   std::uint64_t number = 0;  ///< number at the beginning of the record's file name
   std::string path;
 };
+
+/// Appends a figure to a record, whose earlier ones stay.
+void addMeasured(Record& record, const MeasuredFigure& measured);
+
+/// Appends figures to the record of a tool, as measured now. @param by `user@host`. @return the record.
+/// @throw FileError
+Record keepMeasured(const ToolNumber& tool, std::vector<MeasuredFigure> figures, const std::string& by);
+
+/// The figures measured of a record's tool; of those of one figure and place, the last.
+/// @throw std::exception for JSON that addMeasured() does not write.
+std::vector<MeasuredFigure> measuredOf(const Record& record);
 
 /// The tools of an operation, in the order of grinding. Unreadable records are left out: `grind history` names them.
 /// @param digest see jobDigest(). @throw std::filesystem::filesystem_error if the folder cannot be read.

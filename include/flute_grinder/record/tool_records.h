@@ -38,12 +38,16 @@ class ToolRecords {
   /// Of the record that was named.
   const Operation& own() const { return operations_[own_]; }
 
+  /// The folder of the records.
+  const std::string& folder() const noexcept { return folder_; }
+
   /// The strokes of an operation, on the cutter ground by the operations ahead of it; if one of these is not in the
   /// records, all are taken as planned. @param operation one of operations() that has records.
   /// @throw std::exception with the reason, if a record lacks the path of the wheel.
   RunStrokes strokes(const Operation& operation) const;
 
  private:
+  const std::string folder_;
   std::vector<Operation> operations_;
   std::size_t own_ = 0, last_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/setup/flute_turns.h"
+#include "flute_grinder/setup/setup_turns.h"
 
 #include <optional>
 
@@ -27,8 +27,7 @@ bool isSeen(ToolFigure figure, double tolerance) noexcept;
 /// A measured figure that the machine cannot have ground by what is known of it.
 struct Surprise {
   Eigen::Index figure = 0;  ///< index in the model
-  double expected = 0;      ///< [m], [rad]
-  double spread = 0;        ///< standard deviation of what was expected [m], [rad]
+  Range allowed;            ///< [m], [rad]
 };
 
 /// How far a machine's set-up is off from the planned one, by a Kalman filter over the tools that were measured. Its
@@ -81,5 +80,13 @@ struct Correction {
 /// @param error how far the set-up is off for the next tool.
 /// @param most largest turn of each to either side, 0 for what is not to be turned.
 Correction correctionOf(const FigureModel& model, const Turns& error, const Turns& most);
+
+/// A figure of the next tool, as the set-up is and as it would be after a correction [m], [rad].
+struct CorrectedFigure {
+  FigureAt at;
+  double asked = 0, tolerance = 0, planned = 0, now = 0, after = 0;
+  bool seen = false;  ///< see isSeen()
+};
+std::vector<CorrectedFigure> correctedFigures(const FigureModel& model, const Correction& correction);
 
 }  // namespace grinder

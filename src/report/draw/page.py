@@ -7,6 +7,7 @@ from datetime import datetime
 
 from cutter import operation_name, process_of, radius, spiral_angles, tooth_angles
 from figures import QUANTITIES
+from measured import title_of
 
 PAGE = '''<!DOCTYPE html>
 <html lang="en">
@@ -267,9 +268,13 @@ def criteria_table(data, of_tool):
     return table.html()
 
 
-def by_hand(cutter):
-    """A form for the figures that only a measurement of the tool itself can show."""
-    table = Table(['', 'asked', 'measured', 'instrument'], (1,))
+def by_hand(data, cutter):
+    """What was measured of the tool itself, and a form for the figures that only such a measurement can show."""
+    table = Table(['', 'asked', 'measured', 'instrument'], (1, 2))
+    for operation in data.get('operations', []):
+        for history in operation.get('measured', []):
+            asked = None if history['asked'] is None else '%g ± %g %s' % (history['asked'], history['tolerance'], history['unit'])
+            table.add(title_of(history), asked, '%g %s' % (history['value'], history['unit']), '', classes={3: 'blank'})
     figures = [('diameter at the small end', '%g mm' % cutter['end_diameter_mm'])]
     if cutter['cone_angle_deg']:
         figures.append(('diameter at X = %g mm' % cutter['flute_length_mm'], '%.3f mm' % (2 * radius(cutter, cutter['flute_length_mm']))))
@@ -392,7 +397,7 @@ def first_page(data, parts):
     body.append('<div class="columns">\n%s\n</div>' % '\n'.join(columns))
     if 'criteria' in data:
         body += ['<h2>The tool: asked and computed</h2>', criteria_table(data, True), '<p>%s</p>' % MODEL,
-                 '<div class="columns"><div><h2>Measured by hand or probe</h2>', by_hand(job['file']['cutter']),
+                 '<div class="columns"><div><h2>Measured by hand or probe</h2>', by_hand(data, job['file']['cutter']),
                  '</div><div>%s</div></div>' % SIGNED]
     if operations_of(data):
         body += ['<h2>Operations</h2>', operation_table(data), *zero_points(data)]
@@ -437,6 +442,8 @@ def for_developers(data, parts):
 def page(data, parts):
     """The page of a report. @param data the document. @param parts result of draw_all()."""
     body = first_page(data, parts)
+    if parts.get('measured'):
+        body += ['<h2>Measured, with the tools before and after it</h2>', pictures(parts, 'measured')]
     if parts.get('tool'):
         body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
     body += runs(data)

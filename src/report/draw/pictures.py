@@ -2,16 +2,18 @@
 
 from drawing import tool_drawing
 from figures import plot_pictures
+from measured import measured_pictures
 from tool import tool_pictures
 
 
 def draw_all(data):
-    """Lists of pictures by the part of the report: 'asked', 'tool', 'feed', the quantities of the axes, 'timing', 'curve'."""
+    """Lists of pictures by the part of the report: 'asked', 'measured', 'tool', 'feed', the quantities of the axes, 'timing', 'curve'."""
     parts = {}
     if data.get('job'):
         parts['asked'] = [tool_drawing(data['job']['file']['cutter'])]
     if data.get('tool'):
         parts['tool'] = tool_pictures(data['tool'])
+    parts['measured'] = measured_pictures(data.get('operations', []))
     if data.get('plots'):
         parts.update(plot_pictures(data))
     return parts

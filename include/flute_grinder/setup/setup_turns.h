@@ -8,13 +8,14 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 /// @file
-/// The figures of a planned flute over small changes of its set-up.
+/// The figures of a planned flute or relief over small changes of its set-up.
 namespace grinder {
 
-/// A number of a flute's set-up that an operator or a job can change.
+/// A number of a set-up that an operator or a job can change.
 enum class SetupTurn : std::uint8_t { kY, kZ, kSwivel, kEndDepth, kShift };
 struct SetupTurnRow : EnumRow<SetupTurn> {
   Unit unit = Unit::kMetre;
@@ -40,8 +41,11 @@ struct FigureAt {
   ToolFigure figure{};
   double x = 0;  ///< from the small end [m]
 };
+/// E.g. "core_diameter@15", with X in mm.
+std::string text(const FigureAt& at);
 
-/// The figures of a job's first tooth, near its planned set-up: planned + slope * turns.
+/// The figures of a job's first tooth, near its planned set-up: planned + slope * turns. A relief that is too high
+/// leaves an edge as it is, so its diameter has a slope to one side alone; the steeper side counts.
 struct FigureModel {
   std::vector<FigureAt> figures;
   Eigen::VectorXd planned;    ///< with the planned set-up [m], [rad]
@@ -50,17 +54,23 @@ struct FigureModel {
   Eigen::Matrix<double, Eigen::Dynamic, kSetupTurnCount> slope;
 };
 
-/// The figures in which a flute is judged when its set-up is corrected: rake and core near both ends and in the middle.
-std::vector<FigureAt> judgedFigures(const CutterGeometry& cutter);
+/// Whether an operation's set-up can be corrected by what was measured of its tools: of flutes and reliefs.
+bool isCorrectable(OperationKind kind) noexcept;
 
-/// The figures of the first tooth that a job's strokes grind on a machine whose set-up is off.
-/// @param job flutes, with their laws.
+/// The figures in which an operation is judged when its set-up is corrected, near both ends of the flute and in the
+/// middle: rake and core; of a primary relief clearance and edge diameter; of a secondary one its clearance, and the
+/// width that it leaves of the primary. @param job an operation that isCorrectable().
+std::vector<FigureAt> judgedFigures(const GrindJob& job);
+
+/// The figures of the first tooth that a job's strokes grind on a machine whose set-up is off, behind earlier
+/// operations as planned.
+/// @param job an operation that isCorrectable(), with its laws.
 /// @param off how far the set-up is off.
 /// @return NaN where there is no figure [m], [rad].
 Eigen::VectorXd figuresOffBy(const ValidJob& job, const std::vector<FigureAt>& figures, const Turns& off);
 
 /// Measures the planned tooth with each turn a little to either side; takes some ten milliseconds.
-/// @param job flutes, with their laws.
+/// @param job see figuresOffBy().
 /// @throw std::invalid_argument naming a figure that is not asked, or that the planned tooth does not have.
 FigureModel figureModel(const ValidJob& job, const std::vector<FigureAt>& figures);
 

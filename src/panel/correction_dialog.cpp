@@ -1,0 +1,287 @@
+#include "panel/correction_dialog.h"
+
+#include "flute_grinder/base/units.h"
+#include "flute_grinder/client/requests.h"
+#include "flute_grinder/drive/parameters.h"
+#include "flute_grinder/job/job_digest.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/machine/need.h"
+#include "flute_grinder/messages/offset_basis.h"
+#include "flute_grinder/network/ros_api.h"
+#include "flute_grinder/network/user_at_host.h"
+#include "flute_grinder/tool/z_law.h"
+#include "panel/panel_button.h"
+#include "panel/text_view.h"
+#include "panel/wheel_guard.h"
+
+#include <ros/master.h>
+#include <ros/names.h>
+#include <QHBoxLayout>
+#include <QVBoxLayout>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+namespace grinder {
+
+namespace {
+
+constexpr int kPollInterval = 50;  ///< interval of looks at the thread [ms]
+constexpr int kQuestionLines = 6;
+constexpr int kWidth = 80;  ///< width of the dialog, in digits
+constexpr int kDecimals = 4;
+constexpr double kSameOffset = 1e-9;  ///< [m]
+constexpr const char* kHeads[] = {"figure", "asked", "measured", "next tool, unchanged", "next tool, corrected"};
+
+XmlRpc::XmlRpcValue parameter(const std::string& name, const std::atomic<bool>& stop) {
+  auto value = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {name}, stop);
+  if (!value) throw std::runtime_error("no parameter " + name + " from the ROS master");
+  return std::move(*value);
+}
+
+/// The folder of a grinder's records. @throw std::runtime_error if there is none on this computer.
+std::string recordsOf(const std::string& grinder, const std::atomic<bool>& stop) {
+  XmlRpc::XmlRpcValue value = parameter(ros::names::append(grinder, "history"), stop);
+  const bool is_text = value.getType() == XmlRpc::XmlRpcValue::TypeString;
+  const std::string parent = is_text ? static_cast<std::string>(value) : "";
+  if (parent.empty()) throw std::runtime_error("the grinder keeps no records");
+  const std::string folder = std::filesystem::path(parent) / grinder.substr(1);
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return folder;
+  throw std::runtime_error(folder + ": no records of this grinder on this computer");
+}
+
+Turns mostTurnsOf(const std::string& grinder, const std::atomic<bool>& stop) {
+  Axes limit = Axes::Zero();
+  for (const CorrectedAxis& one : kCorrectedAxes) {
+    const std::string name = std::string("offset_change_limit/") + kJointNames[static_cast<std::size_t>(one.axis)];
+    const auto number = numberOf(parameter(ros::names::append(grinder, name), stop));
+    if (!number) throw std::runtime_error("parameter " + name + " is not a number");
+    limit[one.axis] = *number;
+  }
+  return mostTurns(limit);
+}
+
+QString shown(double si, Unit unit) { return QString::number(si / shopScale(unit), 'f', kDecimals); }
+QString unitName(Unit unit) { return unit == Unit::kRadian ? "deg" : "mm"; }
+
+/// A figure in words, e.g. "core diameter at X = 15 mm".
+QString nameOf(const FigureAt& at) {
+  return QString("%1 at X = %2 mm").arg(rowOf(at.figure).words).arg(at.x / units::kMillimetre);
+}
+
+}  // namespace
+
+CorrectionDialog::CorrectionDialog(const QString& file, const std::string& operation, const QString& title,
+                                   const std::string& grinder, QWidget* parent)
+    : QDialog(parent),
+      file_(file.toStdString()),
+      operation_(operation),
+      grinder_(grinder),
+      tool_(namedLabel("measured_tool")),
+      says_(namedLabel("correction")),
+      keep_(new PanelButton("keep_measured", "Keep", "Keep what was measured in the record of this tool")),
+      apply_(new PanelButton("apply_correction", "Correct...", "Set the work offsets of Y and Z; nothing moves")),
+      back_(new PanelButton("correct_back", "Back...", "Set them to what they were before the last correction")),
+      question_(new Question("correction", kQuestionLines)),
+      buttons_(new QWidget) {
+  setObjectName("correction_dialog");
+  setWindowTitle("Measured tools of " + title + " for " + QString::fromStdString(grinder));
+  layOut();
+  connect(keep_, &QPushButton::clicked, this, &CorrectionDialog::keep);
+  connect(apply_, &QPushButton::clicked, this,
+          [this] { ask(done_.found->last.offset + done_.correction.turn, "Correct the zero points?"); });
+  connect(back_, &QPushButton::clicked, this, [this] { ask(*before_, "Set them back?"); });
+  connect(question_, &Question::answered, this, [this] { showQuestion(false); });
+  connect(&poll_timer_, &QTimer::timeout, this, &CorrectionDialog::poll);
+  guardFromWheel(*this);
+  begin({});
+  poll_timer_.start(kPollInterval);
+}
+
+CorrectionDialog::~CorrectionDialog() { stop_ = true; }
+
+void CorrectionDialog::layOut() {
+  auto* close = new PanelButton("close_correction", "Close", "Close this window");
+  connect(close, &QPushButton::clicked, this, &QDialog::close);
+  auto* buttons = new QHBoxLayout(buttons_);
+  buttons->setContentsMargins(0, 0, 0, 0);
+  buttons->addStretch(1);
+  for (QPushButton* button : {keep_, apply_, back_, static_cast<QPushButton*>(close)}) buttons->addWidget(button);
+  for (QLabel* label : {tool_, says_}) label->setWordWrap(true);
+  says_->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  auto* layout = new QVBoxLayout(this);
+  layout->addWidget(tool_);
+  layout->addWidget(says_, 1, Qt::AlignTop);
+  layout->addWidget(buttons_);
+  layout->addWidget(question_);
+  question_->setFixedHeight(question_->minimumSizeHint().height());
+  showQuestion(false);
+  resize(kWidth * fontMetrics().horizontalAdvance('0'), minimumSizeHint().height());
+  refresh(std::nullopt, false);
+}
+
+void CorrectionDialog::begin(std::vector<MeasuredFigure> figures) {
+  says_->setText("Reading the records ...");
+  keep_->setEnabled(false);
+  apply_->setEnabled(false);
+  working_ = std::async(std::launch::async, [this, figures = std::move(figures)] { return work(figures); });
+}
+
+CorrectionDialog::Done CorrectionDialog::work(const std::vector<MeasuredFigure>& figures) const {
+  Done done;
+  try {
+    const ValidJob job(readJobFile(file_, operation_));
+    done.basis = basisOf(goalFromFile(file_, operation_), OffsetMethod::kCorrection);
+    const std::vector<ToolNumber> tools = toolsIn(recordsOf(grinder_, stop_), jobDigest(*job));
+    done.tool = toolOf(tools, 0);
+    if (!figures.empty()) keepMeasured(done.tool, figures, userAtHost());
+    done.found = findingsOf(withLaws(job), tools, 0);
+    const bool known = done.found->isKnown();
+    done.correction = done.found->correction(known ? mostTurnsOf(grinder_, stop_) : Turns(Turns::Zero()));
+    done.good = !done.found->alarm;
+    for (const std::string& one : done.found->left_out) done.text += QString::fromStdString(one) + "\n";
+    done.text += QString::fromStdString(settingsText(*done.found, done.correction)).trimmed();
+  } catch (const std::exception& error) {
+    done.found.reset();
+    done.text = error.what();
+  }
+  return done;
+}
+
+void CorrectionDialog::poll() {
+  if (working_.valid() && working_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    take(working_.get());
+  }
+  // A closed dialog stays until its thread has ended.
+  if (!isVisible() && !working_.valid()) deleteLater();
+}
+
+void CorrectionDialog::take(Done done) {
+  done_ = std::move(done);
+  says_->setText(done_.text);
+  says_->setStyleSheet(done_.good ? "" : QString("color: %1;").arg(kWrong));
+  if (done_.found) {
+    tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
+                           "first tooth.")
+                       .arg(done_.tool.number)
+                       .arg(QString::fromStdString(done_.found->last.ended)));
+    showTable();
+  }
+}
+
+void CorrectionDialog::showTable() {
+  delete table_;
+  rows_.clear();
+  table_ = new QWidget;
+  auto* grid = new QGridLayout(table_);
+  grid->setContentsMargins(0, 0, 0, 0);
+  int column = 0;
+  for (const char* head : kHeads) grid->addWidget(new QLabel(QString("<b>%1</b>").arg(head)), 0, column++);
+  const bool known = done_.found->isKnown();
+  for (const CorrectedFigure& figure : correctedFigures(done_.found->model, done_.correction)) {
+    const int row = static_cast<int>(rows_.size()) + 1;
+    const Unit unit = rowOf(figure.at.figure).unit;
+    auto* entry = new QLineEdit;
+    entry->setObjectName(QString("measured_%1").arg(row - 1));
+    const MeasuredFigure* measured = done_.found->last.find(figure.at);
+    if (measured != nullptr) entry->setPlaceholderText(shown(measured->value, unit));
+    const auto cell = [&](const QString& name, double value) {
+      auto* label = namedLabel(QString("%1_%2").arg(name).arg(row - 1));
+      if (known) label->setText(shown(value, unit) + " " + unitName(unit));
+      if (known && !(std::abs(value - figure.asked) <= figure.tolerance)) {
+        label->setStyleSheet(QString("color: %1;").arg(kWrong));
+        label->setText(label->text() + ", out");
+      }
+      return label;
+    };
+    grid->addWidget(new QLabel(nameOf(figure.at)), row, 0);
+    grid->addWidget(
+        new QLabel(QString("%1 ± %2 %3").arg(shown(figure.asked, unit), shown(figure.tolerance, unit), unitName(unit))),
+        row, 1);
+    grid->addWidget(entry, row, 2);
+    grid->addWidget(cell("now", figure.now), row, 3);
+    grid->addWidget(cell("after", figure.after), row, 4);
+    rows_.push_back({figure.at, entry});
+  }
+  qobject_cast<QVBoxLayout*>(layout())->insertWidget(1, table_);
+}
+
+void CorrectionDialog::keep() {
+  std::vector<MeasuredFigure> figures;
+  try {
+    const GrindJob job = readJobFile(file_, operation_);
+    for (const Row& row : rows_) {
+      // Point and comma are both the decimal sign, as in all boxes for numbers.
+      const QString entered = row.measured->text().trimmed().replace(',', '.');
+      if (!entered.isEmpty()) figures.push_back(measuredFrom(text(row.at) + "=" + entered.toStdString(), job));
+    }
+    if (figures.empty()) throw std::invalid_argument("nothing is entered");
+  } catch (const std::exception& error) {
+    says_->setText(error.what());
+    says_->setStyleSheet(QString("color: %1;").arg(kWrong));
+    return;
+  }
+  begin(std::move(figures));
+}
+
+void CorrectionDialog::refresh(const std::optional<flute_grinder::WorkOffsets>& offsets, bool may) {
+  offsets_ = offsets ? std::optional(fromMessage(*offsets)) : std::nullopt;
+  const bool ready = done_.found && !working_.valid();
+  const std::string why_not = ready && offsets_ ? notCorrectable(done_.found->last, *offsets_) : "";
+  const bool can_set = may && ready && offsets_ && why_not.empty();
+  keep_->setEnabled(ready);
+  apply_->setEnabled(can_set && done_.found->isKnown() && !done_.correction.in_dead_band && !isSet());
+  back_->setEnabled(can_set && before_);
+  apply_->setToolTip(why_not.empty() ? "Set the work offsets of Y and Z; nothing moves"
+                                     : QString::fromStdString(why_not));
+  if (!can_set) showQuestion(false);
+}
+
+/// Whether the present work offsets are the corrected ones.
+bool CorrectionDialog::isSet() const {
+  const Turns offset = done_.found->last.offset + done_.correction.turn;
+  return std::all_of(kCorrectedAxes.begin(), kCorrectedAxes.end(), [&](const CorrectedAxis& one) {
+    return std::abs(offsets_->axes[static_cast<std::size_t>(one.axis)].value - offset[indexOf(one.turn)]) <=
+           kSameOffset;
+  });
+}
+
+void CorrectionDialog::ask(const Turns& offset, const QString& text) {
+  Comparison figures{{"now", "then", "change"}, {}};
+  std::vector<flute_grinder::SetOffset::Request> requests;
+  Turns before = Turns::Zero();
+  for (const CorrectedAxis& one : kCorrectedAxes) {
+    const double now = offsets_->axes[static_cast<std::size_t>(one.axis)].value, then = offset[indexOf(one.turn)];
+    before[indexOf(one.turn)] = now;
+    const auto cell = [](double value) { return shown(value, Unit::kMetre) + " mm"; };
+    figures.rows.push_back({QString(axisLetter(one.axis)), cell(now), cell(then), cell(then - now)});
+    // The figures are shown here: the answer to a large change is given with them.
+    requests.push_back(offsetRequest(one.axis, then, done_.basis, {toString(NeedAnswer::kSetOffset)}));
+  }
+  question_->ask(
+      text, figures,
+      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, requests, before] {
+          before_ = before;
+          Q_EMIT wanted(requests);
+        }}});
+  showQuestion(true);
+}
+
+void CorrectionDialog::showAnswer(const std::string& refusal) {
+  says_->setText(refusal.empty() ? "The work offsets of Y and Z are set. Grind the next tool."
+                                 : QString::fromStdString(refusal));
+  says_->setStyleSheet(refusal.empty() ? "" : QString("color: %1;").arg(kWrong));
+}
+
+void CorrectionDialog::showQuestion(bool asks) {
+  buttons_->setVisible(!asks);
+  question_->setVisible(asks);
+}
+
+}  // namespace grinder

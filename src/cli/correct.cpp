@@ -27,7 +27,7 @@ Turns mostOf(const CorrectOptions& options) {
 }
 
 double scaleOf(const FigureAt& at) { return shopScale(rowOf(at.figure).unit); }
-const char* unitOf(const FigureAt& at) { return rowOf(at.figure).unit == Unit::kRadian ? "deg" : "mm"; }
+const char* unitNameOf(const FigureAt& at) { return rowOf(at.figure).unit == Unit::kRadian ? "deg" : "mm"; }
 double turned(const Turns& turns, SetupTurn turn) { return turns[indexOf(turn)] / shopScale(rowOf(turn).unit); }
 
 Json toJson(const Turns& turns) {
@@ -38,7 +38,7 @@ Json toJson(const Turns& turns) {
 
 Json toJson(const CorrectedFigure& figure) {
   const double scale = scaleOf(figure.at);
-  const std::string unit = std::string("_") + unitOf(figure.at);
+  const std::string unit = std::string("_") + unitNameOf(figure.at);
   return {{"figure", toString(figure.at.figure)},     {"x_mm", figure.at.x / kMillimetre},
           {"asked" + unit, figure.asked / scale},     {"tolerance" + unit, figure.tolerance / scale},
           {"planned" + unit, figure.planned / scale}, {"now" + unit, figure.now / scale},
@@ -70,7 +70,7 @@ void printFigures(const std::vector<CorrectedFigure>& figures) {
     const double scale = scaleOf(figure.at);
     std::printf("%-14s %8.3f %10.4f %10.4f %10.4f %10.4f %10.4f %s%s\n", toString(figure.at.figure),
                 figure.at.x / kMillimetre, figure.asked / scale, figure.tolerance / scale, figure.planned / scale,
-                figure.now / scale, figure.after / scale, unitOf(figure.at),
+                figure.now / scale, figure.after / scale, unitNameOf(figure.at),
                 figure.seen ? "" : "; tolerance too narrow for a gauge");
   }
 }

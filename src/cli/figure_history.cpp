@@ -5,6 +5,7 @@
 #include "cli/output_file.h"
 #include "cli/report.h"
 #include "cli/time_text.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/record/measured_tools.h"
 
@@ -29,13 +30,12 @@ void printTable(const Json& history) {
               "Y, mm", "Z, mm");
   for (const Json& tool : history["tools"]) {
     const Json& measured = tool["measured"];
-    char value[32] = "-";
-    if (!measured.is_null()) std::snprintf(value, sizeof value, "%.4f", measured.get<double>());
+    const std::string value = measured.is_null() ? "-" : format("%.4f", measured.get<double>());
     const bool is_off =
         is_asked && !measured.is_null() &&
         !(std::abs(measured.get<double>() - history["asked"].get<double>()) <= history["tolerance"].get<double>());
     std::printf("%6ju  %-19s  %12s  %10.4f  %10.4f  %s%s\n", std::uintmax_t{tool["tool"].get<std::uint64_t>()},
-                timeText(timeOf(tool["ended"]), false).c_str(), value, tool["y_mm"].get<double>(),
+                timeText(timeOf(tool["ended"]), false).c_str(), value.c_str(), tool["y_mm"].get<double>(),
                 tool["z_mm"].get<double>(), tool["zero_points"].get_ref<const std::string&>().c_str(),
                 is_off ? "; OUT OF TOLERANCE" : "");
   }

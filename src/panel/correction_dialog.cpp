@@ -16,6 +16,7 @@
 
 #include <ros/master.h>
 #include <ros/names.h>
+#include <QDateTime>
 #include <QHBoxLayout>
 #include <QVBoxLayout>
 
@@ -31,10 +32,10 @@ namespace grinder {
 
 namespace {
 
-constexpr int kPollInterval = 50;  ///< interval of looks at the thread [ms]
-constexpr int kQuestionLines = 6;
-constexpr int kWidth = 80;  ///< width of the dialog, in digits
-constexpr int kDecimals = 4;
+constexpr int kLookInterval = 50;  ///< interval of looks at the thread [ms]
+constexpr int kCorrectionLines = 6;
+constexpr int kDialogWidth = 80;  ///< width of the dialog, in digits
+constexpr int kFigureDecimals = 4;
 constexpr double kSameOffset = 1e-9;  ///< [m]
 constexpr const char* kHeads[] = {"figure", "asked", "measured", "next tool, unchanged", "next tool, corrected"};
 
@@ -67,8 +68,15 @@ Turns mostTurnsOf(const std::string& grinder, const std::atomic<bool>& stop) {
   return mostTurns(limit);
 }
 
-QString shown(double si, Unit unit) { return QString::number(si / shopScale(unit), 'f', kDecimals); }
+QString shown(double si, Unit unit) { return QString::number(si / shopScale(unit), 'f', kFigureDecimals); }
 QString unitName(Unit unit) { return unit == Unit::kRadian ? "deg" : "mm"; }
+
+/// @param utc text of utcText().
+QString localTime(const std::string& utc) {
+  return QDateTime::fromString(QString::fromStdString(utc), Qt::ISODateWithMs)
+      .toLocalTime()
+      .toString("yyyy-MM-dd HH:mm:ss");
+}
 
 /// A figure in words, e.g. "core diameter at X = 15 mm".
 QString nameOf(const FigureAt& at) {
@@ -88,7 +96,7 @@ CorrectionDialog::CorrectionDialog(const QString& file, const std::string& opera
       keep_(new PanelButton("keep_measured", "Keep", "Keep what was measured in the record of this tool")),
       apply_(new PanelButton("apply_correction", "Correct...", "Set the work offsets of Y and Z; nothing moves")),
       back_(new PanelButton("correct_back", "Back...", "Set them to what they were before the last correction")),
-      question_(new Question("correction", kQuestionLines)),
+      question_(new Question("correction", kCorrectionLines)),
       buttons_(new QWidget) {
   setObjectName("correction_dialog");
   setWindowTitle("Measured tools of " + title + " for " + QString::fromStdString(grinder));
@@ -101,7 +109,7 @@ CorrectionDialog::CorrectionDialog(const QString& file, const std::string& opera
   connect(&poll_timer_, &QTimer::timeout, this, &CorrectionDialog::poll);
   guardFromWheel(*this);
   begin({});
-  poll_timer_.start(kPollInterval);
+  poll_timer_.start(kLookInterval);
 }
 
 CorrectionDialog::~CorrectionDialog() { stop_ = true; }
@@ -122,7 +130,7 @@ void CorrectionDialog::layOut() {
   layout->addWidget(question_);
   question_->setFixedHeight(question_->minimumSizeHint().height());
   showQuestion(false);
-  resize(kWidth * fontMetrics().horizontalAdvance('0'), minimumSizeHint().height());
+  resize(kDialogWidth * fontMetrics().horizontalAdvance('0'), minimumSizeHint().height());
   refresh(std::nullopt, false);
 }
 
@@ -170,7 +178,7 @@ void CorrectionDialog::take(Done done) {
     tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
                            "first tooth.")
                        .arg(done_.tool.number)
-                       .arg(QString::fromStdString(done_.found->last.ended)));
+                       .arg(localTime(done_.found->last.ended)));
     showTable();
   }
 }
@@ -182,7 +190,13 @@ void CorrectionDialog::showTable() {
   auto* grid = new QGridLayout(table_);
   grid->setContentsMargins(0, 0, 0, 0);
   int column = 0;
-  for (const char* head : kHeads) grid->addWidget(new QLabel(QString("<b>%1</b>").arg(head)), 0, column++);
+  for (const char* head : kHeads) {
+    auto* label = new QLabel(head);
+    QFont bold = label->font();
+    bold.setBold(true);
+    label->setFont(bold);
+    grid->addWidget(label, 0, column++);
+  }
   const bool known = done_.found->isKnown();
   for (const CorrectedFigure& figure : correctedFigures(done_.found->model, done_.correction)) {
     const int row = static_cast<int>(rows_.size()) + 1;

@@ -42,7 +42,7 @@ Eigen::VectorXd valuesOf(const MeasuredTool& tool, const FigureModel& model) {
   return values;
 }
 
-std::string text(const MeasuredTool& tool, const Surprise& surprise, const FigureModel& model) {
+std::string surpriseText(const MeasuredTool& tool, const Surprise& surprise, const FigureModel& model) {
   const FigureAt& at = model.figures[static_cast<std::size_t>(surprise.figure)];
   const Unit unit = rowOf(at.figure).unit;
   return "tool " + std::to_string(tool.number) + ": " + text(at) + " = " +
@@ -93,7 +93,7 @@ SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> numbers, s
     if (values.array().isNaN().all()) continue;
     const auto surprise = found.estimate.take(found.model, values, gauge);
     found.alarm = surprise.has_value();
-    if (surprise) found.left_out.push_back(text(tool, *surprise, found.model));
+    if (surprise) found.left_out.push_back(surpriseText(tool, *surprise, found.model));
     if (!surprise) ++found.measured;
   }
   return found;

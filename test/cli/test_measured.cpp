@@ -77,8 +77,10 @@ class MeasuredTools : public ::testing::Test {
 
   /// @return the JSON that is printed.
   Json correct(int status, std::uint64_t since = 0) {
-    return Json::parse(
-        printed({kJob, "", since, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", true}, status));
+    return Json::parse(printed(asking(kJob, "", since, true), status));
+  }
+  CorrectOptions asking(const char* job, const char* operation, std::uint64_t since, bool json) const {
+    return {job, operation, since, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", json, false, {}};
   }
   std::string printed(const CorrectOptions& options, int status) {
     ::testing::internal::CaptureStdout();
@@ -142,8 +144,7 @@ TEST_F(MeasuredTools, SayWhatToSet) {
   EXPECT_EQ(said["figures"][3]["x_mm"], 2.0);
   EXPECT_NEAR(said["figures"][3]["now_mm"].get<double>() - said["figures"][3]["planned_mm"].get<double>(),
               1.865 * 0.015 - 0.72 * 0.010, 0.001);
-  const std::string table =
-      printed({kJob, "", 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false}, 0);
+  const std::string table = printed(asking(kJob, "", 0, false), 0);
   EXPECT_NE(table.find("since tool 1: 4 ground, 4 measured; zero points of tool 4\n"), std::string::npos) << table;
   EXPECT_NE(table.find("work offset of Y: -0.01"), std::string::npos) << table;
   EXPECT_NE(table.find(" mm, to 1.48"), std::string::npos) << table;
@@ -187,13 +188,13 @@ TEST_F(MeasuredTools, SetNothingByAWrongEntry) {
 
 TEST_F(MeasuredTools, NeedSomethingMeasuredOfTheFlutes) {
   const auto refused = [&](const char* job, const char* operation) {
-    const CorrectOptions options{job, operation, 0, folder_.path(), "config/grinder.yaml", "urdf/grinder.urdf", false};
-    return test_support::refusalOf<std::invalid_argument>([&] { grinder::correct("grinder", options); });
+    return test_support::refusalOf<std::invalid_argument>(
+        [&] { grinder::correct("grinder", asking(job, operation, 0, false)); });
   };
   EXPECT_EQ(refused(kJob, ""), "no tool of this job and set-up is in the records");
   keep(1);
   EXPECT_EQ(refused(kJob, "").find("no tool has been measured since its zero points were found"), 0U);
-  EXPECT_EQ(refused("jobs/end_mill_d10_t4.yaml", "primary").find("operation = primary; allowed: flute"), 0U);
+  EXPECT_EQ(refused("jobs/end_mill_d10_t4.yaml", "gash").find("operation = gash; allowed: flute, primary,"), 0U);
 }
 
 }  // namespace test_cli_measured

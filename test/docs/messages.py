@@ -53,6 +53,13 @@ MESSAGES = {
     'src/setup/touch_off.cpp': (),
     'src/messages/continue_job.cpp': (),
     'src/record/measured.cpp': (),
+    'src/record/correction.cpp': (),
+    'src/panel/correction_dialog.cpp': (
+        'next tool, unchanged', 'next tool, corrected', 'yyyy-MM-dd HH:mm:ss', 'Keep what was measured in the record of this tool',
+        'Set the work offsets of Y and Z; nothing moves', 'Set them to what they were before the last correction', 'Measured tools of',
+        'Correct the zero points?', 'Set them back?', 'Close this window', 'Reading the records ...', 'Set them',
+        ', the last of this job and set-up, ground until', '. Enter what a gauge says of its first tooth.',
+        'What is shown then counts; nothing moves', 'The work offsets of Y and Z are set. Grind the next tool.'),
     'src/cli/measured.cpp': (),
     'src/cli/correct.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),

@@ -159,9 +159,10 @@ class TestRecords(gc.OwnNode):
         self.client = self.grinder
         y, z = self.correctable('--set', 'x=0', '--set', 'y=0', '--set', 'z=0', '--answer', 'set-offset')
         self.assertEqual((y['found_at'], z['found_at']), (y['set_at'], z['set_at']))
-        self.record_of(lambda: self.command(0, 'run', job))
+        self.record_of(lambda: self.command(0, 'run', job, '--answer', 'confirm-wheel', '--answer', 'confirm-swivel'))
         self.assertIn('no tool has been measured', self.command(2, 'correct', job, '--apply').stderr)
         self.command(0, 'measured', job, 'core@15=%.4f' % (self.planned_core(job) + 0.03))
+        self.check_shown(job)
         said = json.loads(self.command(0, 'correct', job, '--json').stdout)
         self.assertLess(said['turn']['y_mm'], -0.002)
         self.assertEqual([axis['offset_mm'] for axis in self.correctable()], [0, 0])
@@ -177,6 +178,24 @@ class TestRecords(gc.OwnNode):
         self.assertIn('the zero point of Y is not the one of tool 1, the last one ground', refused.stderr)
         self.assertEqual(self.correctable(), [y, corrected[1]])
 
+    def check_shown(self, job):
+        """What was measured, over the tools and in the report."""
+        svg, html = (os.path.join(self.home, name) for name in ('chart.svg', 'report.html'))
+        said = json.loads(self.command(0, 'history', '--figure', 'core@15', '--job', job, '--svg', svg, '--json').stdout)
+        self.assertEqual((said['figure'], said['x_mm'], said['unit'], said['tolerance']), ('core_diameter', 15, 'mm', 0.1))
+        tool, = said['tools']
+        self.assertAlmostEqual(tool['measured'], self.planned_core(job) + 0.03, delta=1e-4)
+        self.assertEqual((tool['tool'], tool['y_mm'], tool['zero_points']), (1, 0, 'found'))
+        text = self.command(0, 'history', '--figure', 'core@15', '--job', job).stdout
+        self.assertRegex(text, r'(?m)^ +1  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d +%.4f +0\.0000 ' % tool['measured'])
+        picture, = (element.text for element in xml.parse(svg).iter() if (element.text or '').startswith('core diameter at'))
+        self.assertEqual(picture, 'core diameter at X = 15 mm')
+        report = json.loads(self.command(0, 'report', '--last', '--json', '-o', html).stdout)
+        shown, = report['operations'][0]['measured']
+        self.assertEqual(shown, dict(said, value=tool['measured']))
+        with open(html) as page:
+            self.assertIn('<td class="number" data-label="measured">%g mm</td>' % shown['value'], page.read())
+
     def correctable(self, *arguments):
         """Y and Z of `grind offsets`."""
         job = ('--job', gc.package_file('test/jobs/paper.yaml')) if arguments else ()
@@ -184,8 +203,8 @@ class TestRecords(gc.OwnNode):
         return [axes['y'], axes['z']]
 
     def planned_core(self, job):
-        figures = json.loads(self.command(0, 'plan', job, '--json').stdout)['figures']
-        return next(figure['mean_mm'] for figure in figures if figure['name'] == 'core_diameter')
+        """In the middle: it is linear from end to end."""
+        return sum(json.loads(self.command(0, 'plan', job, '--json').stdout)['figures']['core_diameter']['ground_mm']) / 2
 
     def command(self, status, *arguments):
         """A command for this grinder."""

@@ -66,10 +66,11 @@ std::string lacksRoom(QWidget& widget) {
   return "";
 }
 
-/// What is wrong with how a panel looks, a line each.
+/// What is wrong with how a panel or a dialog looks, a line each.
 std::string wrongs(QWidget& panel) {
   std::string found;
-  if (panel.size() != QSize(kWidth, kHeight)) found += "it wants more room\n";
+  const bool has_its_size = qobject_cast<QDialog*>(&panel) != nullptr || panel.size() == QSize(kWidth, kHeight);
+  if (!has_its_size) found += "it wants more room\n";
   const std::vector<QWidget*> widgets = leaves(panel);
   if (widgets.size() <= 20) found += "it shows next to nothing\n";
   std::vector<QRect> taken;
@@ -218,15 +219,16 @@ void Panel::enter(QFileDialog& dialog, const QString& file) {
   return (found ? ::testing::AssertionSuccess() : ::testing::AssertionFailure()) << '\'' << part << "' in: " << whole;
 }
 
-void Panel::picture(const std::string& name) {
+void Panel::picture(const std::string& name, const char* dialog) {
+  QWidget& shown = dialog != nullptr ? the<QWidget>(dialog) : *panel_;
   SCOPED_TRACE("picture " + name);
   // A change of a text is laid out level by level, and values go on coming.
   std::string wrong;
-  const auto looksGood = [&] { return (wrong = wrongs(*panel_)).empty(); };
+  const auto looksGood = [&] { return (wrong = wrongs(shown)).empty(); };
   EXPECT_TRUE(QTest::qWaitFor(looksGood, kPatience)) << wrong;
   const QString folder = qEnvironmentVariable("SCREENSHOTS", "screenshots");
   QDir().mkpath(folder);
-  EXPECT_TRUE(panel_->grab().save(folder + "/panel_" + QString::fromStdString(name) + ".png"));
+  EXPECT_TRUE(shown.grab().save(folder + "/panel_" + QString::fromStdString(name) + ".png"));
 }
 
 }  // namespace grinder

@@ -88,9 +88,9 @@ class Panel {
   /// Chooses one of the job's operations, as the keys do.
   void chooseOperation(const QString& operation);
 
-  /// Looks for what is wrong with the picture of the panel, and keeps it as panel_NAME.png in the folder SCREENSHOTS of
-  /// the environment.
-  void picture(const std::string& name);
+  /// Looks for what is wrong with the picture of the panel, or of one of its dialogs, and keeps it as panel_NAME.png in
+  /// the folder SCREENSHOTS of the environment.
+  void picture(const std::string& name, const char* dialog = nullptr);
 
   /// Clicks the tick of a check box.
   void tick(const char* name);

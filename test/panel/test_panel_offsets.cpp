@@ -211,17 +211,18 @@ TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
   EXPECT_FALSE(panel.enabled("apply_correction")) << "nothing is measured";
   EXPECT_TRUE(panel.shows("measured_tool", "Tool 7, the last of this job"));
   EXPECT_TRUE(panel.shows("correction", "no tool has been measured"));
-  panel.picture("nothing_measured");
+  panel.picture("nothing_measured", "correction_dialog");
   // The core in the middle, too thick by 0.05 mm, half the tolerance.
   enter("measured_4", "9,8");
-  panel.click("keep_measured");
+  panel.press("keep_measured");
   WAIT_FOR(panel.enabled("apply_correction"));
   const std::vector<MeasuredFigure> kept = measuredOf(readRecord(path().toStdString()));
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_NEAR(kept[0].value, 9.8e-3, 1e-12);
   EXPECT_NEAR(kept[0].x, 15e-3, 1e-12);
-  panel.picture("measured_tool");
-  panel.click("apply_correction");
+  panel.picture("measured_tool", "correction_dialog");
+  panel.press("apply_correction");
+  panel.picture("correction_question", "correction_dialog");
   panel.press("confirm_correction");
   WAIT_FOR(panel.shows("correction", "The work offsets of Y and Z are set."));
   auto set = stage.get(&Stage::offsets_set);
@@ -243,7 +244,7 @@ TEST_F(MeasuredTool, SetsNothingByAWrongEntryOrForZeroPointsFoundAnew) {
   for (const char* wrong : {"98", "9.8 mm", "nan"}) {
     enter("measured_4", wrong);
     panel.press("keep_measured");
-    EXPECT_TRUE(panel.shows("correction", std::string("core_diameter = ") + wrong + "; allowed: "));
+    EXPECT_TRUE(panel.shows("correction", std::string("core = ") + wrong + "; allowed: "));
   }
   EXPECT_TRUE(measuredOf(readRecord(path().toStdString())).empty());
   enter("measured_4", "8.8");  // a digit

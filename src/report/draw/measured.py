@@ -20,10 +20,10 @@ def draw(history):
         axes.axhspan(asked - tolerance, asked + tolerance, color=METAL, linewidth=0, zorder=0)
         axes.axhline(asked, color=THEORY, linestyle='--')
     # Numbers of records also count other jobs; a place for each tool of this one.
-    for place, tool in enumerate(history['tools']):
-        if place > 0 and tool['zero_points'] != 'same':
-            corrected = tool['zero_points'] == 'corrected'
-            axes.axvline(place - 0.5, color=CURVE if corrected else INK, linestyle=':' if corrected else '-', linewidth=0.8)
+    for change, colour, style, label in (('corrected', CURVE, ':', 'Y, Z corrected'), ('found', INK, '-', 'Y, Z found anew')):
+        for place in [place for place, tool in enumerate(history['tools']) if place > 0 and tool['zero_points'] == change]:
+            axes.axvline(place - 0.5, color=colour, linestyle=style, label=label)
+            label = None
     measured = [(place, tool['measured']) for place, tool in enumerate(history['tools']) if tool['measured'] is not None]
     if measured:
         axes.plot(*zip(*measured), color=THEORY, linewidth=0.5)
@@ -37,13 +37,12 @@ def draw(history):
     axes.set_xticklabels(numbers[::step])
     axes.set_xlim(-0.7, len(numbers) - 0.3)
     axes.ticklabel_format(axis='y', useOffset=False)
-    if measured:
-        axes.legend(loc='best')
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc='lower left', bbox_to_anchor=(0, 1), ncol=2, fontsize=8, borderaxespad=0)
     return figure
 
 
-CAPTION = ('By gauge, over the numbers of the tools\' records%s. Vertical lines: zero points of Y and Z corrected (dotted) or found anew '
-           '(solid).')
+CAPTION = 'By gauge, over the numbers of the records of the tools%s.'
 
 
 def measured_picture(name, history):

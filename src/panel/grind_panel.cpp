@@ -423,6 +423,7 @@ bool GrindPanel::allowed(MachineEvent event, const GrinderView& view) const {
     case MachineEvent::kHome: return !in_work && view.machine && view.machine->homing;
     case MachineEvent::kStart: return !in_work && !view.planned && job_->planned();
     case MachineEvent::kLift: return in_work;
+    case MachineEvent::kResume: return view.state->homed != 0;
     case MachineEvent::kSpindleOn:
       return !in_work && !view.state->spindle_commanded && view.machine && view.machine->spindle;
     case MachineEvent::kCoolantOn:

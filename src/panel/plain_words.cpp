@@ -59,6 +59,9 @@ std::string describe(const flute_grinder::GrinderState& state) {
     return text + "The drive still reports power, though it was switched off: press the emergency stop.";
   if (state.emergency_stop) text += "The emergency stop is pressed. ";
   if (state.spindle_commanded && !isInJob(machine)) text += "The spindle is on. ";
+  if (!state.homed && after(machine, MachineEvent::kResume)) {
+    return text + "The reference is lost, so the job cannot be resumed: cancel it, then home.";
+  }
   // A spindle or coolant that is off while the wheel is lifted keeps the job from being resumed.
   const bool is_lifted = isInJob(machine) && after(machine, MachineEvent::kSpindleOn);
   if (is_lifted && !state.spindle_commanded) text += "The spindle is off: switch it on first. ";

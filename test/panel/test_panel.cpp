@@ -353,7 +353,13 @@ TEST_F(OnStage, AWheelInTheWorkIsLiftedBeforeAnythingElse) {
     stage.be(row.state);
     WAIT_FOR(panel.label("meaning") == row.meaning);
   }
+  stage.be("retracted");
+  WAIT_FOR(panel.enabled("resume"));
+  stage.change([&] { stage.state.homed = 0; });
+  WAIT_FOR(panel.label("meaning") == "The reference is lost, so the job cannot be resumed: cancel it, then home.");
+  EXPECT_FALSE(panel.enabled("resume"));
   stage.change([&] {
+    stage.state.homed = 1;
     stage.state.progress = flute_grinder::JobProgress();
     stage.state.journal_error = "journal /j: its checksum is wrong";
   });

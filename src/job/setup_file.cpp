@@ -66,8 +66,12 @@ std::vector<std::string> solvedFor(const GrindJob& job) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& key, const std::string& value) { lines.push_back(key + " = " + value); };
   visitJobFields([&](const JobField& field, auto of) {
-    if (isSolvedFor(field, job.process().kind)) add(field.file_key, asked(of(job), field.unit));
+    const bool is_none = of(job) == 0 && std::string_view(field.path).find("_short_") != std::string_view::npos;
+    if (isSolvedFor(field, job.process().kind) && !is_none) add(field.file_key, asked(of(job), field.unit));
   });
+  if (isStraight(job.process().kind) && job.cutter.end_center_teeth > 0) {
+    add(fieldName("cutter.end_center_teeth"), std::to_string(job.cutter.end_center_teeth));
+  }
   if (!job.spiral_angles.empty()) add("cutter.spiral_angles_deg", asked(job.spiral_angles));
   add("cutter.cut", toString(job.cutter.cut));
   add("process.wheel.profile", toString(job.process().wheel_profile));

@@ -2,6 +2,8 @@
 
 #include "flute_grinder/base/units.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -43,6 +45,7 @@ Vector3d acrossAt(double swivel) { return {std::cos(swivel), 0, std::sin(swivel)
 /// the axis outward: its edge, and the place under the edge, along X, on the plane that is ground.
 struct NextTooth {
   std::array<std::array<InFace, 2>, 2> lines;
+  InFace axis;  ///< where the plane meets the axis
 
   /// @param place a place on the plane.
   NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
@@ -53,6 +56,8 @@ struct NextTooth {
     const double hollow = tooth.radius * normal[1] / normal[0];
     const double under = (place[0] - place[2] * cos / sin) * cos;
     lines = {{{InFace(0, hollow * cos), InFace(y, z * sin)}, {InFace(0, under), InFace(y, z / sin + under)}}};
+    axis = lines[1][0];
+    for (auto& [inner, outer] : lines) inner += tooth.next_from / tooth.radius * (outer - inner);
   }
 };
 
@@ -92,6 +97,30 @@ InFace roundNext(const NextTooth& next, double rim) {
     centre -= (farthest - rim) * toward;
   }
   return centre;
+}
+
+/// The centre of the face of a wheel whose rim passes the axis, and has the next tooth on its other side, as near as
+/// that allows.
+/// @param from_axis distance of the centre from the axis [m].
+/// @param rim radius of the rim, with the gap to the next tooth [m].
+/// @param round whether that tooth is within the rim.
+InFace pastAxis(const NextTooth& next, double from_axis, double rim, bool round) {
+  const InFace outward = (next.lines[1][1] - next.lines[1][0]).normalized();
+  Eigen::Rotation2Dd turn(std::atan2(-outward[0], outward[1]));
+  const auto nearer = [&](const InFace& a, const InFace& b) {
+    const InFace centre = next.axis + turn * InFace(from_axis, 0);
+    return ((a - centre).norm() < (b - centre).norm()) != round;
+  };
+  for (int i = 0; i < kFaceSteps; ++i) {
+    InFace place = next.lines[0][0];
+    for (const auto& line : next.lines) {
+      for (const InFace& end : line) place = nearer(end, place) ? end : place;
+    }
+    const InFace centre = next.axis + turn * InFace(from_axis, 0), way = centre - place;
+    const double per_turn = (turn * InFace(0, from_axis)).dot(way) / way.norm();
+    turn.angle() += (rim - way.norm()) / per_turn;
+  }
+  return next.axis + turn * InFace(from_axis, 0);
 }
 
 /// A stroke that only ends, at the centre of the lower face in its plane.
@@ -152,7 +181,10 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   const bool right = tooth.cut == CutDirection::kRightHand;
   const double rim = right ? wheel.radius + gap : wheel.inner_radius - gap;
   const NextTooth next(tooth, normal, pose, place);
-  const InFace centre = right ? besideNext(next, rim) : roundNext(next, rim);
+  const double from_axis = right ? wheel.radius - tooth.past_axis : wheel.inner_radius + tooth.past_axis;
+  const InFace centre = tooth.past_axis > 0 ? pastAxis(next, from_axis, rim, !right)
+                        : right             ? besideNext(next, rim)
+                                            : roundNext(next, rim);
   FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   if (right) {
     stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;

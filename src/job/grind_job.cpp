@@ -266,12 +266,52 @@ void checkEnd(Checker& checker, const GrindJob& job) {
     checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
                    "more than the cutter's radius at the end,", -radius);
   }
+  if (p.kind == OperationKind::kGash && !(p.gash_short_past > -radius)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_past", {p.gash_short_past, Unit::kMetre},
+                   "more than the cutter's radius at the end,", -radius);
+  }
   if (p.kind == OperationKind::kChamfer) {
     checker.below("cutter.chamfer_width", c.chamfer_width, radius, "the cutter's radius at the end");
   }
   if (p.kind == OperationKind::kSecondaryEnd && !(c.end_second_clearance > c.end_clearance)) {
     checker.refuse(ReasonKind::kNotAllowed, "cutter.end_second_clearance", {c.end_second_clearance, Unit::kRadian},
                    "more than that of the primary flank,", c.end_clearance);
+  }
+}
+
+/// Checks what there is of teeth to the centre, and of the others beside them.
+void checkCenterTeeth(Checker& checker, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const GrindProcess& p = job.process();
+  const int center = c.end_center_teeth, teeth = static_cast<int>(job.tooth_angles.size());
+  if (center == 0) {
+    constexpr const char* kNone = "0 without cutter.end.center_teeth";
+    const auto ask_none = [&](const char* path, double value, Unit unit) {
+      if (value != 0) checker.refuse(ReasonKind::kNotAllowed, path, {value, unit}, kNone);
+    };
+    ask_none("cutter.end_short_from", c.end_short_from, Unit::kMetre);
+    ask_none("process.gash_short_angle", p.gash_short_angle, Unit::kRadian);
+    ask_none("process.gash_short_past", p.gash_short_past, Unit::kMetre);
+    return;
+  }
+  constexpr double kEven = 1e-6;  // the digits of a file
+  bool even = teeth > kMaxCenterTeeth && teeth % center == 0;
+  for (int i = 0; i < teeth; ++i) {
+    even = even && std::abs(job.tooth_angles[static_cast<std::size_t>(i)] - i * units::kTurn / teeth) <= kEven;
+  }
+  if (!even) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.end_center_teeth", {static_cast<double>(center), Unit::kNone},
+                   "0, 1 of 3 or more evenly spaced teeth, or 2 of an even number of them from 4 on");
+  }
+  const double least = 4 * kEndGap;
+  if (!(c.end_short_from >= least && c.end_short_from < c.end_diameter / 2)) {
+    checker.refuse(ReasonKind::kOutOfRange, "cutter.end_short_from", {c.end_short_from, Unit::kMetre}, "",
+                   c.end_diameter / 2, least);
+  }
+  constexpr double kLeastAngle = 5 * units::kDegree;
+  if (p.gash_short_angle != 0 && !(p.gash_short_angle >= kLeastAngle)) {
+    checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_angle", {p.gash_short_angle, Unit::kRadian},
+                   "0, or from", kLeastAngle);
   }
 }
 
@@ -302,6 +342,7 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   if (p.kind != OperationKind::kFlute) {
     checkWheelSuits(checker, job);
     if (isStraight(p.kind)) checkEnd(checker, job);
+    if (checker.good() && isStraight(p.kind)) checkCenterTeeth(checker, job);
     return checkWheel(checker, p);
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");
@@ -368,6 +409,11 @@ GrindJob GrindJob::ofOperation(int index) const {
 bool GrindJob::hasGround(OperationKind kind) const {
   return std::any_of(operations.begin(), operations.begin() + operation + 1,
                      [kind](const GrindProcess& p) { return p.kind == kind; });
+}
+
+bool GrindJob::isShort(int tooth) const {
+  const int center = cutter.end_center_teeth, teeth = static_cast<int>(tooth_angles.size());
+  return center > 0 && tooth % std::max(teeth / center, 1) != 0;
 }
 
 bool GrindJob::comesAlongX() const { return isEndFlank(process().kind) && cutter.cut == CutDirection::kLeftHand; }

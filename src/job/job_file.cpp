@@ -267,6 +267,10 @@ class OperationReader {
     GrindProcess& p = job_.process();
     file_.takeChoice("cutter.cut", job_.cutter.cut);
     file_.takeChoice("interpolation.even_step", job_.interpolation.even_step);
+    const OtherKey& center_teeth = otherJobKey("cutter.end_center_teeth");
+    if (file_.mayHave(center_teeth.file_key)) {
+      file_.take(center_teeth.file_key, center_teeth.allowed, job_.cutter.end_center_teeth);
+    }
     const auto choice = [&](const std::string& key, auto& value) { file_.takeChoice(key, value); };
     takeOrInherit("process.order", &GrindProcess::order, choice);
     takeOrInherit("process.direction", &GrindProcess::direction, choice);

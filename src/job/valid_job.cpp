@@ -85,8 +85,10 @@ FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
   const EndPlane plane = endPlaneOf(job);
   const EndTooth end = endToothOf(job, tooth);
   switch (p.kind) {
-    case OperationKind::kGash:
-      return gashStroke(end, plane.normal, p.gash_angle, p.gash_past, wheel, p.clearance + p.stock);
+    case OperationKind::kGash: {
+      const auto& [angle, past] = gashBottomOf(job, tooth);
+      return gashStroke(end, plane.normal, angle, past, wheel, p.clearance + p.stock);
+    }
     case OperationKind::kChamfer: return chamferStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
     default: return endStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
   }
@@ -110,7 +112,10 @@ double endStockOf(const GrindJob& job, int tooth) {
   const CutterGeometry& c = job.cutter;
   const GrindProcess& p = job.process();
   const double radius = c.end_diameter / 2;
-  if (p.kind == OperationKind::kGash) return radius + p.gash_past + p.stock * std::tan(p.gash_angle);
+  if (p.kind == OperationKind::kGash) {
+    const auto& [angle, past] = gashBottomOf(job, tooth);
+    return radius + past + p.stock * std::tan(angle);
+  }
   const EndPlane plane = endPlaneOf(job);
   const double half = units::kPi / 2, far = radius * std::sin(std::min(half, endToothOf(job, tooth).pitch));
   OnTooth highest(-p.stock, radius, 0);
@@ -209,14 +214,23 @@ EndPlane endPlaneOf(const GrindJob& job) {
   }
 }
 
+GashBottom gashBottomOf(const GrindJob& job, int tooth) {
+  const GrindProcess& p = job.process();
+  if (!job.isShort(tooth)) return {p.gash_angle, p.gash_past};
+  return {p.gash_short_angle > 0 ? p.gash_short_angle : p.gash_angle, p.gash_short_past};
+}
+
 double swivelOfPlane(const GrindJob& job) { return lastFaceStroke(job, 0, 0).swivel; }
 
 EndTooth endToothOf(const GrindJob& job, int tooth) {
   const std::vector<double>& angles = job.tooth_angles;
   const std::size_t count = angles.size(), i = static_cast<std::size_t>(tooth);
   const bool right = job.cutter.cut == CutDirection::kRightHand;
-  const double next = right ? angles[(i + 1) % count] - angles[i] : angles[i] - angles[(i + count - 1) % count];
-  return {job.cutter.end_diameter / 2, next > 0 ? next : next + units::kTurn, job.cutter.cut};
+  const std::size_t next = (right ? i + 1 : i + count - 1) % count;
+  const double way = right ? angles[next] - angles[i] : angles[i] - angles[next];
+  EndTooth end{job.cutter.end_diameter / 2, way > 0 ? way : way + units::kTurn, job.cutter.cut};
+  if (job.isShort(static_cast<int>(next))) end.next_from = job.cutter.end_short_from, end.past_axis = kEndGap;
+  return end;
 }
 
 InvalidJob::InvalidJob(std::vector<Reason> reasons)

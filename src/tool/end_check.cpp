@@ -1,5 +1,6 @@
 #include "tool/end_check.h"
 
+#include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/log_curve.h"
 #include "tool/end_cuts.h"
 
@@ -23,9 +24,9 @@ constexpr double kAlike = 1e-9;      ///< difference of pitch and wear between t
 struct EndPlace {
   const CutterGeometry& cutter;
   EndSection at;
-  double uncut = 0;      ///< diameter outside which the edge is whole [m]
-  double periphery = 0;  ///< see ToolFigure::kPeripheryTaken [m]
-  FigureValue drag;      ///< by which the end stands in front of the tooth's edge behind it [m]
+  FigureValue uncut, short_from;  ///< diameter outside which the edge is whole; of a short tooth, radius [m]
+  double periphery = 0;           ///< see ToolFigure::kPeripheryTaken [m]
+  FigureValue drag;               ///< by which the end stands in front of the tooth's edge behind it [m]
   std::optional<ChamferFigures> chamfer;
 };
 
@@ -58,12 +59,14 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry& c) { return widthTolerance(c.end_land); }},
     {ToolFigure::kEndRake, OperationKind::kGash, [](const EndPlace& p) { return p.at.rake; },
      [](const CutterGeometry& c) { return c.end_rake; }, [](const CutterGeometry& c) { return c.end_rake_tolerance; }},
-    {ToolFigure::kUncutDiameter, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.uncut); },
+    {ToolFigure::kUncutDiameter, OperationKind::kGash, [](const EndPlace& p) { return p.uncut; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
     {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.drag; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
+    {ToolFigure::kShortFrom, OperationKind::kGash, [](const EndPlace& p) { return p.short_from; },
+     [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_short_from; }},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
      [](const CutterGeometry& c) { return c.chamfer_width; },
@@ -115,7 +118,9 @@ bool hasAllFlanks(const GrindJob& job) {
 bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
   if (m.figure == ToolFigure::kPeripheryTaken) return true;
   if (m.figure == ToolFigure::kHeelDrag) return job->hasGround(m.since) && hasAllFlanks(*job);
-  return m.figure == ToolFigure::kUncutDiameter ? hasEdges(job, next) : job->hasGround(m.since);
+  if (m.figure == ToolFigure::kUncutDiameter) return hasEdges(job, next);
+  if (m.figure == ToolFigure::kShortFrom) return hasEdges(job, next) && job->cutter.end_center_teeth > 0;
+  return job->hasGround(m.since);
 }
 
 GroundFigure askedFigure(const EndMeasurement& m, const CutterGeometry& cutter) {
@@ -130,24 +135,26 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, 0, periphery(tooth), {}, {}};
+    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}};
     const double radius = cutter_.end_diameter / 2;
     const bool has_edge = hasEdges(job_, next_), all_flanks = hasAllFlanks(*job_);
-    const double pitch = endToothOf(*job_, static_cast<int>(tooth)).pitch;
+    const bool is_short = job_->isShort(static_cast<int>(tooth));
     const double whole = has_edge ? end_.wholeFrom(tooth).value_or(radius) : 0;
-    place.uncut = 2 * whole;
+    (is_short ? place.short_from : place.uncut) = is_short ? whole : 2 * whole;
     if (job_->hasGround(OperationKind::kChamfer)) place.chamfer = end_.chamfer(tooth);
-    const double inner = std::max(whole, cutter_.end_uncut_diameter / 2) + kBeyond;
+    const double allowed = is_short ? cutter_.end_short_from : cutter_.end_uncut_diameter / 2;
+    const double inner = std::max(whole, allowed) + kBeyond;
     const double outer = kOutermost * (radius - (place.chamfer ? place.chamfer->width : 0));
     for (int i = 0; i < kEndSections && inner < outer; ++i) {
       const double r = inner + (outer - inner) * i / (kEndSections - 1);
       place.at = has_edge ? end_.section(tooth, r) : EndSection{};
       place.at.r = r;
-      place.drag = place.at.edge && all_flanks ? FigureValue(end_.heelDrag(tooth, place.at, pitch)) : std::nullopt;
+      place.drag = place.at.edge && all_flanks ? FigureValue(drag(tooth, place.at)) : std::nullopt;
       if (!has_edge) place.at.rake = end_.rake(tooth, r, (radius - r) * std::tan(cutter_.end_dish), 0);
       take(place, tooth);
     }
     if (!(inner < outer)) take(place, tooth);
+    if (cutter_.end_center_teeth > 0 && !is_short) measureCenter(tooth, inner);
   }
 
   CutterCheck result() {
@@ -160,6 +167,25 @@ class EndCheck {
   }
 
  private:
+  /// By which the end stands in front of an edge, up to the next tooth that has one as far in.
+  double drag(std::size_t tooth, const EndSection& at) const {
+    const EndTooth own = endToothOf(*job_, static_cast<int>(tooth));
+    return end_.heelDrag(tooth, at, at.r < own.next_from ? units::kTurn / cutter_.end_center_teeth : own.pitch);
+  }
+
+  /// Where a tooth to the centre has no edge, nothing may stand in front of where that would be.
+  void measureCenter(std::size_t tooth, double inner) {
+    const auto heel_drag = std::find_if(std::begin(kEndMeasurements), std::end(kEndMeasurements),
+                                        [](const EndMeasurement& m) { return m.figure == ToolFigure::kHeelDrag; });
+    if (!isAsked(*heel_drag, job_, next_)) return;
+    EndSection at;
+    for (int i = 1; i <= kEndSections; ++i) {
+      at.r = inner * i / (kEndSections + 1);
+      at.edge = (cutter_.end_diameter / 2 - at.r) * std::tan(cutter_.end_dish);
+      add(*heel_drag, drag(tooth, at), at.r, static_cast<int>(tooth));
+    }
+  }
+
   /// The length of the periphery's edge, behind the chamfer, that is taken away.
   double periphery(std::size_t tooth) const {
     CutterGeometry own = cutter_;
@@ -244,7 +270,8 @@ CutterCheck checkGroundEnd(const RunStrokes& run) {
 
 CutterCheck checkGroundEnd(const ValidJob& job) {
   EndCheck check(job, plannedStrokes(job));
-  const std::size_t teeth = areAlike(job) ? 1 : job->tooth_angles.size();
+  const auto all = job->tooth_angles.size(), center = static_cast<std::size_t>(job->cutter.end_center_teeth);
+  const std::size_t teeth = !areAlike(job) ? all : center > 0 ? all / center : 1;
   for (std::size_t tooth = 0; tooth < teeth; ++tooth) check.measure(tooth);
   return check.result();
 }

@@ -99,12 +99,12 @@ struct Asked {
 };
 
 /// How far a position off a straight stroke is within the tool: through the plane, or the bottom of a gash [m].
-double beyondPlane(const GrindJob& job, const PathDeviation& off) {
+double beyondPlane(const GrindJob& job, int tooth, const PathDeviation& off) {
   const double sin = std::sin(job.process().setup_swivel), cos = std::cos(job.process().setup_swivel);
   const double along_spindle = -sin * off.x + cos * off.z;
   if (job.process().kind != OperationKind::kGash) return -along_spindle;
   // What is off a stroke is at right angles to it, and the bottom runs along it.
-  const double below_bottom = -off.y / std::cos(job.process().gash_angle);
+  const double below_bottom = -off.y / std::cos(gashBottomOf(job, tooth).angle);
   return std::max(job.cutter.cut == CutDirection::kRightHand ? along_spindle : -along_spindle, below_bottom);
 }
 
@@ -113,7 +113,7 @@ std::vector<Gouge> gougesOnEnd(const RunStrokes& strokes, double min) {
   for (const RunStroke& stroke : strokes.strokes()) {
     Gouge worst{stroke.place, stroke.move, 0, 0};
     for (const PathDeviation& off : stroke.deviations) {
-      worst.depth = std::max(worst.depth, beyondPlane(*strokes.job(), off));
+      worst.depth = std::max(worst.depth, beyondPlane(*strokes.job(), stroke.place.tooth, off));
     }
     if (worst.depth > min) gouges.push_back(worst);
   }

@@ -13,6 +13,7 @@ namespace grinder {
 namespace {
 
 constexpr double kStep = 0.02;       ///< step of the search for an edge and for the end of a land, per radius
+constexpr double kNearAxis = 0.1;    ///< greatest step inward along an edge, per distance from the axis
 constexpr double kFarthest = 0.6;    ///< how far behind the radius an edge is searched, per radius
 constexpr double kNearby = 1e-5;     ///< distance between the rays of a slope, per radius
 constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake face is found, per radius
@@ -174,7 +175,7 @@ std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
   const double corner = radius_ * (1 - kNearby), innermost = kInnermost * radius_;
   if (!is_whole(corner)) return std::nullopt;
   for (double r = corner; r > innermost;) {
-    const double inner = std::max(innermost, r - kStep * radius_);
+    const double inner = std::max(innermost, r - std::min(kStep * radius_, kNearAxis * r));
     if (!is_whole(inner)) return changeBetween(inner, r, is_whole);
     r = inner;
   }

@@ -224,6 +224,56 @@ TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
   }
 }
 
+/// Two of an even number of teeth go to the axis, or one of any: where the next tooth is short, the rim passes the
+/// axis.
+TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
+  auto between = test_support::numbers(7);
+  for (int i = 0; i < 60; ++i) {
+    const int teeth = 3 + i % 4, center = teeth % 2 == 0 && i % 3 > 0 ? 2 : 1;
+    const CutDirection cut = kHands[i / 12 % 2];
+    const bool right = cut == CutDirection::kRightHand;
+    const double hand = right ? 1 : -1, pitch = 2 * kPi / teeth;
+    const double radius = between(3, 8) * kMillimetre, from = between(0.15, 0.4) * radius;
+    const double clearance = between(5, 20) * kDegree, dish = between(0, 3) * kDegree;
+    SCOPED_TRACE(testing::Message() << center << " of " << teeth << " teeth, hand " << hand << ", R " << radius
+                                    << ", from " << from << ", clearance " << clearance << ", dish " << dish);
+    FaceWheel wheel;
+    wheel.nominal_radius = wheel.radius = between(25, 60) * kMillimetre;
+    wheel.width = 10 * kMillimetre;
+    if (!right) wheel.inner_radius = wheel.radius - radius - 1 * kMillimetre;
+    const OnTooth normal = endNormal(clearance, dish), through(0, radius, 0);
+    const auto is_short = [&](int tooth) { return tooth % (teeth / center) != 0; };
+    BruteForce tool(wheel, radius, true);
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+      // Behind a left-hand tooth is the one before it.
+      const bool passes = is_short(right ? (tooth + 1) % teeth : (tooth + teeth - 1) % teeth);
+      const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? kGap : 0};
+      const FaceStroke stroke = endStroke(end, normal, through, wheel, kGap, 1 * kMillimetre);
+      tool.grind(stroke, tooth * pitch, right ? 60 : 1);
+      if (!passes) continue;
+      // Of the face, whose plane meets the axis at the edge's end.
+      const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
+      const Vector3d face = centre - wheel.width / 2 * upperFaceNormal(stroke.swivel);
+      const double off = (Vector3d(radius * std::tan(dish), 0, 0) - face).norm();
+      EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
+      if (!right) continue;  // of a cup, the corner may be nearer to the rim
+      // The beginning of the short edge, or what is under it on the plane, is the gap outside the rim.
+      const Vector3d spindle = upperFaceNormal(stroke.swivel);
+      Vector3d begin = turned({(radius - from) * std::tan(dish), from, 0}, flankPose(normal, cut).tooth + pitch, cut);
+      const double beside = (begin - face).cross(spindle).norm();
+      begin[0] -= (begin - face).dot(spindle) / spindle[0];
+      EXPECT_NEAR(std::min(beside, (begin - face).cross(spindle).norm()), wheel.radius + kGap, 1e-9);
+    }
+    const double behind = hand * 1e-6, slope = std::tan(dish);
+    for (int tooth = 0; tooth < teeth; ++tooth) {
+      for (double r = is_short(tooth) ? from : 3 * kGap; r < radius; r += 0.05 * kMillimetre) {
+        EXPECT_NEAR(tool.top(r, tooth * pitch + behind), (radius - r) * slope, 1e-7) << tooth << ' ' << r;
+      }
+    }
+    EXPECT_GE(tool.top(1e-9, 0), radius * slope - 1e-9);  // without a nib
+  }
+}
+
 /// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
 /// At a stroke's beginning, a wheel larger by less than `clear` touches nothing of the blank, and one by more does.
 void expectClear(const FaceStroke& stroke, const FaceWheel& wheel, const EndTooth& tooth, double clear) {

@@ -335,6 +335,42 @@ TEST(ValidJob, OfAFaceHasTheWearSinceItBegan) {
   }
 }
 
+TEST(GrindJob, HasTeethToTheCentreWhereOthersAreBesideThem) {
+  const auto refusal = [](const std::function<void(GrindJob&)>& change) {
+    GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "gash");
+    change(job);
+    std::string all;
+    for (const Reason& reason : validate(job)) all += text(reason) + "\n";
+    return all;
+  };
+  const auto evenly = [](GrindJob& job, int teeth) {
+    job.tooth_angles.clear();
+    for (int i = 0; i < teeth; ++i) job.tooth_angles.push_back(i * units::kTurn / teeth);
+  };
+  for (const auto& [center, teeth] : {std::pair{1, 3}, {1, 4}, {1, 5}, {2, 4}, {2, 6}}) {
+    EXPECT_EQ(refusal([&, center = center, teeth = teeth](GrindJob& job) {
+                job.cutter.end_center_teeth = center;
+                evenly(job, teeth);
+              }),
+              "");
+  }
+  const std::string allowed =
+      "; allowed: 0, 1 of 3 or more evenly spaced teeth, or 2 of an even number of them from 4 on\n";
+  const std::string of_two = "cutter.end.center_teeth = 2" + allowed;
+  EXPECT_EQ(refusal([&](GrindJob& job) { evenly(job, 2); }), of_two);
+  EXPECT_EQ(refusal([&](GrindJob& job) { evenly(job, 5); }), of_two);
+  EXPECT_EQ(refusal([](GrindJob& job) { job.tooth_angles[1] += 0.01; }), of_two);
+  EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_center_teeth = 3; }),
+            "cutter.end.center_teeth = 3; allowed: 0 to 2\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_short_from = 0.1e-3; }),
+            "cutter.end.short_from_mm = 0.1 mm; allowed: 0.2 to 5 mm\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.process().gash_short_angle = 4 * units::kDegree; }),
+            "process.short.angle_deg = 4 deg; allowed: 0, or from 5 deg\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_center_teeth = 0; }),
+            "cutter.end.short_from_mm = 1.5 mm; allowed: 0 without cutter.end.center_teeth\n"
+            "process.short.past_mm = -0.5 mm; allowed: 0 without cutter.end.center_teeth\n");
+}
+
 TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {
   const auto refusal = [](const GrindJob& job) {
     try {

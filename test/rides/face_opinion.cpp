@@ -112,20 +112,32 @@ Real nearest(Real u, Real v, const std::array<std::array<Real, 2>, 2>& line) {
 
 struct NextTooth {
   std::array<std::array<Real, 2>, 2> edge, below;  ///< its edge, and what is under that on the plane
+  std::array<Real, 2> at_axis{};                   ///< what of the plane is on the axis
 };
 
 /// The next tooth, or a line 140 deg behind the edge before it, as seen along the spindle: (across, Y).
 NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
   const Vector axis{f.radius * std::tan(f.dish), 0, 0};
+  const Vector inner{(f.radius - f.behind_from) * std::tan(f.dish), f.behind_from, 0};
   const Real turn = std::min(f.pitch, 7 * std::acos(Real(-1)) / 9);
-  const Vector corner = inMachine(f, {0, f.radius, 0}, pose.tooth + (f.left_hand ? -turn : turn));
+  const auto ofNext = [&](const Vector& place) {
+    return inMachine(f, place, pose.tooth + (f.left_hand ? -turn : turn));
+  };
+  const Vector begin = ofNext(inner), corner = ofNext({0, f.radius, 0});
   const auto seen = [&](const Vector& place) { return std::array<Real, 2>{dot(place, pose.across), place[1]}; };
   const auto under = [&](const Vector& place) {
     const Vector turned = inMachine(f, plane.normal, pose.tooth);
     const Real off = dot(turned, less(place, inMachine(f, plane.through, pose.tooth)));
     return seen({place[0] - off / turned[0], place[1], place[2]});
   };
-  return {{seen(axis), seen(corner)}, {under(axis), under(corner)}};
+  return {{seen(begin), seen(corner)}, {under(begin), under(corner)}, under(axis)};
+}
+
+/// For a tooth whose edge goes to the axis, the rim is past the axis.
+void judgeRimPastAxis(const Face& f, const Pose& pose, const Vector& face, const NextTooth& next, Real rim) {
+  if (!f.past_axis) return;
+  const Real off = std::hypot(next.at_axis[0] - dot(face, pose.across), next.at_axis[1] - face[1]);
+  requireSame("rim past the axis", f.left_hand ? off - rim : rim - off, f.gap, kNear);
 }
 
 /// The inner edge of a cup's rim round the next tooth, of which all is within it by the gap.
@@ -137,6 +149,7 @@ void judgeRimRound(const Face& f, const Plane& plane, const Pose& pose, const Ve
     for (const auto& [u, v] : line) farthest = std::max(farthest, std::hypot(u - dot(face, pose.across), v - face[1]));
   }
   requireSame("farthest of the next tooth", farthest, inner, kNear);
+  judgeRimPastAxis(f, pose, face, next, f.wheel_radius - f.rim);
 }
 
 /// A cup comes along X from where its face is clear of all of the blank's end.
@@ -156,6 +169,7 @@ void judgeRimOfEnd(const Face& f, const Plane& plane, const Pose& pose, const Ve
   const Real u = dot(face, pose.across), v = face[1];
   requireSame("gap to the next tooth", std::min(nearest(u, v, next.edge), nearest(u, v, next.below)) - rim, f.gap,
               kNear);
+  judgeRimPastAxis(f, pose, face, next, rim);
 }
 
 void judgeRimOfChamfer(const Face& f, const Plane& plane, const Pose& pose, const Vector& face, Real rim) {

@@ -155,6 +155,17 @@ ValidJob withEnd(Random& random, GrindJob job) {
     p.gash_angle = between(random, 0.3, 1.2);
     p.gash_past = c.end_diameter * between(random, -0.3, 0.1);
   }
+  if (job.spiral_angles.empty() && c.end_diameter > 10 * kEndGap && flip(random, 0.4)) {
+    const int teeth = flip(random, 0.5) ? 3 : 4;
+    job.tooth_angles.clear();
+    for (int i = 0; i < teeth; ++i) job.tooth_angles.push_back(i * units::kTurn / teeth);
+    c.end_center_teeth = teeth == 4 && flip(random, 0.7) ? 2 : 1;
+    c.end_short_from = between(random, 5 * kEndGap, 0.45 * c.end_diameter);
+    if (p.kind == OperationKind::kGash) {
+      p.gash_short_angle = flip(random, 0.5) ? 0 : between(random, 0.3, 1.2);
+      p.gash_short_past = c.end_diameter * between(random, -0.3, 0.1);
+    }
+  }
   if (isEndFlank(p.kind) && left) {
     p.wheel_profile = WheelShape::kCup;
     p.wheel_side = WheelFace::kLower;
@@ -227,6 +238,11 @@ second_opinion::Face faceOf(const ValidJob& job, int tooth) {
   const std::size_t behind = (i + (f.left_hand ? angles.size() - 1 : 1)) % angles.size();
   const double way = f.left_hand ? angles[i] - angles[behind] : angles[behind] - angles[i];
   f.pitch = way > 0 ? way : way + units::kTurn;
+  // The first tooth goes to the axis, and the opposite one if there are two.
+  const std::size_t every = angles.size() / static_cast<std::size_t>(std::max(c.end_center_teeth, 1));
+  const auto is_short = [&](std::size_t one) { return c.end_center_teeth > 0 && one % every != 0; };
+  f.past_axis = is_short(behind);
+  f.behind_from = f.past_axis ? c.end_short_from : 0;
   f.a = angles[i] + job.edges()[i].at_end;
   f.dish = c.end_dish;
   f.rake = c.end_rake;
@@ -234,10 +250,12 @@ second_opinion::Face faceOf(const ValidJob& job, int tooth) {
   f.first_clearance = c.end_clearance;
   f.land = secondary ? c.end_land : 0;
   f.width = c.chamfer_width;
-  f.angle = f.kind == Kind::kGash ? p.gash_angle : c.chamfer_angle;
+  f.angle = f.kind != Kind::kGash                   ? c.chamfer_angle
+            : is_short(i) && p.gash_short_angle > 0 ? p.gash_short_angle
+                                                    : p.gash_angle;
   f.spiral = (f.left_hand ? -1 : 1) * std::tan(second_opinion::Real(c.spiral_angle));
   f.hook = std::max(0.0, std::tan(c.rake_angle));
-  f.past = p.gash_past;
+  f.past = is_short(i) ? p.gash_short_past : p.gash_past;
   f.swivel = p.setup_swivel;
   f.height = p.setup_height;
   f.wheel_radius = second_opinion::Real(p.wheel_diameter) / 2;

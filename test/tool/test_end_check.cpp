@@ -184,6 +184,37 @@ TEST(EndCheck, RefusesAnEndThatIsNotAsAskedAndNamesTheFigure) {
   }
 }
 
+GrindJob centerCutting(const std::string& operation, const Change& change) {
+  GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", operation);
+  change(job);
+  return job;
+}
+
+/// Teeth to the centre are whole from where the opposite one's rim ends past the axis, the others from where their
+/// gashes have their bottoms or nearer to the axis than asked.
+TEST(EndCheck, TeethToTheCentreBeginAtTheAxisAndTheOthersAsAsked) {
+  const CutterCheck check = checked(centerCutting("chamfer", kShipped));
+  EXPECT_EQ(text(check.reasons), "");
+  const GroundFigure* uncut = find(check.figures, ToolFigure::kUncutDiameter);
+  const GroundFigure* from = find(check.figures, ToolFigure::kShortFrom);
+  const GroundFigure* drag = find(check.figures, ToolFigure::kHeelDrag);
+  ASSERT_TRUE(uncut && from && drag);
+  EXPECT_NEAR(uncut->largest.value, 2 * kEndGap, 0.02 * kMillimetre);
+  EXPECT_EQ(uncut->largest.tooth % 2, 0);
+  EXPECT_EQ(from->largest.tooth % 2, 1);
+  EXPECT_LT(from->largest.value, 1.5 * kMillimetre);
+  EXPECT_GT(from->least.value, 0.5 * kMillimetre);
+  EXPECT_LT(drag->largest.value, 1e-6);
+  EXPECT_EQ(find(checked(jobOf("chamfer", kShipped)).figures, ToolFigure::kShortFrom), nullptr);
+}
+
+TEST(EndCheck, RefusesShortTeethThatBeginTooFarOut) {
+  const CutterCheck check =
+      checked(centerCutting("chamfer", [](GrindJob& job) { gashOf(job).gash_short_past = -1.5 * kMillimetre; }));
+  const std::string why = text(check.reasons);
+  EXPECT_NE(why.find("the short edge's start of tooth 2 is 1.6"), std::string::npos) << why;
+}
+
 /// The plan of a gash tells which edges it spoils, once the flank that follows can be planned.
 TEST(EndCheck, AGashKnowsTheUncutDiameterOfTheFlankThatFollows) {
   GrindJob job = jobOf("gash", kShipped);

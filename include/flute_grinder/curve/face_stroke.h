@@ -60,6 +60,11 @@ struct EndTooth {
   double radius = 0;  ///< radius of the tool at its end [m]
   double pitch = 0;   ///< angle to the next tooth behind the edge [rad]
   CutDirection cut = CutDirection::kRightHand;
+  /// Radius outside which the next tooth has an edge [m].
+  double next_from = 0;
+  /// Distance by which the rim passes the axis, for an edge up to it; not without `next_from`. 0: the rim stays before
+  /// the axis [m].
+  double past_axis = 0;
 };
 
 /// A straight stroke at constant A, during which the wheel's face stays in one plane.
@@ -71,12 +76,13 @@ struct FaceStroke {
 };
 
 /// The stroke that grinds a flank of an end tooth. For a right-hand tool the wheel comes down along Y until its rim has
-/// passed the axis by as much as the next tooth's edge allows. For a left-hand one a cup comes along X, the inner edge
-/// of its rim round the next tooth. A flank ends 140 deg behind its edge even if the next tooth is farther; what is
-/// left of the heel is the gash's. Stock is normal to the flank.
+/// passed the axis by as much as the next tooth's edge allows, or as is asked. For a left-hand one a cup comes along X,
+/// the inner edge of its rim round the next tooth. A flank ends 140 deg behind its edge even if the next tooth is
+/// farther; what is left of the heel is the gash's. Stock is normal to the flank.
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
-/// @param gap least distance of the rim from the next tooth; negative to pass it, for a tooth to the centre [m].
+/// @param gap least distance of the rim from the next tooth's edge; with `past_axis`, both together less than
+///        `next_from` [m].
 /// @param clear distance of the wheel from the blank at the beginning [m].
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept;

@@ -27,9 +27,11 @@ struct CutterGeometry : Cone {
   double end_clearance_tolerance = 0;  ///< maximum allowed difference of the ground clearances of the end [rad]
   double end_rake_tolerance = 0;       ///< maximum allowed difference of the ground rake of the gashes [rad]
   double end_uncut_diameter = 0;       ///< diameter in which edges of end teeth may be missing [m]
-  double chamfer_width = 0;            ///< asked width of the chamfer, seen along the axis; 0: none [m]
-  double chamfer_angle = 0;            ///< asked angle between chamfer and axis [rad]
-  double chamfer_clearance = 0;        ///< asked clearance of the chamfer, normal to its edge [rad]
+  int end_center_teeth = 0;      ///< number of end teeth whose edges go to the axis, see GrindJob::isShort(); 0: none
+  double end_short_from = 0;     ///< radius outside which the edges of the other end teeth are whole [m]
+  double chamfer_width = 0;      ///< asked width of the chamfer, seen along the axis; 0: none [m]
+  double chamfer_angle = 0;      ///< asked angle between chamfer and axis [rad]
+  double chamfer_clearance = 0;  ///< asked clearance of the chamfer, normal to its edge [rad]
 };
 
 }  // namespace grinder

@@ -107,6 +107,8 @@ struct GrindProcess {
   double stock = 0;         ///< by which the blank is longer than the tool, for an operation on its end [m]
   double gash_angle = 0;    ///< angle of a gash's bottom to the axis [rad]
   double gash_past = 0;     ///< distance of a gash's bottom past the axis at the end; negative before it [m]
+  double gash_short_angle = 0;  ///< `gash_angle` of a short tooth; 0: as of the others [rad]
+  double gash_short_past = 0;   ///< `gash_past` of a short tooth [m]
   double setup_x_shift =
       0;  ///< shift of A's curve along X that makes the ground edge the asked helix; see LogCurve [m]
   std::vector<ProfilePoint> wheel_points;  ///< the profile of a wheel of shape kPoints, else empty
@@ -146,6 +148,9 @@ struct GrindJob {
   const GrindProcess& process() const { return processOf(*this); }  ///< the job's operation
   /// Whether the tool has an operation of a kind after the job's: it is the job's, or before it.
   bool hasGround(OperationKind kind) const;
+  /// Whether a tooth's edge at the end does not go to the axis, beside others' that do: those of the first tooth, and
+  /// of the opposite one if there are two.
+  bool isShort(int tooth) const;
   /// Whether the wheel comes along X, and has to go back along it before it is lifted: a cup, whose rim goes round the
   /// next tooth of a left-hand end.
   bool comesAlongX() const;
@@ -164,7 +169,11 @@ struct GrindJob {
 Range askedSpiral(const GrindJob& job);
 
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< maximum variation of the rake with kConstantRake [rad]
-constexpr int kMaxWheelPoints = 100;                  ///< maximum number of points of a wheel's profile
+/// Distance of the rim from the next tooth at a stroke's end on the end; also that by which it passes the axis for a
+/// tooth to the centre [m].
+constexpr double kEndGap = 0.05e-3;
+constexpr int kMaxCenterTeeth = 2;    ///< maximum number of end teeth whose edges go to the axis
+constexpr int kMaxWheelPoints = 100;  ///< maximum number of points of a wheel's profile
 constexpr int kMaxSparkOut = 100;
 constexpr int kMaxRoughingPasses =
     200;  ///< maximum number of roughing passes whose depths follow from what they remove

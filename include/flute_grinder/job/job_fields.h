@@ -98,6 +98,8 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return j.cutter.end_rake_tolerance; });
   visit(F{"cutter.end_uncut_diameter", "cutter.end.uncut_diameter_mm", mm, 0, 100, "diameter about the axis in which edges of end teeth may be missing", "0"},
         [](auto& j) -> auto& { return j.cutter.end_uncut_diameter; });
+  visit(F{"cutter.end_short_from", "cutter.end.short_from_mm", mm, 0, 50, "with `cutter.end.center_teeth`: radius outside which the edges of the other, short teeth are whole", "0, without teeth to the centre"},
+        [](auto& j) -> auto& { return j.cutter.end_short_from; });
   visit(F{"cutter.chamfer_width", "cutter.chamfer.width_mm", mm, 0, 50, "width of the chamfer at the corner, seen along the axis", "0, without a chamfer"},
         [](auto& j) -> auto& { return j.cutter.chamfer_width; });
   visit(F{"cutter.chamfer_angle", "cutter.chamfer.angle_deg", deg, 0, 89, "angle between the chamfer and the axis", "0, without a chamfer"},
@@ -152,6 +154,10 @@ void visitJobFields(const Visit& visit) {
         [](auto& j) -> auto& { return processOf(j).gash_angle; });
   visit(F{"process.gash_past", "process.past_mm", mm, -50, 50, "of a gash: distance of its bottom past the axis at the end; negative before it", nullptr, F::Of::kGash},
         [](auto& j) -> auto& { return processOf(j).gash_past; });
+  visit(F{"process.gash_short_angle", "process.short.angle_deg", deg, 0, 85, "`process.angle_deg` of the gashes of short teeth, 5 or more", "0, as `process.angle_deg`", F::Of::kGash},
+        [](auto& j) -> auto& { return processOf(j).gash_short_angle; });
+  visit(F{"process.gash_short_past", "process.short.past_mm", mm, -50, 50, "`process.past_mm` of the gashes of short teeth", "0", F::Of::kGash},
+        [](auto& j) -> auto& { return processOf(j).gash_short_past; });
   visit(F{"interpolation.tolerance", "interpolation.tolerance_um", um, 1e-9, 1000, "maximum deviation at the cutter's surface; the feed is reduced to keep it"},
         [](auto& j) -> auto& { return j.interpolation.tolerance; });
   visit(F{"interpolation.rotary_scale", "interpolation.rotary_scale_mm_per_rad", mm_rad, 1e-3, 1000, "weight of A in the step length; 1 in the paper"},
@@ -165,6 +171,7 @@ template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off
   visit("cutter.cut", countOf<CutDirection>() - 1, [](auto& j) -> auto& { return j.cutter.cut; });
+  visit("cutter.end_center_teeth", kMaxCenterTeeth, [](auto& j) -> auto& { return j.cutter.end_center_teeth; });
   visit("process.kind", countOf<OperationKind>() - 1, [](auto& j) -> auto& { return processOf(j).kind; });
   visit("process.roughing_passes", kMaxRoughingPasses, [](auto& j) -> auto& { return processOf(j).roughing_passes; });
   visit("process.spark_out", kMaxSparkOut, [](auto& j) -> auto& { return processOf(j).spark_out; });

@@ -62,10 +62,15 @@ EndPlane endPlaneOf(const GrindJob& job);
 /// The only swivel that lays the plane of an operation on the end on a face of the wheel [rad].
 double swivelOfPlane(const GrindJob& job);
 
-constexpr double kEndGap = 0.05e-3;  ///< distance of the rim from the next tooth at a stroke's end on the end [m]
-
 /// The tooth of an operation on the end.
 EndTooth endToothOf(const GrindJob& job, int tooth);
+
+/// The bottom of a tooth's gash, as for gashStroke().
+struct GashBottom {
+  double angle = 0;  ///< [rad]
+  double past = 0;   ///< [m]
+};
+GashBottom gashBottomOf(const GrindJob& job, int tooth);
 
 /// A pass of a job.
 struct JobPass {

@@ -37,6 +37,7 @@ enum class ToolFigure : std::uint8_t {
   kChamferAngle,
   kChamferClearance,
   kHeelDrag,
+  kShortFrom,
 };
 
 /// A figure with its name in files, which is the message constant in lower case.
@@ -87,6 +88,7 @@ inline constexpr ToolFigureRow kToolFigures[]{
     figureOfEnd(ToolFigure::kChamferAngle, "chamfer_angle", "chamfer angle", Unit::kRadian),
     figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
     figureOfEnd(ToolFigure::kHeelDrag, "heel_drag", "heel drag", Unit::kMetre),
+    figureOfEnd(ToolFigure::kShortFrom, "short_from", "short edge's start", Unit::kMetre),
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

@@ -9,10 +9,15 @@ namespace grinder {
 
 namespace {
 
+/// The fault of a plan for which a computation about the tool has this reason.
+PlanFault faultOf(const Reason& reason) {
+  return reason.kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+}
+
 /// A plan without a program, because there is no law of Z.
 JobPlan refused(Reason reason) {
   JobPlan plan;
-  plan.fault = reason.kind == ReasonKind::kGivenUp ? PlanFault::kGivenUp : PlanFault::kTool;
+  plan.fault = faultOf(reason);
   plan.reasons.push_back(std::move(reason));
   return plan;
 }
@@ -39,17 +44,26 @@ void refuse(JobPlan& plan, PlanFault fault, const std::vector<Reason>& reasons) 
 
 PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const MachineShapes& shapes, const RunStart& run,
                         const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
-  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), {}, {}, {}, {}};
+  PlannedJob planned{planWithLaw(job, machine, run, visit, watch), {}, {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
-  CutterCheck cutter = checkGroundCutter(planned.program->job());
+  CutterCheck cutter = checkGroundCutter(planned.program->job(), watch);
   planned.complete = cutter.complete;
   planned.figures = cutter.figures;
   planned.edges = std::move(cutter.edges);
-  refuse(planned, PlanFault::kTool, cutter.reasons);
+  if (!cutter.reasons.empty()) refuse(planned, faultOf(cutter.reasons.front()), cutter.reasons);
   const CollisionResult collision = checkCollision(*planned.program, shapes);
   planned.closest = collision.closest;
   if (collision.reason) refuse(planned, PlanFault::kCollision, {*collision.reason});
   return planned;
+}
+
+void measurePasses(PlannedJob& plan, const PlanWatch& watch) {
+  if (!plan.good()) return;
+  try {
+    plan.passes = removalOfPasses(plan.program->job(), watch);
+  } catch (const ReasonError& error) {
+    refuse(plan, faultOf(error.reason()), {error.reason()});
+  }
 }
 
 }  // namespace grinder

@@ -86,6 +86,7 @@ Json toJson(const PlannedJob& plan) {
           {"complete_to_mm", plan.complete ? Json(plan.complete->to / kMillimetre) : Json(nullptr)},
           {"figures", toJson(plan.figures)},
           {"closest", plan.closest ? toJson(*plan.closest) : Json(nullptr)},
+          {"passes", plan.passes ? toJson(*plan.passes) : Json::array()},
           {"setpoints", s.setpoints},
           {"duration_s", s.duration},
           {"move_durations", moveDurations(s)},

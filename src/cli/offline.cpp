@@ -11,7 +11,6 @@
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/plan_result.h"
-#include "flute_grinder/tool/pass_removal.h"
 
 #include <cstdio>
 
@@ -123,18 +122,8 @@ void printPlan(const flute_grinder::PlanReport& plan) {
     std::printf("%-20s %.3f mm more than the infeed, by the first pass beyond the flute's end\n",
                 "cut out of the shank", plan.shank_cut / kMillimetre);
   }
-}
-
-void printPasses(const ValidJob& job) {
-  const std::vector<PassRemoval> passes = removalOfPasses(job);
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    const auto& [depth, area, rate, volume] = passes[i];
-    std::printf("%-20s %.4f mm deep, ", format("pass %zu", i + 1).c_str(), depth / kMillimetre);
-    if (area > 0) {
-      std::printf("%.4g mm^2 of a section, %.3g mm^3/s\n", area / kMillimetre2, rate / kMillimetre3);
-    } else {
-      std::printf(i > 0 && depth == passes[i - 1].depth ? "spark-out\n" : "removes nothing\n");
-    }
+  for (std::size_t i = 0; i < plan.passes.size(); ++i) {
+    std::printf("%-20s %s\n", format("pass %zu", i + 1).c_str(), passText(plan, i).c_str());
   }
 }
 
@@ -148,16 +137,15 @@ int runPlan(const PlanOptions& options) {
     csv.emplace(options.csv);
     visit = [&](const Setpoint& p) { csv->write(p, machine.period); };
   }
-  const PlannedJob plan = planWholeJob(job, machine, MachineShapes(files.model), machine.park, visit);
+  PlannedJob plan = planWholeJob(job, machine, MachineShapes(files.model), machine.park, visit);
   if (csv) csv->close();
+  measurePasses(plan);
   if (options.json) {
     Json json = toJson(plan);
     json["shank_cut_mm"] = shankCut(job->cutter) / kMillimetre;
-    json["passes"] = plan.good() ? toJson(removalOfPasses(plan.program->job())) : Json::array();
     print(json);
   } else {
     printPlan(resultOf(plan).plan);
-    if (plan.good()) printPasses(plan.program->job());
   }
   for (const Reason& reason : plan.reasons) {
     std::fprintf(stderr, "%s\n", text(reason).c_str());

@@ -2,7 +2,6 @@
 
 #include "flute_grinder/PlanReport.h"
 #include "flute_grinder/curve/odd_even_interpolator.h"
-#include "flute_grinder/job/valid_job.h"
 
 #include <optional>
 #include <string>
@@ -35,11 +34,8 @@ int runTable(const TableOptions& options);
 int runPlan(const PlanOptions& options);
 
 /// Prints, in the operator's units, a job's statistics, the tool's figures beside those asked for, the range of X in
-/// which the flutes are complete, the two bodies that come closest to each other, and the cut of the first pass into
-/// the shank. Unknown and empty values are left out.
+/// which the flutes are complete, the two bodies that come closest to each other, the cut of the first pass into the
+/// shank, and what each pass of a tooth removes. Unknown and empty values are left out.
 void printPlan(const flute_grinder::PlanReport& plan);
-
-/// Prints what each pass of a tooth removes. @param job job from withLaws().
-void printPasses(const ValidJob& job);
 
 }  // namespace grinder

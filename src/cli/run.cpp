@@ -143,17 +143,18 @@ flute_grinder::GrindGoal goalFor(const std::string& node, const RunOptions& opti
   return goal;
 }
 
-/// The job of a goal, with its passes.
-ValidJob withPassesOf(const flute_grinder::GrindGoal& goal) {
-  const ValidJob job(jobFromGoal(goal));
-  return job.hasPasses() ? job : withLaws(job);
+/// The number of passes of a tooth of a goal's job; 0 for a dry run, which grinds none.
+int passesToGrind(const flute_grinder::GrindGoal& goal, const ValidJob& job) {
+  if (goal.dry_run) return 0;
+  return static_cast<int>((job.hasPasses() ? job : withLaws(job)).depths().size());
 }
 
 }  // namespace
 
 int runJob(const std::string& node, const RunOptions& options) {
   flute_grinder::GrindGoal goal = goalFor(node, options);
-  const ValidJob job = withPassesOf(goal);
+  const ValidJob job(jobFromGoal(goal));
+  const int passes = passesToGrind(goal, job);
   ros::NodeHandle nh(node);
   StreamWatch stream(nh, options.csv);
   Sent sent;
@@ -171,17 +172,14 @@ int runJob(const std::string& node, const RunOptions& options) {
   catchHolds();
   keys.start([&] { client.cancelSent(); });
   for (;;) {
-    ProgressBar bar(job.teeth(), static_cast<int>(job.depths().size()));
+    ProgressBar bar(job.teeth(), passes);
     const std::optional<std::string> id = client.send(goal);
     if (!id) return fail(kLinkLost);
     sent = {*id, std::nullopt};
     showProgress(sent, client, bar);
     bar.end();
     if (sent.end && !goal.dry_run && addAnswers(sent.end->result.plan.needs, goal.answers)) continue;
-    const bool is_planned = goal.dry_run && sent.end && sent.end->result.plan.valid;
-    const int status = closeStream(stream, options.csv, printOutcome(sent.end, stream));
-    if (is_planned) printPasses(withLaws(job));
-    return status;
+    return closeStream(stream, options.csv, printOutcome(sent.end, stream));
   }
 }
 

@@ -28,6 +28,15 @@ flute_grinder::ToolFigure toMessage(const GroundFigure& figure) {
   return m;
 }
 
+flute_grinder::PassRemoval toMessage(const PassRemoval& pass) {
+  flute_grinder::PassRemoval m;
+  m.depth = pass.depth;
+  m.area = pass.area;
+  m.rate = pass.rate;
+  m.volume = pass.volume;
+  return m;
+}
+
 flute_grinder::PlanReport toMessage(const PlannedJob& plan) {
   flute_grinder::PlanReport m;
   const Range complete = plan.complete.value_or(Range{kNone, kNone});
@@ -35,6 +44,9 @@ flute_grinder::PlanReport toMessage(const PlannedJob& plan) {
   m.statistics = toMessage(plan.statistics);
   m.complete = {complete.from, complete.to};
   for (const GroundFigure& figure : plan.figures) m.figures.push_back(toMessage(figure));
+  if (plan.passes) {
+    for (const PassRemoval& pass : *plan.passes) m.passes.push_back(toMessage(pass));
+  }
   if (plan.program) m.shank_cut = shankCut(plan.program->job()->cutter);
   if (plan.closest) {
     m.closest_bodies = {plan.closest->first, plan.closest->second};
@@ -90,6 +102,17 @@ GroundFigure fromMessage(const flute_grinder::ToolFigure& m) {
                       m.tolerance};
   if (!std::isnan(m.asked[0])) figure.asked = {m.asked[0], m.asked[1]};
   return figure;
+}
+
+std::string passText(const flute_grinder::PlanReport& plan, std::size_t number) {
+  const flute_grinder::PassRemoval& pass = plan.passes[number];
+  const std::string deep = format("%.4f mm deep, ", pass.depth / kMillimetre);
+  if (pass.area > 0) {
+    return deep + format("%.4g mm^2 of a section, %.3g mm^3/s", pass.area / units::kMillimetre2,
+                         pass.rate / units::kMillimetre3);
+  }
+  const bool is_spark_out = number > 0 && pass.depth == plan.passes[number - 1].depth;
+  return deep + (is_spark_out ? "spark-out" : "removes nothing");
 }
 
 std::string closestText(const flute_grinder::PlanReport& plan) {

@@ -212,6 +212,7 @@ void GoalServer::plan(const WorkOffsets& offsets) {
   Planner::Request request{goal_->job};
   request.run = {Eigen::Map<const Axes>(loop_.status().command.data()), firstOf(asked), offsets.values()};
   request.control = goal_->control;
+  request.measures_passes = asked.dry_run != 0;
   request.done = [this](std::shared_ptr<const PlannedJob> planned) {
     thread_->post([this, planned = std::move(planned)] { onPlanned(planned); });
   };
@@ -416,6 +417,8 @@ flute_grinder::GrindResult GoalServer::resultOfPlan(const PlannedJob& plan) cons
   r.plan.offsets = toMessage(goal_->offsets);
   r.plan.offsets.header.stamp = ros::Time::now();
   r.plan.needs = toMessage(goal_->needs);
+  // A kept plan has them or not, by what was asked before.
+  if (!goal_->handle.getGoal()->dry_run) r.plan.passes.clear();
   return r;
 }
 

@@ -59,7 +59,7 @@ std::optional<Planner::Request> Planner::next() {
 }
 
 std::shared_ptr<const PlannedJob> Planner::plan(const Request& request) {
-  if (isKept(request)) return kept_;
+  if (isKept(request) && (kept_->passes || !request.measures_passes)) return kept_;
   auto plan = std::make_shared<const PlannedJob>(makePlan(request));
   if (plan->good()) kept_ = plan;
   return plan;
@@ -77,7 +77,9 @@ PlannedJob Planner::makePlan(const Request& request) const {
     request.control->done = done;
     return !request.control->give_up;
   };
-  return planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
+  PlannedJob plan = isKept(request) ? *kept_ : planWholeJob(request.job, machine_, shapes_, request.run, {}, watch);
+  if (request.measures_passes) measurePasses(plan, watch);
+  return plan;
 }
 
 }  // namespace grinder

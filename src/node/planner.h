@@ -26,6 +26,7 @@ class Planner {
     ValidJob job;
     RunStart run{};
     std::shared_ptr<PlanControl> control{};
+    bool measures_passes = false;  ///< see measurePasses()
     /// Called once, in the planner's thread; must not block.
     std::function<void(std::shared_ptr<const PlannedJob>)> done{};
   };
@@ -44,7 +45,7 @@ class Planner {
   std::optional<Request> next();
   std::shared_ptr<const PlannedJob> plan(const Request& request);
   bool isKept(const Request& request) const;
-  PlannedJob makePlan(const Request& request) const;
+  PlannedJob makePlan(const Request& request) const;  ///< from the kept plan, if it is this job's
 
   const Machine machine_;
   const MachineShapes shapes_;

@@ -195,18 +195,18 @@ class Checker {
   std::vector<Reason> reasons_;
 };
 
-/// The wheel's wear in each tooth's deepest pass, also of a job without its passes [m].
-std::vector<double> wearOfTeeth(const ValidJob& job) {
-  return job->process().wheel_wear_per_pass > 0 ? withPasses(job).wearOfTeeth() : job.wearOfTeeth();
+/// ValidJob::wearOfTeeth(), also of a job without its passes [m].
+std::vector<double> wearInDeepestPasses(const ValidJob& job, const PlanWatch& watch) {
+  return job->process().wheel_wear_per_pass > 0 ? withPasses(job, watch).wearOfTeeth() : job.wearOfTeeth();
 }
 
 /// Adds the reliefs of a job, up to an operation, to flutes.
 /// @param flutes cutter with the flutes.
-GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last) {
+GroundCutter relievedCutterOf(const ValidJob& job, const GroundCutter& flutes, int last, const PlanWatch& watch) {
   std::vector<Reliefs> reliefs(flutes.flutes().size());
   for (int i = 1; i <= last; ++i) {
     const ValidJob relief = i == job->operation ? job : job.ofOperation(i);
-    const std::vector<double> wear = wearOfTeeth(relief);
+    const std::vector<double> wear = wearInDeepestPasses(relief, watch);
     for (std::size_t tooth = 0; tooth < wear.size(); ++tooth) {
       Reliefs& own = reliefs[flutes.teeth()[tooth].flute];
       if (own.size() >= static_cast<std::size_t>(i)) continue;  // a tooth that shares the flute has added it
@@ -225,11 +225,11 @@ int lastReliefOf(const GrindJob& job) {
 }
 
 /// @param same_wear maximum difference of the wheel's wear for teeth to share a flute [m].
-GroundCutter groundCutterOf(const ValidJob& job, double same_wear) {
+GroundCutter groundCutterOf(const ValidJob& job, double same_wear, const PlanWatch& watch) {
   if (job->process().kind != OperationKind::kFlute) {
-    return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear), lastReliefOf(*job));
+    return relievedCutterOf(job, groundCutterOf(job.flutes(), same_wear, watch), lastReliefOf(*job), watch);
   }
-  const std::vector<double> wear = wearOfTeeth(job);
+  const std::vector<double> wear = wearInDeepestPasses(job, watch);
   std::vector<Flute> flutes;
   std::vector<GroundTooth> teeth;
   const auto spiral = [&](std::size_t i) { return job.cutterOf(static_cast<int>(i)).spiral_angle; };
@@ -283,10 +283,10 @@ WheelSweep sweepOf(const ValidJob& job, int tooth, double wear, const GrindStrok
           setupOf(job, tooth), stroke};
 }
 
-GroundCutter groundCutterOf(const ValidJob& job) { return groundCutterOf(job, 0); }
+GroundCutter groundCutterOf(const ValidJob& job) { return groundCutterOf(job, 0, {}); }
 
-GroundCutter groundBefore(const ValidJob& job) {
-  return relievedCutterOf(job, groundCutterOf(job.flutes()), job->operation - 1);
+GroundCutter groundBefore(const ValidJob& job, const PlanWatch& watch) {
+  return relievedCutterOf(job, groundCutterOf(job.flutes()), job->operation - 1, watch);
 }
 
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
@@ -311,10 +311,12 @@ CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter) {
   return {range, checker.take(), figuresOf(job, sections), std::move(edges)};
 }
 
-CutterCheck checkGroundCutter(const ValidJob& job) {
+CutterCheck checkGroundCutter(const ValidJob& job, const PlanWatch& watch) {
   try {
     if (job.isStraight()) return checkGroundEnd(job);
-    return checkGroundCutter(job, groundCutterOf(job, kSameWear));
+    return checkGroundCutter(job, groundCutterOf(job, kSameWear, watch));
+  } catch (const ReasonError& error) {
+    return {std::nullopt, {error.reason()}, {}, {}};
   } catch (const std::invalid_argument& error) {
     return {std::nullopt, {otherReason(error.what())}, {}, {}};
   }

@@ -18,8 +18,8 @@ constexpr std::array<double, 3> kSectionsOfArea{0, 0.5, 1};  ///< sections whose
 constexpr int kSectionsOfVolume = 12;                        ///< as many as a simulated tool has
 
 /// What an operation finds on the tool.
-GroundCutter before(const ValidJob& job) {
-  return isRelief(job->process().kind) ? groundBefore(job) : GroundCutter(ConicalCutter(job->cutter), {}, {});
+GroundCutter before(const ValidJob& job, const PlanWatch& watch) {
+  return isRelief(job->process().kind) ? groundBefore(job, watch) : GroundCutter(ConicalCutter(job->cutter), {}, {});
 }
 
 /// Teeth from which every pass removes the same.
@@ -98,21 +98,22 @@ class RemovalCurve {
 
 using RemovalCurves = std::vector<RemovalCurve>;
 
+/// @param done see PlanWatch.
 /// @throw ReasonError if the plan is no longer wanted.
-void keepOn(const PlanWatch& watch) {
-  if (watch && !watch(0)) throw ReasonError(Reason{ReasonKind::kGivenUp});
+void keepOn(const PlanWatch& watch, double done) {
+  if (watch && !watch(done)) throw ReasonError(Reason{ReasonKind::kGivenUp});
 }
 
 /// The curves of all distinct teeth, in each of the sections that count.
 RemovalCurves curvesOf(const ValidJob& job, double deepest, const PlanWatch& watch) {
-  const GroundCutter ground = before(job);
+  const GroundCutter ground = before(job, watch);
   const double wear = job->process().wheel_wear;
   RemovalCurves curves;
   for (const AlikeTeeth& alike : alikeTeeth(job, ground)) {
     const int tooth = alike.first;
     const double angle = job->tooth_angles[static_cast<std::size_t>(tooth)], speed = axialSpeed(job, tooth);
     const auto sweep = [&](double depth) {
-      keepOn(watch);
+      keepOn(watch, 0);
       return sweepOf(job, tooth, wear, strokeOf(job, tooth, depth, wear));
     };
     for (const double part : kSectionsOfArea) {
@@ -142,7 +143,7 @@ std::vector<double> passesOf(const RemovalCurves& curves, double deepest, double
   constexpr double steps = 1e8;  // per metre: depths are multiples of 10 nm
   std::vector<double> depths;
   for (double last = 0; depths.size() < count && last < deepest;) {
-    keepOn(watch);
+    keepOn(watch, 0);
     double next = deepest;
     if (removalBetween(curves, last, deepest) > removal) {
       double within = last, beyond = deepest;
@@ -200,9 +201,9 @@ ValidJob withPasses(const ValidJob& job, const PlanWatch& watch) {
   return job.hasPasses() ? job : job.withRoughing(roughingOf(job, watch));
 }
 
-std::vector<PassRemoval> removalOfPasses(const ValidJob& job) {
+std::vector<PassRemoval> removalOfPasses(const ValidJob& job, const PlanWatch& watch) {
   if (job.isStraight() || job.depths().size() > kMaxMeasuredPasses) return {};
-  const GroundCutter ground = before(job);
+  const GroundCutter ground = before(job, watch);
   const std::vector<AlikeTeeth> teeth = alikeTeeth(job, ground);
   const std::vector<double>& depths = job.depths();
   const std::vector<double> wear = job.wearOfTeeth();
@@ -222,6 +223,7 @@ std::vector<PassRemoval> removalOfPasses(const ValidJob& job) {
     const auto number = static_cast<std::size_t>(tooth);
     const WheelSweep sweep = sweepOf(job, tooth, wear[number], strokeOf(job, tooth, depths[pass], wear[number]));
     for (std::size_t s = 0; s < sections.size(); ++s) {
+      keepOn(watch, 1);
       areas[i * sections.size() + s] = ground.areaRemovedBy(sweep, job->tooth_angles[number], sections[s]);
     }
   });

@@ -79,6 +79,31 @@ TEST(PlannedJob, IsGivenUpByItsWatch) {
   }
 }
 
+TEST(PlannedJob, HasWhatItsPassesRemoveIfThatIsAskedAndItIsGood) {
+  PlannedJob whole = planned(paper());
+  EXPECT_FALSE(whole.passes);
+  measurePasses(whole);
+  ASSERT_TRUE(whole.good());
+  const std::vector<PassRemoval> passes = removalOfPasses(whole.program->job());
+  ASSERT_EQ(whole.passes.value().size(), passes.size());
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    EXPECT_EQ((*whole.passes)[i].depth, whole.program->job().depths()[i]);
+    EXPECT_EQ((*whole.passes)[i].area, passes[i].area);
+  }
+
+  PlannedJob given_up = planned(paper());
+  measurePasses(given_up, [](double) { return false; });
+  EXPECT_EQ(given_up.fault, PlanFault::kGivenUp);
+  EXPECT_FALSE(given_up.passes);
+
+  GrindJob job = paper();
+  job.cutter.rake_angle = 20 * kDegree;
+  PlannedJob refused = planned(job);
+  measurePasses(refused);
+  EXPECT_EQ(refused.fault, PlanFault::kTool);
+  EXPECT_FALSE(refused.passes);
+}
+
 TEST(PlannedJob, TheFirstFaultCountsAndAllReasonsAreThere) {
   GrindJob job = paper();
   job.cutter.rake_angle = 20 * kDegree;  // which the set-up does not grind

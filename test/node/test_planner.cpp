@@ -108,6 +108,18 @@ TEST_F(PlannerTest, KeepsNoPlanOfAReliefThatIsNowTheLast) {
   EXPECT_EQ(plan(ValidJob(job))->fault, PlanFault::kTool);
 }
 
+TEST_F(PlannerTest, MeasuresThePassesOnceWhereAskedAlsoOfAKeptPlan) {
+  const auto measured = [](Planner::Request& request) { request.measures_passes = true; };
+  const auto kept = plan(paper_);
+  ASSERT_TRUE(kept->good());
+  EXPECT_FALSE(kept->passes);
+  const auto with_passes = plan(paper_, measured);
+  EXPECT_EQ(with_passes->program, kept->program);
+  ASSERT_EQ(with_passes->passes.value().size(), paper_.depths().size());
+  EXPECT_EQ(plan(paper_, measured), with_passes);
+  EXPECT_EQ(plan(paper_), with_passes);
+}
+
 TEST_F(PlannerTest, OneJobAtATimeWhichReportsItsProgressAndCanBeGivenUpAsItIsAtTheEnd) {
   Asked first(endless()), second(paper_), third(paper_), last(endless());
   ASSERT_TRUE(planner_.submit(first.request));

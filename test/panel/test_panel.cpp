@@ -417,13 +417,18 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
     stage.planned.plan.closest_x = 0.037;
     stage.planned.plan.needs = toMessage({kNoZeros});
     stage.planned.plan.shank_cut = 0.375e-3;
+    stage.planned.plan.passes.resize(2);
+    for (auto& pass : stage.planned.plan.passes) pass.depth = 1.2e-3;
+    stage.planned.plan.passes[0].area = 0.5e-6;
+    stage.planned.plan.passes[0].rate = 3e-9;
   });
   panel.press("plan");
   const std::string good =
       "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
       "To start it: X was never set.\nThe feed is never reached." +
-      shank;
+      shank + "\nPass 1: 1.2000 mm deep, 0.5 mm^2 of a section, 3 mm^3/s.\nPass 2: 1.2000 mm deep, spark-out.";
   WAIT_FOR(report() == good);
+  panel.picture("planned_with_passes");
   const std::vector<std::string> reasons{
       "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
       "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -158,6 +159,37 @@ TEST(PassRemoval, LeavesOutRoughingBeforeTheWheelTouches) {
   GrindJob slot = byRemoval(slots(-6 * kMillimetre), 3, 0);
   slot.process().finish_infeed = slot.process().depth - 0.5 * kMillimetre;
   EXPECT_EQ(withLaws(ValidJob(slot)).depths(), (std::vector<double>{slot.process().depth, slot.process().depth}));
+}
+
+/// The reason for which a computation ends, once its watch has said so often that the plan is wanted.
+template <typename Computation>
+ReasonKind stopped(int wanted, const Computation& computation) {
+  std::atomic<int> asked{0};
+  try {
+    computation([&](double) { return ++asked <= wanted; });
+  } catch (const ReasonError& error) {
+    return error.reason().kind;
+  }
+  return ReasonKind::kOther;
+}
+
+TEST(PassRemoval, IsGivenUpByItsWatch) {
+  const ValidJob job(slots(-1.5 * kMillimetre));
+  for (const int wanted : {0, 40}) {
+    EXPECT_EQ(stopped(wanted, [&](const PlanWatch& watch) { removalOfPasses(job, watch); }), ReasonKind::kGivenUp);
+  }
+}
+
+// The wear of an earlier relief follows from its passes.
+TEST(PassRemoval, OfAnEarlierReliefIsGivenUpByTheWatch) {
+  GrindJob asked = readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary");
+  asked.operations[1] = byRemoval(asked.ofOperation(1), 2, 0).process();
+  asked.operations[1].wheel_wear_per_pass = 1e-7;
+  const ValidJob job = withLaws(ValidJob(asked));
+  const auto before = [&](const PlanWatch& watch) { groundBefore(job, watch); };
+  EXPECT_EQ(stopped(10, before), ReasonKind::kGivenUp);
+  const auto check = [&](const PlanWatch& watch) { throw ReasonError(checkGroundCutter(job, watch).reasons.at(0)); };
+  EXPECT_EQ(stopped(10, check), ReasonKind::kGivenUp);
 }
 
 }  // namespace test_pass_removal

@@ -5,6 +5,7 @@
 #include "flute_grinder/machine/loop_fault.h"
 #include "flute_grinder/tool/tool_figure.h"
 
+#include <cstddef>
 #include <string>
 
 /// @file
@@ -20,6 +21,10 @@ int errorCode(FaultKind fault);
 flute_grinder::GrindResult resultOf(const PlannedJob& plan);
 
 GroundFigure fromMessage(const flute_grinder::ToolFigure& message);
+
+/// A pass of the plan, as "0.4000 mm deep, 0.31 mm^2 of a section, 2.1 mm^3/s"; or that it removes nothing.
+/// @param number index in PlanReport::passes.
+std::string passText(const flute_grinder::PlanReport& plan, std::size_t number);
 
 /// "wheel and blank, 0.512 mm at X 3.000 mm"; empty if it was not checked.
 std::string closestText(const flute_grinder::PlanReport& plan);

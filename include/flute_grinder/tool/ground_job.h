@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/reason.h"
+#include "flute_grinder/motion/job_plan.h"
 #include "flute_grinder/tool/ground_cutter.h"
 #include "flute_grinder/tool/ground_edge.h"
 #include "flute_grinder/tool/tool_figure.h"
@@ -42,7 +43,11 @@ GroundCutter groundCutterOf(const ValidJob& job);
 
 /// The planned cutter before a relief, from the preceding operations.
 /// @param job job of a relief, from withLaws().
-GroundCutter groundBefore(const ValidJob& job);
+/// @param watch if given, it may stop the computation, which takes long where an earlier relief is roughed by removal
+/// and the wheel wears in it: see withPasses().
+/// @throw ReasonError if it was stopped.
+/// @throw like groundCutterOf() and withPasses().
+GroundCutter groundBefore(const ValidJob& job, const PlanWatch& watch = {});
 
 /// The results of checking a ground cutter.
 struct CutterCheck {
@@ -62,7 +67,8 @@ struct CutterCheck {
 CutterCheck checkGroundCutter(const ValidJob& job, const GroundCutter& cutter);
 
 /// Checks the cutter that a job grinds; teeth share a flute if the difference of the wheel's wear between them does not
-/// matter. Corner radii that do not fit the wheel's profile are also a reason.
-CutterCheck checkGroundCutter(const ValidJob& job);
+/// matter. Corner radii that do not fit the wheel's profile are also a reason, and so is a stop.
+/// @param watch see groundBefore().
+CutterCheck checkGroundCutter(const ValidJob& job, const PlanWatch& watch = {});
 
 }  // namespace grinder

@@ -20,9 +20,11 @@ constexpr std::size_t kMaxMeasuredPasses = 100;  ///< passes of a tooth above wh
 
 /// Measures what each pass of a tooth removes. Takes some tenths of a second.
 /// @param job job from withLaws().
+/// @param watch if given, it may stop the computation, within some milliseconds; several threads call it.
 /// @return one for each of ValidJob::depths(); empty for an operation on the end, and for too many passes.
+/// @throw ReasonError if it was stopped.
 /// @throw like wheelOf().
-std::vector<PassRemoval> removalOfPasses(const ValidJob& job);
+std::vector<PassRemoval> removalOfPasses(const ValidJob& job, const PlanWatch& watch = {});
 
 /// The job with its passes. Where these follow from what they remove, the roughing passes remove equal amounts per
 /// second, each measured where it is largest: at the flute's ends or amid it. A pass that would remove nothing is left

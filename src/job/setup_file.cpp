@@ -65,11 +65,8 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
 std::vector<std::string> solvedFor(const GrindJob& job) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& key, const std::string& value) { lines.push_back(key + " = " + value); };
-  const auto is_of_short = [](const JobField& field) {
-    return std::string_view(field.path).find("_short_") != std::string_view::npos;
-  };
   visitJobFields([&](const JobField& field, auto of) {
-    if (isSolvedFor(field, job.process().kind) && !is_of_short(field)) add(field.file_key, asked(of(job), field.unit));
+    if (isSolvedFor(field, job.process().kind)) add(field.file_key, asked(of(job), field.unit));
   });
   if (!job.spiral_angles.empty()) add("cutter.spiral_angles_deg", asked(job.spiral_angles));
   add("cutter.cut", toString(job.cutter.cut));
@@ -80,15 +77,9 @@ std::vector<std::string> solvedFor(const GrindJob& job) {
     add(element("process.wheel.points_mm", i), asked(w, Unit::kMetre) + ", " + asked(radius, Unit::kMetre));
   }
   if (job.process().kind == OperationKind::kFlute) add("process.z_law", toString(job.process().z_law));
-  // Where there are no short teeth, nothing is said of them.
-  if (isStraight(job.process().kind) && job.cutter.end_center_teeth > 0) {
+  if (isStraight(job.process().kind)) {
     add(fieldName("cutter.end_center_teeth"), std::to_string(job.cutter.end_center_teeth));
   }
-  visitJobFields([&](const JobField& field, auto of) {
-    if (isSolvedFor(field, job.process().kind) && is_of_short(field) && of(job) != 0) {
-      add(field.file_key, asked(of(job), field.unit));
-    }
-  });
   return lines;
 }
 

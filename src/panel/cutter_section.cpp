@@ -29,7 +29,7 @@ QString figureLine(const GroundFigure& figure, bool good) {
          (asked.isEmpty() ? "" : QString(" (%1 ± %2)").arg(asked).arg(figure.tolerance / shopScale(row.unit)));
 }
 
-/// The figures of the end that an operation leaves, whatever the section.
+/// The figures of the end that an operation leaves.
 QString figuresOfEnd(const ValidJob& job) {
   QStringList lines;
   for (const GroundFigure& figure : checkGroundCutter(job).figures) lines << figureLine(figure, isAsAsked(figure));
@@ -69,6 +69,11 @@ bool CutterSection::hasLand(const ToothSection& tooth) const { return !tooth.flu
 
 CutterSection cutterSection(const ValidJob& job, double x) {
   const GroundCutter cutter = groundCutterOf(job);
+  if (job.isStraight()) {
+    CutterSection made{job, {}};
+    made.end = endView(cutter, endVolumesOf(job));
+    return made;
+  }
   CutterSection made{job, cutter.section(x)};
   made.asked_core = std::max(0.0, made.ground.radius - askedDepth(*job, x));
   const std::size_t teeth = job->tooth_angles.size();

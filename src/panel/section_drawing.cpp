@@ -1,5 +1,6 @@
 #include "panel/section_drawing.h"
 
+#include "panel/end_drawing.h"
 #include "panel/text_view.h"
 
 #include <QPainter>
@@ -184,11 +185,13 @@ class Painting {
 
 SectionDrawing::SectionDrawing(QWidget* parent) : QWidget(parent) {
   setMinimumHeight(5 * fontMetrics().lineSpacing());
-  setToolTip("Seen from the shank, turned until the first tooth's edge is at the top");
+  setSection(nullptr);
 }
 
 void SectionDrawing::setSection(std::shared_ptr<const CutterSection> section) {
   section_ = std::move(section);
+  setToolTip(section_ && section_->end ? "The end, seen along the axis; the first tooth's edge is at the top"
+                                       : "Seen from the shank, turned until the first tooth's edge is at the top");
   update();
 }
 
@@ -196,7 +199,10 @@ void SectionDrawing::paintEvent(QPaintEvent* /*event*/) {
   QPainter painter(this);
   painter.setRenderHint(QPainter::Antialiasing);
   painter.fillRect(rect(), kPaper);
-  if (section_) Painting(painter, *section_, QRectF(rect()).adjusted(3, 2, -3, -2)).paint();
+  const QRectF sheet = QRectF(rect()).adjusted(3, 2, -3, -2);
+  if (!section_) return;
+  if (section_->end) return paintEnd(painter, sheet, section_->job, *section_->end);
+  Painting(painter, *section_, sheet).paint();
 }
 
 }  // namespace grinder

@@ -61,13 +61,15 @@ SectionView::SectionView(QWidget* parent)
 void SectionView::refresh(const GrinderView& view, const Job& job) {
   if (!isVisible()) return;
   if (job != job_) setJob(job);
-  x_->setEnabled(job_ && !follow_->isChecked());
+  const bool has_sections = job_ && !isStraight(job_->process().kind);
+  x_->setEnabled(has_sections && !follow_->isChecked());
+  follow_->setEnabled(has_sections);
   const QString nothing = whyNothing(view);
   if (!nothing.isEmpty()) {
     wanted_.reset();
     return show(nullptr, nothing);
   }
-  if (follow_->isChecked()) follow((*view.work_position)[kX]);
+  if (has_sections && follow_->isChecked()) follow((*view.work_position)[kX]);
   if (isReady(computing_)) take(computing_.get());
   const Wanted now{job_, x_->value(), with_law_};
   if (computing_.valid() || now == wanted_ || Clock::now() < earliest_) return;
@@ -113,6 +115,7 @@ void SectionView::setJob(const Job& job) {
 /// Why no section can be shown; empty if one can.
 QString SectionView::whyNothing(const GrinderView& view) const {
   if (!job_) return "No job is chosen, none of its operations is, or its file has an error.";
+  if (isStraight(job_->process().kind)) return "";
   if (!follow_->isChecked()) return x_->isGood() ? "" : "Allowed X: " + x_->allowed() + ".";
   if (!view.work_position || !std::isfinite((*view.work_position)[kX])) return "No position comes from the grinder.";
   if (!view.state || !isInJob(static_cast<MachineState>(view.state->state))) return "";

@@ -18,8 +18,8 @@
 namespace grinder {
 
 /// The part of the panel that shows a section of the cutter that the chosen job grinds, at a chosen X or where the
-/// wheel stands. Sections are computed one at a time in a thread of their own, for at most a tenth of the time, and
-/// never while this widget is hidden.
+/// wheel stands, or its end. Sections are computed one at a time in a thread of their own, for at most a tenth of the
+/// time, and never while this widget is hidden.
 class SectionView : public QWidget {
   Q_OBJECT
 

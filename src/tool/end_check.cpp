@@ -14,6 +14,7 @@ namespace grinder {
 namespace {
 
 constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
+constexpr int kHeels = 12;           ///< number of distances at which a heel is measured, since a fin is short
 constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
 constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
 constexpr double kTouched = 5e-6;    ///< length of a periphery's edge, and height of a heel, that do not count [m]
@@ -26,7 +27,6 @@ struct EndPlace {
   EndSection at;
   FigureValue uncut, short_from;  ///< diameter outside which the edge is whole; of a short tooth, radius [m]
   double periphery = 0;           ///< see ToolFigure::kPeripheryTaken [m]
-  FigureValue drag;               ///< by which the end stands in front of the tooth's edge behind it [m]
   std::optional<ChamferFigures> chamfer;
 };
 
@@ -63,7 +63,7 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
     {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
-    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.drag; },
+    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace&) { return FigureValue(); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kShortFrom, OperationKind::kGash, [](const EndPlace& p) { return p.short_from; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_short_from; }},
@@ -135,9 +135,9 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}};
+    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}};
     const double radius = cutter_.end_diameter / 2;
-    const bool has_edge = hasEdges(job_, next_), all_flanks = hasAllFlanks(*job_);
+    const bool has_edge = hasEdges(job_, next_);
     const bool is_short = job_->isShort(static_cast<int>(tooth));
     const double whole = has_edge ? end_.wholeFrom(tooth).value_or(radius) : 0;
     (is_short ? place.short_from : place.uncut) = is_short ? whole : 2 * whole;
@@ -149,12 +149,11 @@ class EndCheck {
       const double r = inner + (outer - inner) * i / (kEndSections - 1);
       place.at = has_edge ? end_.section(tooth, r) : EndSection{};
       place.at.r = r;
-      place.drag = place.at.edge && all_flanks ? FigureValue(drag(tooth, place.at)) : std::nullopt;
       if (!has_edge) place.at.rake = end_.rake(tooth, r, (radius - r) * std::tan(cutter_.end_dish), 0);
       take(place, tooth);
     }
     if (!(inner < outer)) take(place, tooth);
-    if (cutter_.end_center_teeth > 0 && !is_short) measureCenter(tooth, inner);
+    if (hasAllFlanks(*job_)) measureHeel(tooth, inner, outer);
   }
 
   CutterCheck result() {
@@ -174,15 +173,18 @@ class EndCheck {
   }
 
   /// Where a tooth to the centre has no edge, nothing may stand in front of where that would be.
-  void measureCenter(std::size_t tooth, double inner) {
+  void measureHeel(std::size_t tooth, double inner, double outer) {
     const auto heel_drag = std::find_if(std::begin(kEndMeasurements), std::end(kEndMeasurements),
                                         [](const EndMeasurement& m) { return m.figure == ToolFigure::kHeelDrag; });
-    if (!isAsked(*heel_drag, job_, next_)) return;
-    EndSection at;
-    for (int i = 1; i <= kEndSections; ++i) {
-      at.r = inner * i / (kEndSections + 1);
-      at.edge = (cutter_.end_diameter / 2 - at.r) * std::tan(cutter_.end_dish);
-      add(*heel_drag, drag(tooth, at), at.r, static_cast<int>(tooth));
+    const bool to_axis = cutter_.end_center_teeth > 0 && !job_->isShort(static_cast<int>(tooth));
+    const double first = to_axis ? outer / kHeels : inner;
+    for (int i = 0; i < kHeels && first < outer; ++i) {
+      const double r = first + (outer - first) * i / (kHeels - 1);
+      EndSection at;
+      at.r = r;
+      at.edge = (cutter_.end_diameter / 2 - r) * std::tan(cutter_.end_dish);
+      if (r >= inner) at = end_.edgeAt(tooth, r);
+      if (at.edge) add(*heel_drag, drag(tooth, at), r, static_cast<int>(tooth));
     }
   }
 

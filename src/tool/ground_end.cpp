@@ -20,6 +20,7 @@ constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake
 /// Width of what may be left of the blank's end in front of a primary flank, per radius: a blank without stock is not
 /// quite reached where an axis is off by the rounding of its encoder.
 constexpr double kBlunt = 2e-3;
+constexpr int kFacesInStep = 8;                   ///< most faces that a step along a heel goes over
 constexpr double kHeelStep = 3 * units::kDegree;  ///< greatest step along a heel
 constexpr double kInnermost = 1e-3;               ///< least radius at which an edge is looked for, per radius
 
@@ -117,15 +118,21 @@ double GroundEnd::slope(std::size_t tooth, double r, double behind) const {
   return (surface(tooth, r, behind + 2 * step).x - surface(tooth, r, behind + step).x) / step;
 }
 
-EndSection GroundEnd::section(std::size_t tooth, double r) const {
+EndSection GroundEnd::edgeAt(std::size_t tooth, double r) const {
   EndSection section;
   section.r = r;
   const std::optional<double> behind = edge(tooth, OperationKind::kPrimaryEnd, r);
   if (!behind) return section;
   section.behind = *behind;
   section.edge = surface(tooth, r, *behind).x;
+  return section;
+}
+
+EndSection GroundEnd::section(std::size_t tooth, double r) const {
+  EndSection section = edgeAt(tooth, r);
+  if (!section.edge) return section;
   measureFlanks(tooth, section);
-  section.rake = rake(tooth, r, *section.edge, *behind);
+  section.rake = rake(tooth, r, *section.edge, section.behind);
   return section;
 }
 
@@ -148,11 +155,20 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
 }
 
 double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double pitch) const {
-  double drag = 0;
   const double step = std::min(kHeelStep, kStep * radius_ / section.r), edge = std::atan2(section.behind, section.r);
-  for (double turn = edge + kNearby * radius_ / section.r; turn < pitch - step; turn += step) {
-    const double x = surface(rayAt(section.r, tooth_angles_[tooth] + hand_ * turn)).x;
-    drag = std::max(drag, *section.edge - x);
+  const auto at = [&](double turn) { return surface(rayAt(section.r, tooth_angles_[tooth] + hand_ * turn)); };
+  double drag = 0, turn = edge + kNearby * radius_ / section.r;
+  for (Surface before = at(turn); turn < pitch - step; turn += step) {
+    const Surface here = at(turn);
+    drag = std::max(drag, *section.edge - here.x);
+    // A fin may be narrower than a step: it begins where a face ends.
+    double from = turn - step;
+    for (int faces = 0; before.cut != here.cut && faces < kFacesInStep; ++faces) {
+      from = changeBetween(from, turn, [&](double to) { return at(to).cut != before.cut; }) + kNearby;
+      before = at(from);
+      drag = std::max(drag, *section.edge - before.x);
+    }
+    before = here;
   }
   return drag;
 }

@@ -47,6 +47,8 @@ class GroundEnd {
 
   /// @param r distance from the axis, positive [m].
   EndSection section(std::size_t tooth, double r) const;
+  /// The same with the edge alone.
+  EndSection edgeAt(std::size_t tooth, double r) const;
 
   /// The smallest radius outside which a tooth's edge is whole, up to the corner; nothing if it is not whole even there
   /// [m].
@@ -63,7 +65,7 @@ class GroundEnd {
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
   /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.
-  /// What is narrower than a fiftieth of the radius may be missed.
+  /// What is narrower than a fiftieth of the radius is found only where a face ends.
   /// @param section of the tooth, with an edge.
   /// @param pitch angle to the next tooth [rad].
   double heelDrag(std::size_t tooth, const EndSection& section, double pitch) const;

@@ -106,8 +106,8 @@ TEST(StraightStrokes, GoOnByTheWearOfTheFaceAlone) {
       SCOPED_TRACE(std::string(toString(kind)) + " " + toString(cut));
       const auto strokesWith = [&](double wear) {
         std::vector<Axes> ends;
-        for (const Move& move :
-             GrindProgram(validEndJob(kind, cut, wear), plainMachine(), plainMachine().park).moves()) {
+        const GrindProgram program(validEndJob(kind, cut, wear), plainMachine(), plainMachine().park);
+        for (const Move& move : program.moves()) {
           if (move.kind == MoveKind::kApproach || move.kind == MoveKind::kStroke) ends.push_back(move.to);
         }
         return ends;

@@ -55,6 +55,36 @@ TEST_F(SectionOnStage, AReliefHasItsClearanceAndWidth) {
   panel.picture("section_secondary");
 }
 
+TEST_F(SectionOnStage, OfAnOperationOnTheEndIsItsEnd) {
+  Panel panel("cell/stage", QString(kPaper).replace("test/jobs/paper", "jobs/end_mill_d10_t4"));
+  stage.be("ready");
+  const auto pixels = [&](const char* colour) {
+    const QImage image = panel.the<QWidget>("section").grab().toImage();
+    int count = 0;
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) count += image.pixelColor(x, y) == QColor(colour) ? 1 : 0;
+    }
+    return count;
+  };
+  const char *gash = "#8d9bb0", *secondary = "#b9c6d6", *chamfer = "#e0c978";
+  const auto open = [&](const char* operation) {
+    panel.openTab("Job");
+    panel.chooseOperation(operation);
+    openSection(panel);
+  };
+  open("4 gash");
+  WAIT_FOR(shows(panel, "Gash rake 3.000 deg") && pixels(gash) > 100);
+  EXPECT_FALSE(panel.enabled("section_x"));
+  EXPECT_FALSE(panel.enabled("follow_wheel"));
+  EXPECT_EQ(pixels(secondary), 0);
+  open("7 chamfer");
+  WAIT_FOR(shows(panel, "Chamfer width") && pixels(chamfer) > 100);
+  EXPECT_GT(pixels(secondary), pixels(gash)) << "it took most of it";
+  panel.picture("section_end");
+  open("1 flute");
+  WAIT_FOR(panel.enabled("section_x") && shows(panel, "Rake "));
+}
+
 TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {
   Panel panel("cell/stage", QString(kPaper).replace("test/jobs/paper", "jobs/unequal_d12_t4"));
   stage.be("ready", panel);

@@ -62,7 +62,7 @@ MESSAGES = {
     'src/node/state_file.cpp': (),
     'src/node/offset_server.cpp': ('wheel on the spindle:', 'a tool was clamped, by'),
     'src/node/offset_store.cpp': (),
-    'src/messages/plan_result.cpp': ('mm at X',),
+    'src/messages/plan_result.cpp': ('mm at X', 'mm deep,', 'removes nothing'),
     'src/node/probe_server.cpp': (),
     'src/node/prober.cpp': (),
     'src/node/probing_cycles.cpp': (),

@@ -122,6 +122,9 @@ void printPlan(const flute_grinder::PlanReport& plan) {
     std::printf("%-20s %.3f mm more than the infeed, by the first pass beyond the flute's end\n",
                 "cut out of the shank", plan.shank_cut / kMillimetre);
   }
+  if (!plan.passes.empty()) {
+    std::printf("%-20s depth, area removed from a section of a tooth, removal rate\n", "passes");
+  }
   for (std::size_t i = 0; i < plan.passes.size(); ++i) {
     std::printf("%-20s %s\n", format("pass %zu", i + 1).c_str(), passText(plan, i).c_str());
   }

@@ -106,13 +106,12 @@ GroundFigure fromMessage(const flute_grinder::ToolFigure& m) {
 
 std::string passText(const flute_grinder::PlanReport& plan, std::size_t number) {
   const flute_grinder::PassRemoval& pass = plan.passes[number];
-  const std::string deep = format("%.4f mm deep, ", pass.depth / kMillimetre);
+  const std::string depth = format("%.4f mm, ", pass.depth / kMillimetre);
   if (pass.area > 0) {
-    return deep + format("%.4g mm^2 of a section, %.3g mm^3/s", pass.area / units::kMillimetre2,
-                         pass.rate / units::kMillimetre3);
+    return depth + format("%.4g mm^2, %.3g mm^3/s", pass.area / units::kMillimetre2, pass.rate / units::kMillimetre3);
   }
   const bool is_spark_out = number > 0 && pass.depth == plan.passes[number - 1].depth;
-  return deep + (is_spark_out ? "spark-out" : "removes nothing");
+  return depth + (is_spark_out ? "spark-out" : "removes nothing");
 }
 
 std::string closestText(const flute_grinder::PlanReport& plan) {

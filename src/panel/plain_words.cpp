@@ -135,7 +135,8 @@ std::string describe(const flute_grinder::GrindResult& planned) {
     text +=
         format("\nThe first pass cuts %.3f mm more than its infeed out of the shank.", plan.shank_cut / kMillimetre);
   }
-  for (std::size_t i = 0; i < plan.passes.size(); ++i) text += format("\nPass %zu: ", i + 1) + passText(plan, i) + ".";
+  if (!plan.passes.empty()) text += "\nPasses: depth, area of a section, rate";
+  for (std::size_t i = 0; i < plan.passes.size(); ++i) text += format("\n%zu: ", i + 1) + passText(plan, i);
   return text;
 }
 

@@ -221,6 +221,7 @@ std::vector<PassRemoval> removalOfPasses(const ValidJob& job, const PlanWatch& w
     const std::size_t pass = i / teeth.size(), one = i % teeth.size();
     const int tooth = teeth[one].first;
     const auto number = static_cast<std::size_t>(tooth);
+    keepOn(watch, 1);
     const WheelSweep sweep = sweepOf(job, tooth, wear[number], strokeOf(job, tooth, depths[pass], wear[number]));
     for (std::size_t s = 0; s < sections.size(); ++s) {
       keepOn(watch, 1);

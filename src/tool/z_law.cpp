@@ -51,6 +51,27 @@ ZCorrection correctionOf(const ValidJob& job, int tooth, const PlanWatch& watch)
   throw ReasonError(reason);
 }
 
+/// The job of flutes with its law of Z.
+ValidJob withLawOfZ(const ValidJob& job, const PlanWatch& watch) {
+  if (job->process().z_law == ZLaw::kPublished) return job;
+  const ValidJob published =
+      ValidJob(roundedOff(*job)).withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
+  std::map<double, ZCorrection> by_spiral;
+  std::vector<ZCorrection> corrections;
+  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
+    const auto [place, is_new] = by_spiral.try_emplace(published.cutterOf(tooth).spiral_angle);
+    if (is_new) place->second = correctionOf(published, tooth, watch);
+    corrections.push_back(place->second);
+  }
+  return job.withZCorrections(std::move(corrections));
+}
+
+/// The flutes under another operation. Only the wheel's wear in them depends on their passes.
+ValidJob flutesUnder(const ValidJob& job, const PlanWatch& watch) {
+  const ValidJob flutes = withLawOfZ(ValidJob(job->ofOperation(0)), watch);
+  return flutes->process().wheel_wear_per_pass > 0 ? withPasses(flutes, watch) : flutes;
+}
+
 }  // namespace
 
 std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
@@ -84,21 +105,9 @@ std::vector<EdgeHelix> edgesOf(const ValidJob& flutes) {
 }
 
 ValidJob withLaws(const ValidJob& job, const PlanWatch& watch) {
-  if (job->process().kind != OperationKind::kFlute) {
-    const ValidJob flutes = withLaws(ValidJob(job->ofOperation(0)), watch);
-    return withPasses(job.withEdges(flutes, edgesOf(flutes)), watch);
-  }
-  if (job->process().z_law == ZLaw::kPublished) return withPasses(job, watch);
-  const ValidJob published =
-      ValidJob(roundedOff(*job)).withZCorrections(std::vector<ZCorrection>(job->tooth_angles.size()));
-  std::map<double, ZCorrection> by_spiral;
-  std::vector<ZCorrection> corrections;
-  for (int tooth = 0; tooth < job.teeth(); ++tooth) {
-    const auto [place, is_new] = by_spiral.try_emplace(published.cutterOf(tooth).spiral_angle);
-    if (is_new) place->second = correctionOf(published, tooth, watch);
-    corrections.push_back(place->second);
-  }
-  return withPasses(job.withZCorrections(std::move(corrections)), watch);
+  if (job->process().kind == OperationKind::kFlute) return withPasses(withLawOfZ(job, watch), watch);
+  const ValidJob flutes = flutesUnder(job, watch);
+  return withPasses(job.withEdges(flutes, edgesOf(flutes)), watch);
 }
 
 }  // namespace grinder

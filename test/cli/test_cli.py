@@ -94,7 +94,7 @@ class TestPlan(CommandLine):
         self.assertAlmostEqual(reported['shank_cut_mm'], 8 - 5 - 30 * math.tan(5 * DEG), delta=1e-9)
         self.assertRegex(printed, r"cut out of the shank 0\.375 mm more than the infeed, by the first pass beyond the flute's end")
         for number, removed in enumerate(reported['passes'], 1):
-            self.assertIn('pass %-15d %.4f mm deep, %.4g mm^2 of a section, %.3g mm^3/s\n' % (
+            self.assertIn('pass %-15d %.4f mm, %.4g mm^2, %.3g mm^3/s\n' % (
                 number, removed['depth_mm'], removed['area_mm2'], removed['rate_mm3_s']), printed)
         self.assertEqual(number, 1)
 

@@ -107,7 +107,7 @@ class TestTool(BagTest):
         text = pathlib.Path(gc.package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
         # In two passes, and fast.
         for old, new in (('feed_mm_min: 700', 'feed_mm_min: 2000'), ('feed_mm_min: 300', 'feed_mm_min: 1000'),
-                         (' infeed_mm: 0.05', ' infeed_mm: 2'), (' infeed_mm: 0.4', ' infeed_mm: 2'),
+                         (' infeed_mm: 0.1', ' infeed_mm: 2'), (' roughing_passes: 6', ' infeed_mm: 2'), (' roughing_passes: 3', ' infeed_mm: 2'),
                          ('../wheels', gc.package_file('wheels')), ('file: taper', 'file: ' + gc.package_file('jobs/taper'))):
             self.assertIn(old, text)
             text = text.replace(old, new)

@@ -15,9 +15,9 @@ TEST(PlanResult, HasWhatThePassesRemoveInSiUnitsAndInWords) {
   EXPECT_EQ(report.passes[1].area, 0.31254e-6);
   EXPECT_EQ(report.passes[1].rate, 2.1356e-9);
   EXPECT_EQ(report.passes[1].volume, 40e-9);
-  EXPECT_EQ(passText(report, 0), "0.4000 mm deep, removes nothing");
-  EXPECT_EQ(passText(report, 1), "0.8000 mm deep, 0.3125 mm^2 of a section, 2.14 mm^3/s");
-  EXPECT_EQ(passText(report, 2), "0.8000 mm deep, spark-out");
+  EXPECT_EQ(passText(report, 0), "0.4000 mm, removes nothing");
+  EXPECT_EQ(passText(report, 1), "0.8000 mm, 0.3125 mm^2, 2.14 mm^3/s");
+  EXPECT_EQ(passText(report, 2), "0.8000 mm, spark-out");
 }
 
 }  // namespace test_plan_result

@@ -128,7 +128,7 @@ def temp_folder(clean_up):
 def reamer_file(path):
     """Writes jobs/taper_reamer_d6_t6.yaml to `path`, with reliefs that are over soon: in one pass each, at ten times the feed."""
     text = pathlib.Path(package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
-    for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.05', ' infeed_mm: 2'),
+    for old, new in (('feed_mm_min: 300', 'feed_mm_min: 3000'), (' infeed_mm: 0.1', ' infeed_mm: 2'), (' roughing_passes: 6', ' infeed_mm: 2'),
                      ('finish_infeed_mm: 0.01', 'finish_infeed_mm: 0'), ('../wheels', package_file('wheels')),
                      ('file: taper', 'file: ' + package_file('jobs/taper'))):
         assert old in text, old
@@ -146,6 +146,7 @@ def end_file(path, name):
     kinds = ('flute', None), ('gash', None), ('end', 'primary')
     mill['operations'] = [o for o in mill['operations'] if (o['kind'], o.get('relief')) in kinds]
     for operation in mill['operations']:
+        operation.pop('roughing_passes', None)
         operation.update(feed_mm_min=1000, infeed_mm=6, finish_infeed_mm=0, spark_out=0, clearance_mm=1)
         for part in ('wheel', 'setup'):
             if 'file' in operation[part]:

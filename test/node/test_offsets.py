@@ -275,7 +275,7 @@ class TestToolOfSeveralOperations(OffsetsTest):
 
     def test_each_wants_its_wheel_its_zero_points_and_the_a_of_its_flutes(self):
         self.job = gc.reamer_file(os.path.join(self.folder, 'reamer.yaml'))
-        text = open(self.job).read().replace('feed_mm_min: 700', 'feed_mm_min: 7000').replace('infeed_mm: 0.4', 'infeed_mm: 2')
+        text = open(self.job).read().replace('feed_mm_min: 700', 'feed_mm_min: 7000').replace('roughing_passes: 3', 'infeed_mm: 2')
         with open(self.job, 'w') as file:
             file.write(text)
         self.grind(0, 'confirm-swivel', '13.104')

@@ -426,7 +426,7 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
   const std::string good =
       "Takes 7.0 s.\nClosest: wheel and collet, 1.421 mm at X 37.000 mm.\n"
       "To start it: X was never set.\nThe feed is never reached." +
-      shank + "\nPass 1: 1.2000 mm deep, 0.5 mm^2 of a section, 3 mm^3/s.\nPass 2: 1.2000 mm deep, spark-out.";
+      shank + "\nPasses: depth, area of a section, rate\n1: 1.2000 mm, 0.5 mm^2, 3 mm^3/s\n2: 1.2000 mm, spark-out";
   WAIT_FOR(report() == good);
   panel.picture("planned_with_passes");
   const std::vector<std::string> reasons{

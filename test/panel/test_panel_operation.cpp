@@ -103,6 +103,7 @@ TEST_F(Operation, IsNumberedByItsPlaceAndChosenAnewWithOtherKinds) {
   const QByteArray relief = lastOperation();
   QByteArray gash = relief;
   gash.replace("kind: relief\n    relief: secondary\n", "kind: gash\n    angle_deg: 30\n    past_mm: 0\n");
+  gash.replace("roughing_passes: 6", "infeed_mm: 0.05");
   gash.replace("{file: taper_reamer_d6_t6.setup.yaml}", "{swivel_deg: 0, height_mm: 0}");
   changedJob(kReamer, copy, {{relief, gash}, {"  second_clearance_deg: 22\n", "  end: {rake_tolerance_deg: 1}\n"}});
   panel.click("start");

@@ -22,7 +22,7 @@ flute_grinder::GrindResult resultOf(const PlannedJob& plan);
 
 GroundFigure fromMessage(const flute_grinder::ToolFigure& message);
 
-/// A pass of the plan, as "0.4000 mm deep, 0.31 mm^2 of a section, 2.1 mm^3/s"; or that it removes nothing.
+/// Depth, area and rate of a pass, as "0.4000 mm, 0.31 mm^2, 2.1 mm^3/s"; or the depth, and that it removes nothing.
 /// @param number index in PlanReport::passes.
 std::string passText(const flute_grinder::PlanReport& plan, std::size_t number);
 

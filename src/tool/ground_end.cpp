@@ -20,6 +20,7 @@ constexpr double kRakeDepth = 0.02;  ///< depth below the edge at which the rake
 /// Width of what may be left of the blank's end in front of a primary flank, per radius: a blank without stock is not
 /// quite reached where an axis is off by the rounding of its encoder.
 constexpr double kBlunt = 2e-3;
+constexpr int kHalvings = 13;                     ///< of a step, to far less than a blunt edge or a fin
 constexpr int kFacesInStep = 8;                   ///< most faces that a step along a heel goes over
 constexpr double kHeelStep = 3 * units::kDegree;  ///< greatest step along a heel
 constexpr double kInnermost = 1e-3;               ///< least radius at which an edge is looked for, per radius
@@ -95,14 +96,14 @@ bool GroundEnd::isFlank(std::size_t tooth, OperationKind kind, double r, double 
   return isOf(surface(tooth, r, behind).cut, tooth, kind);
 }
 
-std::optional<double> GroundEnd::edge(std::size_t tooth, OperationKind kind, double r) const {
+std::optional<double> GroundEnd::edge(std::size_t tooth, OperationKind kind, double r, int halvings) const {
   const auto is_flank = [&](double behind) { return isFlank(tooth, kind, r, behind); };
   const double step = kStep * radius_;
   double before = -step;
   if (is_flank(before)) return std::nullopt;
   for (double behind = kNearby * radius_; behind < kFarthest * radius_; behind += step) {
     if (is_flank(behind)) {
-      const double edge = changeBetween(before, behind, is_flank);
+      const double edge = changeBetween(before, behind, is_flank, halvings);
       const double x = surface(tooth, r, edge).x + kNearby * radius_;
       const double blunt = (kind == OperationKind::kPrimaryEnd ? kBlunt : kNearby) * radius_;
       const bool faced = isRemoved(tooth, r, edge - blunt, x, By::kOwnFace);
@@ -164,7 +165,9 @@ double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double 
     // A fin may be narrower than a step: it begins where a face ends.
     double from = turn - step;
     for (int faces = 0; before.cut != here.cut && faces < kFacesInStep; ++faces) {
-      from = changeBetween(from, turn, [&](double to) { return at(to).cut != before.cut; }) + kNearby;
+      from = changeBetween(
+                 from, turn, [&](double to) { return at(to).cut != before.cut; }, kHalvings) +
+             kNearby;
       before = at(from);
       drag = std::max(drag, *section.edge - before.x);
     }
@@ -185,7 +188,7 @@ std::optional<double> GroundEnd::rake(std::size_t tooth, double r, double x, dou
 
 std::optional<double> GroundEnd::wholeFrom(std::size_t tooth) const {
   const auto is_whole = [&](double r) {
-    return edge(tooth, OperationKind::kPrimaryEnd, r).has_value() ||
+    return edge(tooth, OperationKind::kPrimaryEnd, r, kHalvings).has_value() ||
            edge(tooth, OperationKind::kChamfer, r).has_value();
   };
   const double corner = radius_ * (1 - kNearby), innermost = kInnermost * radius_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "flute_grinder/job/grind_job.h"
+#include "tool/change.h"
 #include "tool/end_flutes.h"
 #include "tool/face_sweep.h"
 
@@ -92,7 +93,7 @@ class GroundEnd {
   bool isRemoved(std::size_t tooth, double r, double behind, double x, By by) const;
   bool isFlank(std::size_t tooth, OperationKind kind, double r, double behind) const;
   /// How far behind the radius the tooth has an edge that its flute or gash and this flank form.
-  std::optional<double> edge(std::size_t tooth, OperationKind kind, double r) const;
+  std::optional<double> edge(std::size_t tooth, OperationKind kind, double r, int halvings = kExactHalvings) const;
   double slope(std::size_t tooth, double r, double behind) const;
   void measureFlanks(std::size_t tooth, EndSection& section) const;
 

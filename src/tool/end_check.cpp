@@ -14,7 +14,7 @@ namespace grinder {
 namespace {
 
 constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
-constexpr int kHeels = 12;           ///< number of distances at which a heel is measured, since a fin is short
+constexpr int kHeels = 9;            ///< number of distances at which a heel is measured, since a fin is short
 constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
 constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
 constexpr double kTouched = 5e-6;    ///< length of a periphery's edge, and height of a heel, that do not count [m]

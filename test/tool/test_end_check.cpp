@@ -152,6 +152,22 @@ TEST(EndCheck, NothingMayStandInFrontOfTheEdgesOfTwoTeeth) {
   EXPECT_NE(text(narrow.reasons).find("the heel drag of tooth 1 is "), std::string::npos) << text(narrow.reasons);
 }
 
+/// A gash that is less far past the axis leaves a fin beside it, half a degree wide and 0.6 mm long.
+TEST(EndCheck, FindsAFinThatIsNarrowerThanAnyStep) {
+  for (const char* operation : {"end_secondary", "chamfer"}) {
+    SCOPED_TRACE(operation);
+    GrindJob job = readJobFile("jobs/slot_drill_d8_t2.yaml", operation);
+    EXPECT_TRUE(checked(job).reasons.empty());
+    operationOf(job, OperationKind::kGash).gash_past = 0.2 * kMillimetre;
+    const CutterCheck fin = checked(job);
+    ASSERT_EQ(fin.reasons.size(), 1U);
+    EXPECT_EQ(fin.reasons[0].detail, "heel drag");
+    // Sampled on rays 0.03 deg apart, it stands 0.048 mm in front of the edge at most.
+    EXPECT_GT(largest(fin, ToolFigure::kHeelDrag), 0.015 * kMillimetre);
+    EXPECT_LT(largest(fin, ToolFigure::kHeelDrag), 0.049 * kMillimetre);
+  }
+}
+
 TEST(EndCheck, RefusesAnEndThatIsNotAsAskedAndNamesTheFigure) {
   const auto thin = [](GrindJob& job) {
     gashOf(job).wheel_profile = WheelShape::kStraight;

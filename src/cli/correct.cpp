@@ -83,26 +83,31 @@ void printTable(const SetupFindings& found, const Correction& correction, bool a
               turned(off, SetupTurn::kY), turned(off, SetupTurn::kZ), turned(off, SetupTurn::kSwivel),
               found.estimate.wear() / kMillimetre);
   printFigures(correctedFigures(found.model, correction));
-  std::printf("%s", settingsText(found, correction).c_str());
+  std::printf("%s\n", settingsText(found, correction).c_str());
   if (!applies && !correction.in_dead_band) std::printf("nothing is set yet: --apply sets the work offsets\n");
 }
 
 /// Sets the zero points as corrected. What is set does not depend on what was set of it before, so a command that was
 /// interrupted can be given again. @return the exit status.
-int apply(const std::string& node, const CorrectOptions& options, const SetupFindings& found, const Turns& turn) {
+int apply(const std::string& node, const CorrectOptions& options, const SetupFindings& found,
+          const Correction& correction) {
   ros::NodeHandle nh(node);
   const Latest<flute_grinder::WorkOffsets> offsets(nh, "offsets");
   if (!await(kPatience, [&] { return offsets.newest() != nullptr; })) return noGrinder(nh);
-  const std::string refused = notCorrectable(found.last, fromMessage(*offsets.newest()));
-  if (!refused.empty()) return fail(refused);
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kCorrection);
+  const std::string refused = notCorrectable(found.last, fromMessage(*offsets.newest()), basis);
+  if (!refused.empty()) return fail(refused);
   for (const CorrectedAxis& one : kCorrectedAxes) {
     const Eigen::Index i = indexOf(one.turn);
-    if (const int status = setWorkOffset(nh, one.axis, found.last.offset[i] + turn[i], basis, options.answers)) {
+    if (const int status =
+            setWorkOffset(nh, one.axis, found.last.offset[i] + correction.turn[i], basis, options.answers)) {
+      if (one.axis != kCorrectedAxes.front().axis) fail(kHalfSet);
       return status;
     }
   }
-  return succeed("the work offsets of Y and Z are set");
+  if (options.json) return 0;
+  const std::string by_hand = byHandText(correction);
+  return succeed("the work offsets of Y and Z are set" + (by_hand.empty() ? "" : "; before the next tool, " + by_hand));
 }
 
 }  // namespace
@@ -117,7 +122,7 @@ int correct(const std::string& node, const CorrectOptions& options) {
   if (options.json) print(toJson(found, correction));
   if (found.alarm) return fail(settingsText(found, correction));
   if (!options.json) printTable(found, correction, options.apply);
-  return options.apply && !correction.in_dead_band ? apply(node, options, found, correction.turn) : 0;
+  return options.apply && !correction.in_dead_band ? apply(node, options, found, correction) : 0;
 }
 
 }  // namespace grinder

@@ -234,8 +234,8 @@ void addCorrect(Commands& commands) {
   addOperation(command, options->operation);
   addTool(command, "--since", options->since,
           "the first tool that counts (default: the first with the zero points of the last)");
-  command.add_flag("--apply", options->apply, "set the work offsets of Y and Z");
-  addAnswer(command, options->answers, {NeedAnswer::kSetOffset});
+  auto* apply = command.add_flag("--apply", options->apply, "set the work offsets of Y and Z");
+  addAnswer(command, options->answers, {NeedAnswer::kSetOffset})->needs(apply);
   addRecords(command, options->folder);
   addMachine(command, options->parameters, options->urdf);
   addJson(command, options->json);

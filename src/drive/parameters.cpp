@@ -139,11 +139,20 @@ std::string ParameterReader::text(const std::string& path, const std::string& wh
   return static_cast<std::string>(value);
 }
 
+std::optional<std::string> pathOf(const std::string& parameter) {
+  if (parameter.compare(0, 1, "/") == 0) return parameter;
+  const char* home = std::getenv("HOME");
+  const bool of_home = parameter == "~" || parameter.compare(0, 2, "~/") == 0;
+  return of_home && home && *home == '/' ? std::optional(home + parameter.substr(1)) : std::nullopt;
+}
+
+std::string pathOfNode(const std::string& parameter, const std::string& node, const char* suffix) {
+  return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
+}
+
 std::string ParameterReader::path(const std::string& path, const About& about) const {
   const std::string what = "an absolute path, or one that begins with ~/", given = text(path, what, about);
-  if (given[0] == '/') return given;
-  const char* home = std::getenv("HOME");
-  if ((given == "~" || given.compare(0, 2, "~/") == 0) && home && *home == '/') return home + given.substr(1);
+  if (auto found = pathOf(given)) return *found;
   throw ParameterError("parameter " + name(path) + " = \"" + given + "\"; allowed: " + what);
 }
 

@@ -132,7 +132,7 @@ def measured_in(record):
             value = one['value_mm'] / 1e3 if 'value_mm' in one else math.radians(one['value_deg'])
             figures[str(head['job']), str(head['operation']), '%s@%g' % (one['figure'], one['x_mm'])] = value
         return figures
-    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError):
+    except (OSError, ValueError, RecursionError, LookupError, TypeError, AttributeError, ArithmeticError):
         return {}
 
 
@@ -283,6 +283,7 @@ class Grinder:
         self.progress = -SILENCE, 0  # time, and fraction of the job
         self.reports = ()  # time, and {(status, key): figure}; the key 'level' is the status itself
         self.cycles = self.late = 0
+        self.measured = {}
         self.faults = {REASONS[kind]: 0 for kind in FAULTS}  # 0 first, or Prometheus would not count the first
 
     def hear_state(self, message):
@@ -313,6 +314,7 @@ class Grinder:
                 self.records.update()
             except (OSError, ValueError) as error:
                 say(self.records.folder, error)
+            self.measured = self.records.measured()
         state = self.state
         yield gauge('up', 'Whether the grinder says its state', state is not None)
         if state:
@@ -373,7 +375,7 @@ class Grinder:
                     {name: wheel['tools'] for name, wheel in wheels.items()}, 'wheel')
         measured = GaugeMetricFamily('flute_grinder_measured', 'Last measured of a tool: length [m] or angle [rad]',
                                      labels=['job', 'operation', 'figure'])
-        for labels, value in self.records.measured().items():
+        for labels, value in self.measured.items():
             measured.add_metric(labels, value)
         yield measured
         if os.path.isdir(str(folder)):

@@ -165,6 +165,11 @@ std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetB
   return found;
 }
 
+std::string correctionRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis& job) {
+  const auto found = mismatch(axis, offsets, job);
+  return found ? found->reason + ": it cannot be corrected; touch it off" : "";
+}
+
 std::vector<Need> needsOf(const std::vector<OffsetMismatch>& mismatches) {
   Need wheel{NeedKind::kWheel, "", {}, {NeedAnswer::kConfirmWheel}};
   Need offsets{NeedKind::kOffsets, "", {}, {}};

@@ -2,28 +2,19 @@
 
 namespace grinder {
 
-namespace {
-
-/// The path of a state file; if the parameter is a folder, of the file in it that is named after the node.
-std::string filePath(const std::string& parameter, const std::string& node, const char* suffix) {
-  return parameter.back() == '/' ? parameter + node.substr(1) + suffix : parameter;
-}
-
-}  // namespace
-
 NodeFiles readNodeFiles(const ParameterReader& p, const std::string& node) {
   NodeFiles files;
-  files.journal = filePath(
+  files.journal = pathOfNode(
       p.path("journal",
              {"file that records the progress of the job, for one node only; or, ending in `/`, a folder in which "
               "the file is named after the node. Set by the launch file"}),
       node, ".journal");
-  files.offsets = filePath(
+  files.offsets = pathOfNode(
       p.path("offsets",
              {"file that keeps the work offsets, for one node only; or, ending in `/`, a folder in which the file "
               "is named after the node. Set by the launch file: beside the journal"}),
       node, ".offsets");
-  files.history = filePath(
+  files.history = pathOfNode(
       p.path("history",
              {"folder that keeps the records of the last jobs, for one node only; or, ending in `/`, a folder in "
               "which that folder is named after the node. Set by the launch file: beside the journal"}),

@@ -318,8 +318,9 @@ std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const Offse
   offset.set_at = ros::WallTime::now().toSec();
   refused = wheelRefusal(store_.offsets(), axis, offset.basis);
   if (!refused.empty()) return refused;
-  if (offset.basis.method == OffsetMethod::kCorrection && !(store_.offsets().axes[i].found_at > 0)) {
-    return "a zero point that was never found cannot be corrected; touch it off first";
+  if (offset.basis.method == OffsetMethod::kCorrection) {
+    refused = correctionRefusal(store_.offsets(), axis, offset.basis);
+    if (!refused.empty()) return refused;
   }
   offset.value = offset_at(status.position[i]);
   refused = travelRefusal(limits_, axis, offset.value);

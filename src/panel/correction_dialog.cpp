@@ -49,9 +49,9 @@ XmlRpc::XmlRpcValue parameter(const std::string& name, const std::atomic<bool>& 
 std::string recordsOf(const std::string& grinder, const std::atomic<bool>& stop) {
   XmlRpc::XmlRpcValue value = parameter(ros::names::append(grinder, "history"), stop);
   const bool is_text = value.getType() == XmlRpc::XmlRpcValue::TypeString;
-  const std::string parent = is_text ? static_cast<std::string>(value) : "";
-  if (parent.empty()) throw std::runtime_error("the grinder keeps no records");
-  const std::string folder = std::filesystem::path(parent) / grinder.substr(1);
+  const auto path = pathOf(is_text ? static_cast<std::string>(value) : "");
+  if (!path) throw std::runtime_error("the grinder keeps no records");
+  const std::string folder = pathOfNode(*path, grinder);
   std::error_code error;
   if (std::filesystem::is_directory(folder, error)) return folder;
   throw std::runtime_error(folder + ": no records of this grinder on this computer");
@@ -103,8 +103,8 @@ CorrectionDialog::CorrectionDialog(const QString& file, const std::string& opera
   layOut();
   connect(keep_, &QPushButton::clicked, this, &CorrectionDialog::keep);
   connect(apply_, &QPushButton::clicked, this,
-          [this] { ask(done_.found->last.offset + done_.correction.turn, "Correct the zero points?"); });
-  connect(back_, &QPushButton::clicked, this, [this] { ask(*before_, "Set them back?"); });
+          [this] { ask(done_.found->last.offset + done_.correction.turn, "Correct the zero points?", present()); });
+  connect(back_, &QPushButton::clicked, this, [this] { ask(*before_, "Set them back?", std::nullopt); });
   connect(question_, &Question::answered, this, [this] { showQuestion(false); });
   connect(&poll_timer_, &QTimer::timeout, this, &CorrectionDialog::poll);
   guardFromWheel(*this);
@@ -136,8 +136,7 @@ void CorrectionDialog::layOut() {
 
 void CorrectionDialog::begin(std::vector<MeasuredFigure> figures) {
   says_->setText("Reading the records ...");
-  keep_->setEnabled(false);
-  apply_->setEnabled(false);
+  if (table_ != nullptr) table_->setEnabled(false);
   working_ = std::async(std::launch::async, [this, figures = std::move(figures)] { return work(figures); });
 }
 
@@ -148,13 +147,13 @@ CorrectionDialog::Done CorrectionDialog::work(const std::vector<MeasuredFigure>&
     done.basis = basisOf(goalFromFile(file_, operation_), OffsetMethod::kCorrection);
     const std::vector<ToolNumber> tools = toolsIn(recordsOf(grinder_, stop_), jobDigest(*job));
     done.tool = toolOf(tools, 0);
-    if (!figures.empty()) keepMeasured(done.tool, figures, userAtHost());
+    if (!figures.empty()) keepMeasured(toolOf(tools, done_.tool.number), figures, userAtHost());
     done.found = findingsOf(withLaws(job), tools, 0);
     const bool known = done.found->isKnown();
     done.correction = done.found->correction(known ? mostTurnsOf(grinder_, stop_) : Turns(Turns::Zero()));
     done.good = !done.found->alarm;
     for (const std::string& one : done.found->left_out) done.text += QString::fromStdString(one) + "\n";
-    done.text += QString::fromStdString(settingsText(*done.found, done.correction)).trimmed();
+    done.text += QString::fromStdString(settingsText(*done.found, done.correction));
   } catch (const std::exception& error) {
     done.found.reset();
     done.text = error.what();
@@ -171,10 +170,11 @@ void CorrectionDialog::poll() {
 }
 
 void CorrectionDialog::take(Done done) {
-  done_ = std::move(done);
-  says_->setText(done_.text);
-  says_->setStyleSheet(done_.good ? "" : QString("color: %1;").arg(kWrong));
-  if (done_.found) {
+  showText(done.text, done.good);
+  if (table_ != nullptr) table_->setEnabled(true);
+  // What was shown stays, with what has been typed, if nothing could be read.
+  if (done.found || !done_.found) done_ = std::move(done);
+  if (done_.found && done_.text == says_->text()) {
     tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
                            "first tooth.")
                        .arg(done_.tool.number)
@@ -237,17 +237,18 @@ void CorrectionDialog::keep() {
     }
     if (figures.empty()) throw std::invalid_argument("nothing is entered");
   } catch (const std::exception& error) {
-    says_->setText(error.what());
-    says_->setStyleSheet(QString("color: %1;").arg(kWrong));
-    return;
+    return showText(error.what(), false);
   }
   begin(std::move(figures));
 }
 
 void CorrectionDialog::refresh(const std::optional<flute_grinder::WorkOffsets>& offsets, bool may) {
   offsets_ = offsets ? std::optional(fromMessage(*offsets)) : std::nullopt;
+  // While the offsets could not be set, a tool may have been ground.
+  if (may && !may_ && !working_.valid()) begin({});
+  may_ = may;
   const bool ready = done_.found && !working_.valid();
-  const std::string why_not = ready && offsets_ ? notCorrectable(done_.found->last, *offsets_) : "";
+  const std::string why_not = ready && offsets_ ? notCorrectable(done_.found->last, *offsets_, done_.basis) : "";
   const bool can_set = may && ready && offsets_ && why_not.empty();
   keep_->setEnabled(ready);
   apply_->setEnabled(can_set && done_.found->isKnown() && !done_.correction.in_dead_band && !isSet());
@@ -259,38 +260,52 @@ void CorrectionDialog::refresh(const std::optional<flute_grinder::WorkOffsets>& 
 
 /// Whether the present work offsets are the corrected ones.
 bool CorrectionDialog::isSet() const {
-  const Turns offset = done_.found->last.offset + done_.correction.turn;
-  return std::all_of(kCorrectedAxes.begin(), kCorrectedAxes.end(), [&](const CorrectedAxis& one) {
-    return std::abs(offsets_->axes[static_cast<std::size_t>(one.axis)].value - offset[indexOf(one.turn)]) <=
-           kSameOffset;
-  });
+  return (present() - done_.found->last.offset - done_.correction.turn).head<2>().cwiseAbs().maxCoeff() <= kSameOffset;
 }
 
-void CorrectionDialog::ask(const Turns& offset, const QString& text) {
+/// The present work offsets of Y and Z.
+Turns CorrectionDialog::present() const {
+  Turns offset = Turns::Zero();
+  for (const CorrectedAxis& one : kCorrectedAxes) {
+    offset[indexOf(one.turn)] = offsets_->axes[static_cast<std::size_t>(one.axis)].value;
+  }
+  return offset;
+}
+
+void CorrectionDialog::ask(const Turns& offset, const QString& text, const std::optional<Turns>& back_to) {
   Comparison figures{{"now", "then", "change"}, {}};
   std::vector<flute_grinder::SetOffset::Request> requests;
-  Turns before = Turns::Zero();
   for (const CorrectedAxis& one : kCorrectedAxes) {
-    const double now = offsets_->axes[static_cast<std::size_t>(one.axis)].value, then = offset[indexOf(one.turn)];
-    before[indexOf(one.turn)] = now;
+    const double now = present()[indexOf(one.turn)], then = offset[indexOf(one.turn)];
     const auto cell = [](double value) { return shown(value, Unit::kMetre) + " mm"; };
     figures.rows.push_back({QString(axisLetter(one.axis)), cell(now), cell(then), cell(then - now)});
     // The figures are shown here: the answer to a large change is given with them.
     requests.push_back(offsetRequest(one.axis, then, done_.basis, {toString(NeedAnswer::kSetOffset)}));
   }
+  const std::string by_hand = back_to ? byHandText(done_.correction) : "";
+  const QString also = by_hand.empty() ? "" : QString::fromStdString(" Then " + by_hand + ".");
   question_->ask(
-      text, figures,
-      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, requests, before] {
-          before_ = before;
+      text + also, figures,
+      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, requests, back_to] {
+          back_to_ = back_to;
           Q_EMIT wanted(requests);
         }}});
   showQuestion(true);
 }
 
 void CorrectionDialog::showAnswer(const std::string& refusal) {
-  says_->setText(refusal.empty() ? "The work offsets of Y and Z are set. Grind the next tool."
-                                 : QString::fromStdString(refusal));
-  says_->setStyleSheet(refusal.empty() ? "" : QString("color: %1;").arg(kWrong));
+  if (!refusal.empty()) return showText(QString::fromStdString(refusal), false);
+  const std::string by_hand = back_to_ ? byHandText(done_.correction) : "";
+  before_ = back_to_;
+  showText(
+      "The work offsets of Y and Z are set. " +
+          (by_hand.empty() ? "Grind the next tool." : QString::fromStdString("Before the next tool, " + by_hand + ".")),
+      true);
+}
+
+void CorrectionDialog::showText(const QString& text, bool good) {
+  says_->setText(text);
+  says_->setStyleSheet(good ? "" : QString("color: %1;").arg(kWrong));
 }
 
 void CorrectionDialog::showQuestion(bool asks) {

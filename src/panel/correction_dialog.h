@@ -22,8 +22,8 @@ namespace grinder {
 
 /// Keeps what was measured of the last tool of a job in its record, shows what the next tool would be like as the zero
 /// points are and as they would be corrected, and corrects them once the operator confirms it. Reading, computing and
-/// writing have a thread of their own, which waits for a hanging master for a second at most. The records are sought
-/// where the grinder keeps them, thus on its computer.
+/// writing have a thread of their own, which waits for a hanging master for a second at most in each of its calls. The
+/// records are sought where the grinder keeps them, thus on its computer.
 class CorrectionDialog : public QDialog {
   Q_OBJECT
 
@@ -69,13 +69,18 @@ class CorrectionDialog : public QDialog {
   void showTable();
   void keep();
   bool isSet() const;
-  void ask(const Turns& offset, const QString& text);
+  Turns present() const;
+  /// @param back_to work offsets that can be set back to afterwards.
+  void ask(const Turns& offset, const QString& text, const std::optional<Turns>& back_to);
+  void showText(const QString& text, bool good);
   void showQuestion(bool asks);
 
   const std::string file_, operation_, grinder_;
   Done done_;
   std::optional<WorkOffsets> offsets_;
-  std::optional<Turns> before_;  ///< work offsets of Y and Z before the last correction from this dialog
+  bool may_ = true;
+  std::optional<Turns> back_to_;  ///< for `before_`, once what is under way is done
+  std::optional<Turns> before_;   ///< work offsets of Y and Z before the last correction from this dialog
   std::vector<Row> rows_;
   QLabel* tool_;
   QWidget* table_ = nullptr;

@@ -70,7 +70,7 @@ void paintLegend(QPainter& painter, QRectF free, const EndView& end, double uncu
   if (!end.edges.empty()) legendLine(painter, free, "edge", line(QPen(kLine, 2)));
   if (uncut > 0) {
     legendLine(painter, free, "uncut D " + QString::number(uncut / units::kMillimetre),
-               line(QPen(kLine, 1, Qt::DotLine)));
+               line(QPen(kLine, 1, Qt::DashLine)));
   }
 }
 
@@ -84,7 +84,7 @@ void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const
   const double scale = 0.97 * std::min(place.width(), place.height()) / 2 / radius;
   const double edge = job->tooth_angles.front() + job.edges().front().at_end - units::kPi / 2;
   const double cos = std::cos(edge), sin = std::sin(edge);
-  // Z up and Y to the left, as who looks at the end has them.
+  // Z up and Y to the left, as seen when looking at the end.
   const auto at = [&](const Eigen::Vector2d& p) {
     return place.center() + scale * QPointF(-p.x() * cos - p.y() * sin, p.x() * sin - p.y() * cos);
   };
@@ -107,7 +107,7 @@ void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const
   painter.setBrush(Qt::NoBrush);
   painter.setPen(QPen(kLine, 2));
   for (const EndEdge& line : end.edges) painter.drawPolyline(polygon(line.line));
-  painter.setPen(QPen(kLine, 1, Qt::DotLine));
+  painter.setPen(QPen(kLine, 1, Qt::DashLine));
   if (uncut > 0) circle(uncut / 2);
 }
 

@@ -348,7 +348,7 @@ void GrindPanel::refresh() {
   lamps_->show(view);
   job_->refresh(view.state, view.offsets, idle && master == Master::kAnswers);
   jog_->refresh(view.state, view.machine ? view.machine->jog_timeout : 0, master == Master::kAnswers);
-  touch_off_->refresh(view, master == Master::kAnswers, job_->job() != nullptr);
+  touch_off_->refresh(view, master == Master::kAnswers, job_->job() && !name_.empty());
   if (correction_) correction_->refresh(view.offsets, master == Master::kAnswers && TouchOffBox::maySet(view));
   override_->setEnabled(master == Master::kAnswers);
   override_->refresh(view.state);
@@ -575,7 +575,10 @@ void GrindPanel::askReclamped() {
 }
 
 void GrindPanel::openCorrection() {
-  if (correction_) correction_->close();
+  if (correction_ && correction_->isVisible()) {
+    correction_->raise();
+    return correction_->activateWindow();
+  }
   const std::string operation = job_->operation();
   correction_ = new CorrectionDialog(job_->file(), operation, QFileInfo(job_->file()).fileName(), name_, this);
   connect(correction_, &CorrectionDialog::wanted, this, [this, dialog = correction_](const auto& requests) {
@@ -594,8 +597,8 @@ void GrindPanel::setOffsets(std::vector<flute_grinder::SetOffset::Request> reque
   const flute_grinder::SetOffset::Request next = requests.front();
   requests.erase(requests.begin());
   link_->setOffset(next, [this, requests = std::move(requests), on_answer](const std::string& refusal) {
-    if (!refusal.empty()) return on_answer(refusal);
-    setOffsets(requests, on_answer);
+    if (refusal.empty()) return setOffsets(requests, on_answer);
+    on_answer(requests.empty() ? refusal + "; " + kHalfSet : refusal);
   });
 }
 

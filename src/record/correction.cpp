@@ -3,6 +3,7 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
 #include "flute_grinder/base/units.h"
+#include "flute_grinder/machine/offset_fit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,24 +61,28 @@ Turns mostTurns(const Axes& offset_change_limit) {
   return most;
 }
 
-SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> numbers, std::uint64_t since) {
+SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> tools, std::uint64_t since) {
   if (!isCorrectable(job->process().kind)) {
     throw std::invalid_argument(
         "operation = " + std::string(toString(job->process().kind)) +
         "; allowed: flute, primary, secondary, whose set-ups can be corrected by measured tools");
   }
   const auto before = [&](const ToolNumber& tool) { return tool.number < since; };
-  numbers.erase(std::remove_if(numbers.begin(), numbers.end(), before), numbers.end());
-  toolOf(numbers, 0);  // there is one
-  const std::vector<MeasuredTool> tools = measuredTools(numbers);
+  const std::uint64_t newest = toolOf(tools, 0).number;
+  if (newest < since) {
+    throw std::invalid_argument("--since " + std::to_string(since) + "; allowed: up to " + std::to_string(newest) +
+                                ", the last tool");
+  }
+  tools.erase(std::remove_if(tools.begin(), tools.end(), before), tools.end());
+  const std::vector<MeasuredTool> measured = measuredTools(tools);
 
   SetupFindings found;
-  found.model = figureModel(job, figuresToWeigh(job, tools));
+  found.model = figureModel(job, figuresToWeigh(job, measured));
   Eigen::VectorXd gauge(found.model.planned.size());
   for (Eigen::Index i = 0; i < gauge.size(); ++i) {
     gauge[i] = gaugeSpread(found.model.figures[static_cast<std::size_t>(i)].figure);
   }
-  for (const MeasuredTool& tool : tools) {
+  for (const MeasuredTool& tool : measured) {
     if (found.tools > 0 && !haveSameZeros(found.last, tool)) {
       found.estimate = SetupEstimate(usualSpread());
       found.tools = found.measured = 0, found.alarm = false, found.left_out.clear();
@@ -99,29 +104,34 @@ SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> numbers, s
   return found;
 }
 
-std::string settingsText(const SetupFindings& found, const Correction& correction) {
-  if (found.alarm) {
-    return "no correction: measure the tool again and enter it anew; if the machine has changed, find out why, and use "
-           "'grind correct --since' with the next tool\n";
-  }
-  if (!found.isKnown()) return "no tool has been measured since its zero points were found; measure one first\n";
-  if (correction.in_dead_band) return "nothing to set: no figure would change by 0.15 of its tolerance\n";
-  std::string lines;
-  for (const CorrectedAxis& one : kCorrectedAxes) {
-    const double by = correction.turn[indexOf(one.turn)], to = found.last.offset[indexOf(one.turn)] + by;
-    lines += format("work offset of %c: %+.4f mm, to %.4f mm\n", axisLetter(one.axis), by / units::kMillimetre,
-                    to / units::kMillimetre);
-  }
-  if (!correction.by_swivel) return lines;
-  return lines +
-         format("the swivel: %+.3f deg, at its scale or stop; then 'grind correct --since' with the next tool\n",
+std::string byHandText(const Correction& correction) {
+  if (!correction.by_swivel) return "";
+  return format("turn the swivel by %+.3f deg, at its scale or stop, and confirm the job's angle again",
                 correction.turn[indexOf(SetupTurn::kSwivel)] / units::kDegree);
 }
 
-std::string notCorrectable(const MeasuredTool& last, const WorkOffsets& offsets) {
+std::string settingsText(const SetupFindings& found, const Correction& correction) {
+  if (found.alarm) {
+    return "no correction: measure the tool again and enter it anew; if the machine has changed, find out why, and use "
+           "'grind correct --since' with the next tool";
+  }
+  if (!found.isKnown()) return "no tool has been measured since its zero points were found; measure one first";
+  if (correction.in_dead_band) return "nothing to set: no figure would change by 0.15 of its tolerance";
+  std::string lines;
+  for (const CorrectedAxis& one : kCorrectedAxes) {
+    const double by = correction.turn[indexOf(one.turn)], to = found.last.offset[indexOf(one.turn)] + by;
+    lines += format("%swork offset of %c: %+.4f mm, to %.4f mm", lines.empty() ? "" : "\n", axisLetter(one.axis),
+                    by / units::kMillimetre, to / units::kMillimetre);
+  }
+  return correction.by_swivel ? lines + "\n" + byHandText(correction) + "; then use 'grind correct --since'" : lines;
+}
+
+std::string notCorrectable(const MeasuredTool& last, const WorkOffsets& offsets, const OffsetBasis& job) {
   for (std::size_t i = 0; i < kCorrectedAxes.size(); ++i) {
     const WorkOffset& now = offsets.axes[static_cast<std::size_t>(kCorrectedAxes[i].axis)];
-    if (std::isfinite(now.value) && now.found_at > 0 && isSameTime(last.found_at[i], now.found_at)) continue;
+    const std::string refused = correctionRefusal(offsets, kCorrectedAxes[i].axis, job);
+    if (!refused.empty()) return refused;
+    if (isSameTime(last.found_at[i], now.found_at)) continue;
     return std::string("the zero point of ") + axisLetter(kCorrectedAxes[i].axis) + " is not the one of tool " +
            std::to_string(last.number) + ", the last one ground: grind and measure a tool with it first";
   }

@@ -1,6 +1,5 @@
 #include "flute_grinder/report/findings.h"
 
-#include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/record/cycle_figures.h"
@@ -11,6 +10,8 @@
 #include "report/plots.h"
 
 #include <algorithm>
+#include <exception>
+#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -198,14 +199,19 @@ Json documentOf(const ToolRecords::Operation& operation) {
           {"missing", missing}};
 }
 
-/// What was measured of an operation, each figure with those of the other tools.
-/// @throw FileError if the record of one of them cannot be read.
+/// What was measured of an operation, each figure with those of the tools before. @throw std::exception
 Json measuredOver(const std::string& folder, const ToolRecords::Operation& operation) {
   Json all = Json::array();
   const Record& last = operation.records.back();
   const std::vector<MeasuredFigure> figures = measuredOf(last);
-  const std::vector<MeasuredTool> tools =
-      figures.empty() ? std::vector<MeasuredTool>() : measuredTools(toolsIn(folder, last.head.digest));
+  if (figures.empty()) return all;
+  std::vector<ToolNumber> numbers = toolsIn(folder, last.head.digest);
+  const auto is_this = [&](const ToolNumber& tool) {
+    return std::filesystem::path(tool.path).filename() == operation.files.back();
+  };
+  const auto own = std::find_if(numbers.begin(), numbers.end(), is_this);
+  if (own != numbers.end()) numbers.erase(std::next(own), numbers.end());
+  const std::vector<MeasuredTool> tools = measuredTools(numbers);
   for (const MeasuredFigure& measured : figures) {
     Json& history = all.emplace_back(figureHistory(*operation.job, tools, {measured.figure, measured.x}));
     history["value"] = shopNumber(measured.value, rowOf(measured.figure).unit);
@@ -272,7 +278,7 @@ Json findingsOfTool(const ToolRecords& tool, const ReportContext& context) {
     if (!operation.job) continue;
     try {
       one["measured"] = measuredOver(tool.folder(), operation);
-    } catch (const FileError& error) {
+    } catch (const std::exception& error) {  // of another tool's record, or of what somebody wrote into one
       left_out.push_back(std::string("What was measured: ") + error.what());
     }
   }

@@ -66,6 +66,21 @@ TEST(OffsetFit, WhatWasSetForTheJobFitsAndAFitsTheFlutes) {
   EXPECT_TRUE(mismatches(offsets, job).empty());
 }
 
+TEST(OffsetFit, OnlyWhatFitsIsCorrected) {
+  const OffsetBasis job = basisOf();
+  WorkOffsets offsets = offsetsFor(job);
+  EXPECT_EQ(correctionRefusal(offsets, kY, job), "");
+  OffsetBasis other = job;
+  other.end_diameter = 0.008;
+  EXPECT_NE(correctionRefusal(offsets, kY, other).find("; this job has D 8 mm: it cannot be corrected"),
+            std::string::npos);
+  EXPECT_EQ(correctionRefusal(offsets, kZ, other), "");
+  ++offsets.wheel.mounting;
+  EXPECT_NE(correctionRefusal(offsets, kZ, job).find("another wheel has been mounted since"), std::string::npos);
+  offsets.axes[kZ] = {};
+  EXPECT_EQ(correctionRefusal(offsets, kZ, job), "Z was never set: it cannot be corrected; touch it off");
+}
+
 TEST(OffsetFit, WhatIsNotKnownDoesNotFitAndIsNotComputed) {
   WorkOffsets unreadable;
   unreadable.axes[kX].value = kNan;

@@ -172,7 +172,9 @@ class TestRecords(gc.OwnNode):
             for axis, found, asked in zip(corrected, (y, z), ('y_mm', 'z_mm')):
                 self.assertAlmostEqual(axis['offset_mm'], said['offsets'][asked], delta=1e-9)
                 self.assertEqual((axis['set_for']['method'], axis['found_at']), ('correction', found['found_at']))
-        y, _ = self.correctable('--set', 'y=0.001')
+        self.command(0, 'confirm-wheel', job, '--again')
+        self.assertIn('another wheel has been mounted since', self.command(1, 'correct', job, '--apply').stderr)
+        y, corrected[1] = self.correctable('--set', 'y=0.001', '--set', 'z=%r' % corrected[1]['offset_mm'])
         self.assertEqual((y['set_for']['method'], y['found_at']), ('by_hand', y['set_at']))
         refused = self.command(1, 'correct', job, '--apply')
         self.assertIn('the zero point of Y is not the one of tool 1, the last one ground', refused.stderr)

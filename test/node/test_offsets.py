@@ -106,7 +106,7 @@ class TestSetting(OffsetsTest):
             self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(**wrong)), text)
         self.check_refused(self.client.set_offset(X, 0, 256 * 'n'), 'set_by has 256 characters; allowed: up to 255')
         self.check_refused(self.client.set_offset(X, 0, 'an\nna'), 'none that controls a terminal')
-        self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(method=OffsetBasis.CORRECTION)), 'was never found')
+        self.check_refused(self.client.set_offset(X, 0, basis=OffsetBasis(method=OffsetBasis.CORRECTION)), 'X was never set: it cannot be corrected')
         self.check_refused(self.client.set_offset(X, 0, answers=['yes']), 'answer = yes; allowed: ')
         run = self.client.send(gc.SHORT, answers=['yes']).wait()
         self.assertEqual((run.status, run.code), ('REJECTED', GrindResult.INVALID_GOAL))

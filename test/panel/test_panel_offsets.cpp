@@ -166,7 +166,7 @@ TEST_F(ZeroPoints, OfYNeedTheJobsHeightAndAreAskedForWhereTheDiameterIsFar) {
 class MeasuredTool : public ZeroPoints {
  protected:
   MeasuredTool() {
-    ros::param::set("/cell/stage/history", folder_.path().toStdString());
+    ros::param::set("/cell/stage/history", folder_.path().toStdString() + "/");
     for (const char* axis : {"axis_y", "axis_z"}) {
       ros::param::set(std::string("/cell/stage/offset_change_limit/") + axis, 0.005);
     }
@@ -187,11 +187,16 @@ class MeasuredTool : public ZeroPoints {
   }
 
   QString path() const { return folder_.filePath("cell/stage/0000000007_20261122T170413.123Z.json"); }
-  void publishZeros(double y_found_at) {
+  void publishZeros(double y_found_at, double y = 0.0015, double z = -0.007, std::uint32_t mounting = 0) {
     WorkOffsets zeros;
-    zeros.axes[kY].value = 0.0015, zeros.axes[kZ].value = -0.007;
-    zeros.axes[kY].set_at = zeros.axes[kY].found_at = y_found_at;
-    zeros.axes[kZ].set_at = zeros.axes[kZ].found_at = kFoundAt;
+    zeros.axes[kY].value = y, zeros.axes[kZ].value = z;
+    zeros.axes[kY].found_at = y_found_at, zeros.axes[kZ].found_at = kFoundAt;
+    for (const int axis : {kY, kZ}) {
+      WorkOffset& offset = zeros.axes[static_cast<std::size_t>(axis)];
+      offset.set_at = offset.found_at;
+      offset.basis = basisOf(goalFromFile(kPaper.toStdString()), OffsetMethod::kTouchOff);
+    }
+    zeros.wheel.mounting = mounting;
     stage.publishOffsets(toMessage(zeros));
   }
   void open() {
@@ -231,6 +236,9 @@ TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
   EXPECT_LT(set[0].value, 0.0015) << "the wheel goes deeper";
   EXPECT_EQ(set[0].basis.method, flute_grinder::OffsetBasis::CORRECTION);
   EXPECT_EQ(set[0].basis.job_name, "paper.yaml");
+  publishZeros(kFoundAt, set[0].value, set[1].value);
+  WAIT_FOR(panel.enabled("correct_back"));
+  EXPECT_FALSE(panel.enabled("apply_correction")) << "it is set";
   panel.press("correct_back");
   panel.press("confirm_correction");
   WAIT_FOR(stage.get(&Stage::offsets_set).size() == 4);
@@ -254,6 +262,11 @@ TEST_F(MeasuredTool, SetsNothingByAWrongEntryOrForZeroPointsFoundAnew) {
   EXPECT_FALSE(panel.enabled("apply_correction"));
   enter("measured_4", "9.8");
   panel.press("keep_measured");
+  WAIT_FOR(panel.enabled("apply_correction"));
+  publishZeros(kFoundAt, 0.0015, -0.007, 1);
+  WAIT_FOR(!panel.enabled("apply_correction"));
+  EXPECT_NE(panel.the<QPushButton>("apply_correction").toolTip().indexOf("another wheel has been mounted since"), -1);
+  publishZeros(kFoundAt);
   WAIT_FOR(panel.enabled("apply_correction"));
   publishZeros(kFoundAt + 60);
   WAIT_FOR(!panel.enabled("apply_correction"));

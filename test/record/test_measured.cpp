@@ -1,6 +1,6 @@
 // What people write of measured tools: what is taken, refused and kept.
 
-#include "flute_grinder/record/measured.h"
+#include "flute_grinder/record/measured_tools.h"
 
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
@@ -123,6 +123,32 @@ TEST(Measured, IsOfAToolThatWasGroundToItsEnd) {
     EXPECT_EQ(test_support::refusalOf<std::invalid_argument>([&] { toolOf(tools, number); }),
               "tool = " + std::to_string(number) + "; allowed: 3, 7");
   }
+}
+
+TEST(Measured, GoesFromToolToToolWithTheZeroPoints) {
+  const auto tool = [](std::uint64_t number, double y, double found_at, const char* core) {
+    MeasuredTool made;
+    made.number = number;
+    made.ended = "2026-11-22T17:05:13.123Z";
+    made.offset[indexOf(SetupTurn::kY)] = y;
+    made.found_at = {found_at, 1.7e9};
+    if (*core != '\0') made.figures = {measuredFrom(std::string("core@15=") + core, cone())};
+    return made;
+  };
+  const Json history = figureHistory(ValidJob(cone()),
+                                     {tool(3, 0.0015, 1.7e9, "9.43"), tool(4, 0.0015, 1.7e9 + 0.001, ""),
+                                      tool(6, 0.0014, 1.7e9, "9.42"), tool(7, 0.0014, 1.8e9, "9.5")},
+                                     figureFrom("core@15", cone()));
+  EXPECT_EQ(history["asked"], 9.425);
+  EXPECT_EQ(history["tolerance"], 0.02);
+  EXPECT_EQ(history["unit"], "mm");
+  std::string zeros;
+  for (const Json& one : history["tools"]) zeros += one["zero_points"].get<std::string>() + " ";
+  EXPECT_EQ(zeros, "found same corrected found ");
+  EXPECT_EQ(history["tools"][0]["measured"], 9.43);
+  EXPECT_TRUE(history["tools"][1]["measured"].is_null());
+  EXPECT_EQ(history["tools"][2]["y_mm"], 1.4);
+  EXPECT_EQ(history["tools"][3]["tool"], 7);
 }
 
 }  // namespace test_measured

@@ -24,6 +24,13 @@ class ParameterError : public std::runtime_error {
 /// The value of a numeric parameter; nothing for any other type. YAML reads `0` and `0.0` as different types of number.
 std::optional<double> numberOf(XmlRpc::XmlRpcValue value);
 
+/// The path that a parameter names: absolute, or one that begins with ~/; nothing for any other text.
+std::optional<std::string> pathOf(const std::string& parameter);
+
+/// The path of a node's own file or folder: with a parameter that ends in `/`, the one in there that is named after it.
+/// @param node full name of the node.
+std::string pathOfNode(const std::string& parameter, const std::string& node, const char* suffix = "");
+
 /// What docs/reference.md says of a parameter beside the range that its reader states.
 struct About {
   const char* meaning = nullptr;  ///< in Markdown; null to leave the parameter out

@@ -31,6 +31,9 @@ struct OffsetMismatch {
 /// @param job the job's values; method is ignored, and so are names for axes that fit.
 std::vector<OffsetMismatch> mismatches(const WorkOffsets& offsets, const OffsetBasis& job);
 
+/// Why the work offset of X, Y or Z cannot be corrected for a job: it does not fit it. Empty if it can.
+std::string correctionRefusal(const WorkOffsets& offsets, int axis, const OffsetBasis& job);
+
 /// What an operator must say before a job starts with such offsets: a need of the wheel, and one of all the others.
 std::vector<Need> needsOf(const std::vector<OffsetMismatch>& mismatches);
 

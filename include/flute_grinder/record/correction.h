@@ -39,13 +39,19 @@ struct SetupFindings {
 /// @param job with its laws. @param tools see toolsIn(). @param since number of the first tool that counts; 0 for all.
 /// @throw FileError for a record that cannot be read. @throw std::invalid_argument if there is no tool, for another
 /// operation, and for a measured figure that the planned tool does not have.
-SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> tools, std::uint64_t since);
+SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> tools, std::uint64_t since = 0);
+
+/// What a person has to turn besides, e.g. "turn the swivel by +0.312 deg"; empty if nothing.
+std::string byHandText(const Correction& correction);
 
 /// What to set, as lines of text; why nothing is to be set, if so.
 std::string settingsText(const SetupFindings& found, const Correction& correction);
 
+/// Said if a correction ended halfway.
+constexpr const char* kHalfSet = "the work offset of Y is corrected, the one of Z is not: correct again";
+
 /// Why the present zero points cannot be corrected by what is known: they are not those of the last tool, corrected or
-/// not; empty if they can.
-std::string notCorrectable(const MeasuredTool& last, const WorkOffsets& offsets);
+/// not, or do not fit the job any longer; empty if they can.
+std::string notCorrectable(const MeasuredTool& last, const WorkOffsets& offsets, const OffsetBasis& job);
 
 }  // namespace grinder

@@ -443,7 +443,7 @@ def page(data, parts):
     """The page of a report. @param data the document. @param parts result of draw_all()."""
     body = first_page(data, parts)
     if parts.get('measured'):
-        body += ['<h2>Measured, with the tools before and after it</h2>', pictures(parts, 'measured')]
+        body += ['<h2>Measured, with the tools before it</h2>', pictures(parts, 'measured')]
     if parts.get('tool'):
         body += ['<h2>The ground tool</h2>', pictures(parts, 'tool')]
     body += runs(data)

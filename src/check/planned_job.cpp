@@ -46,11 +46,19 @@ PlannedJob planWholeJob(const ValidJob& job, const Machine& machine, const Machi
                         const std::function<void(const Setpoint&)>& visit, const PlanWatch& watch) {
   PlannedJob planned{planWithLaw(job, machine, run, visit, watch), {}, {}, {}, {}, {}};
   if (!planned.program || planned.fault == PlanFault::kGivenUp) return planned;
-  CutterCheck cutter = checkGroundCutter(planned.program->job(), watch);
+  const PlanWatch after_plan = [&watch](double) { return !watch || watch(1); };
+  CutterCheck cutter = checkGroundCutter(planned.program->job(), after_plan);
   planned.complete = cutter.complete;
   planned.figures = cutter.figures;
   planned.edges = std::move(cutter.edges);
-  if (!cutter.reasons.empty()) refuse(planned, faultOf(cutter.reasons.front()), cutter.reasons);
+  if (!cutter.reasons.empty()) {
+    const PlanFault fault = faultOf(cutter.reasons.front());
+    refuse(planned, fault, cutter.reasons);
+    if (fault == PlanFault::kGivenUp) {
+      planned.fault = fault;
+      return planned;
+    }
+  }
   const CollisionResult collision = checkCollision(*planned.program, shapes);
   planned.closest = collision.closest;
   if (collision.reason) refuse(planned, PlanFault::kCollision, {*collision.reason});

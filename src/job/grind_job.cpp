@@ -12,6 +12,8 @@ namespace grinder {
 
 namespace {
 
+constexpr const char* kNoCenterTeeth = "0 without cutter.end.center_teeth";
+
 /// Tolerance for the rounding of a unit conversion at the ends of a range.
 constexpr double kRangeRounding = 1e-12;
 
@@ -176,6 +178,33 @@ bool has(const GrindJob& job, OperationKind kind) {
   return std::any_of(job.operations.begin(), job.operations.end(), is_it);
 }
 
+/// Checks which teeth go to the centre, and from where on the others beside them are whole.
+void checkCenterTeeth(Checker& checker, const GrindJob& job) {
+  const CutterGeometry& c = job.cutter;
+  const int center = c.end_center_teeth, teeth = static_cast<int>(job.tooth_angles.size());
+  const Quantity from{c.end_short_from, Unit::kMetre};
+  if (center == 0) {
+    if (from.si != 0) checker.refuse(ReasonKind::kNotAllowed, "cutter.end_short_from", from, kNoCenterTeeth);
+    return;
+  }
+  constexpr int kFewest = 3;      // of two, none is short beside others
+  constexpr double kEven = 1e-6;  // the digits of a file
+  bool even = teeth >= kFewest && teeth % center == 0;
+  for (int i = 0; i < teeth; ++i) {
+    even = even && std::abs(job.tooth_angles[static_cast<std::size_t>(i)] - i * units::kTurn / teeth) <= kEven;
+  }
+  if (!even) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.end_center_teeth", {static_cast<double>(center), Unit::kNone},
+                   "0, 1 of 3 or more evenly spaced teeth, or 2 of an even number of them from 4 on");
+  }
+  const double least = 4 * kEndGap;
+  if (!(from.si >= least)) {
+    checker.refuse(ReasonKind::kNotAllowed, "cutter.end_short_from", from, "at least", least);
+  } else {
+    checker.below("cutter.end_short_from", from.si, c.end_diameter / 2, "the cutter's radius at the end");
+  }
+}
+
 /// Checks the order of the operations, and that the cutter has the dimensions that they need. The first are the flutes:
 /// the edges of all others follow them.
 void checkOperations(Checker& checker, const GrindJob& job) {
@@ -217,6 +246,8 @@ void checkOperations(Checker& checker, const GrindJob& job) {
     ask("cutter.chamfer_clearance", c.chamfer_clearance, Unit::kRadian, "more than 0 with a chamfer");
     ask("cutter.end_clearance_tolerance", c.end_clearance_tolerance, Unit::kRadian, "more than 0 with a chamfer");
   }
+  const auto is_on_end = [](const GrindProcess& p) { return isStraight(p.kind); };
+  if (std::any_of(job.operations.begin(), job.operations.end(), is_on_end)) checkCenterTeeth(checker, job);
 }
 
 /// Checks that a wheel can grind what only some wheels can: a relief's rim is a cylinder; a face grinds the end. The
@@ -257,18 +288,32 @@ void checkWheelSuits(Checker& checker, const GrindJob& job) {
                      : "0, straight, or 3, cup, for a flank of the end or a chamfer");
 }
 
+/// Checks what only the gashes of short teeth have.
+void checkShortGash(Checker& checker, const GrindJob& job) {
+  const GrindProcess& p = job.process();
+  constexpr double kLeastAngle = 5 * units::kDegree;
+  const bool none = job.cutter.end_center_teeth == 0;
+  const Quantity angle{p.gash_short_angle, Unit::kRadian}, past{p.gash_short_past, Unit::kMetre};
+  if (none && past.si != 0) checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_past", past, kNoCenterTeeth);
+  if (angle.si == 0 || (!none && angle.si >= kLeastAngle)) return;
+  checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_angle", angle, none ? kNoCenterTeeth : "0, or from",
+                 none ? 0 : kLeastAngle);
+}
+
 /// Checks what only an operation on the end has.
 void checkEnd(Checker& checker, const GrindJob& job) {
   const CutterGeometry& c = job.cutter;
   const GrindProcess& p = job.process();
   const double radius = c.end_diameter / 2;
-  if (p.kind == OperationKind::kGash && !(p.gash_past > -radius)) {
-    checker.refuse(ReasonKind::kNotAllowed, "process.gash_past", {p.gash_past, Unit::kMetre},
-                   "more than the cutter's radius at the end,", -radius);
-  }
-  if (p.kind == OperationKind::kGash && !(p.gash_short_past > -radius)) {
-    checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_past", {p.gash_short_past, Unit::kMetre},
-                   "more than the cutter's radius at the end,", -radius);
+  const auto ask_past = [&](const char* path, double past) {
+    if (past > -radius) return;
+    checker.refuse(ReasonKind::kNotAllowed, path, {past, Unit::kMetre}, "more than the cutter's radius at the end,",
+                   -radius);
+  };
+  if (p.kind == OperationKind::kGash) {
+    ask_past("process.gash_past", p.gash_past);
+    ask_past("process.gash_short_past", p.gash_short_past);
+    checkShortGash(checker, job);
   }
   if (p.kind == OperationKind::kChamfer) {
     checker.below("cutter.chamfer_width", c.chamfer_width, radius, "the cutter's radius at the end");
@@ -276,42 +321,6 @@ void checkEnd(Checker& checker, const GrindJob& job) {
   if (p.kind == OperationKind::kSecondaryEnd && !(c.end_second_clearance > c.end_clearance)) {
     checker.refuse(ReasonKind::kNotAllowed, "cutter.end_second_clearance", {c.end_second_clearance, Unit::kRadian},
                    "more than that of the primary flank,", c.end_clearance);
-  }
-}
-
-/// Checks what there is of teeth to the centre, and of the others beside them.
-void checkCenterTeeth(Checker& checker, const GrindJob& job) {
-  const CutterGeometry& c = job.cutter;
-  const GrindProcess& p = job.process();
-  const int center = c.end_center_teeth, teeth = static_cast<int>(job.tooth_angles.size());
-  if (center == 0) {
-    constexpr const char* kNone = "0 without cutter.end.center_teeth";
-    const auto ask_none = [&](const char* path, double value, Unit unit) {
-      if (value != 0) checker.refuse(ReasonKind::kNotAllowed, path, {value, unit}, kNone);
-    };
-    ask_none("cutter.end_short_from", c.end_short_from, Unit::kMetre);
-    ask_none("process.gash_short_angle", p.gash_short_angle, Unit::kRadian);
-    ask_none("process.gash_short_past", p.gash_short_past, Unit::kMetre);
-    return;
-  }
-  constexpr double kEven = 1e-6;  // the digits of a file
-  bool even = teeth > kMaxCenterTeeth && teeth % center == 0;
-  for (int i = 0; i < teeth; ++i) {
-    even = even && std::abs(job.tooth_angles[static_cast<std::size_t>(i)] - i * units::kTurn / teeth) <= kEven;
-  }
-  if (!even) {
-    checker.refuse(ReasonKind::kNotAllowed, "cutter.end_center_teeth", {static_cast<double>(center), Unit::kNone},
-                   "0, 1 of 3 or more evenly spaced teeth, or 2 of an even number of them from 4 on");
-  }
-  const double least = 4 * kEndGap;
-  if (!(c.end_short_from >= least && c.end_short_from < c.end_diameter / 2)) {
-    checker.refuse(ReasonKind::kOutOfRange, "cutter.end_short_from", {c.end_short_from, Unit::kMetre}, "",
-                   c.end_diameter / 2, least);
-  }
-  constexpr double kLeastAngle = 5 * units::kDegree;
-  if (p.gash_short_angle != 0 && !(p.gash_short_angle >= kLeastAngle)) {
-    checker.refuse(ReasonKind::kNotAllowed, "process.gash_short_angle", {p.gash_short_angle, Unit::kRadian},
-                   "0, or from", kLeastAngle);
   }
 }
 
@@ -342,7 +351,6 @@ void checkTogether(Checker& checker, const GrindJob& job) {
   if (p.kind != OperationKind::kFlute) {
     checkWheelSuits(checker, job);
     if (isStraight(p.kind)) checkEnd(checker, job);
-    if (checker.good() && isStraight(p.kind)) checkCenterTeeth(checker, job);
     return checkWheel(checker, p);
   }
   checker.below("process.depth", p.depth, radius(0), "the cutter's radius at the small end");

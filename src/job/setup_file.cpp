@@ -47,6 +47,7 @@ bool isSolvedFor(const JobField& field, OperationKind kind) {
   for (const char* of_relief : {"cutter.clearance", "cutter.land", "cutter.second_clearance"}) {
     if (path == of_relief) return isRelief(kind);
   }
+  if (path == "cutter.end_short_from") return isEndFlank(kind);
   if ((begins(path, "cutter.end_") && path != "cutter.end_diameter") || begins(path, "cutter.chamfer_")) {
     return isStraight(kind) && path.find("tolerance") == std::string_view::npos && path != "cutter.end_uncut_diameter";
   }

@@ -30,14 +30,16 @@ void refuseAsTooLong(JobPlan& plan, const ValidJob& job, const Machine& machine,
 
 /// Lower bound of the time for all plunges and strokes at the job's feed [s].
 double minDuration(const ValidJob& job, const ToothPass& first) {
-  const auto lengthOf = [](const FaceStroke& s) { return (s.to - s.from).head<3>().matrix().norm(); };
-  const double travel = job.isStraight() ? lengthOf(job.faceStroke(0, job.deepest(), 0))
-                                         : std::abs(job.strokeLaw(0).to - job.strokeLaw(0).from);
-  double edge = std::numeric_limits<double>::infinity();  // shortest edge of all teeth, per axial travel
+  double way = std::numeric_limits<double>::infinity();  // shortest of all teeth
   for (int i = 0; i < job.teeth(); ++i) {
-    edge = std::min(edge, ConicalCutter(job.cutterOf(i)).edgePerTravel());
+    if (job.isStraight()) {
+      const FaceStroke stroke = job.faceStroke(i, job.deepest(), 0);
+      way = std::min(way, (stroke.to - stroke.from).head<3>().matrix().norm());
+    } else {
+      const double travel = std::abs(job.strokeLaw(i).to - job.strokeLaw(i).from);
+      way = std::min(way, job->process().clearance + travel * ConicalCutter(job.cutterOf(i)).edgePerTravel());
+    }
   }
-  const double way = job.isStraight() ? travel : job->process().clearance + travel * edge;
   const std::vector<JobPass>& passes = job.passes();
   const auto is_first = [&](const JobPass& pass) { return pass.place == first; };
   const auto left = passes.end() - std::find_if(passes.begin(), passes.end(), is_first);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 namespace grinder {
@@ -15,6 +14,7 @@ namespace {
 
 constexpr int kEndSections = 6;      ///< number of the measured distances from the axis
 constexpr int kHeels = 9;            ///< number of distances at which a heel is measured, since a fin is short
+constexpr int kCenterHeels = 6;      ///< number of those within the edge of a tooth to the centre
 constexpr double kOutermost = 0.97;  ///< of these the farthest, per radius of the corner
 constexpr double kBeyond = 20e-6;    ///< least distance of a section from where the edge begins [m]
 constexpr double kTouched = 5e-6;    ///< length of a periphery's edge, and height of a heel, that do not count [m]
@@ -28,6 +28,7 @@ struct EndPlace {
   FigureValue uncut, short_from;  ///< diameter outside which the edge is whole; of a short tooth, radius [m]
   double periphery = 0;           ///< see ToolFigure::kPeripheryTaken [m]
   std::optional<ChamferFigures> chamfer;
+  FigureValue drag;  ///< of its heel [m]
 };
 
 /// A figure of the end, with the operation from which on it is asked.
@@ -63,7 +64,7 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_uncut_diameter; }},
     {ToolFigure::kPeripheryTaken, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.periphery); },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
-    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace&) { return FigureValue(); },
+    {ToolFigure::kHeelDrag, OperationKind::kPrimaryEnd, [](const EndPlace& p) { return p.drag; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kShortFrom, OperationKind::kGash, [](const EndPlace& p) { return p.short_from; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_short_from; }},
@@ -108,16 +109,17 @@ bool hasEdges(const ValidJob& job, const std::optional<ValidJob>& next) {
   return next || job->hasGround(OperationKind::kPrimaryEnd);
 }
 
-/// Whether no flank of the end is to come.
+/// Whether there are edges, and no flank of the end is to come.
 bool hasAllFlanks(const GrindJob& job) {
-  return std::none_of(job.operations.begin() + job.operation + 1, job.operations.end(),
+  return job.hasGround(OperationKind::kPrimaryEnd) &&
+         std::none_of(job.operations.begin() + job.operation + 1, job.operations.end(),
                       [](const GrindProcess& p) { return isEndFlank(p.kind); });
 }
 
 /// A figure is asked once its operation is done.
 bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
   if (m.figure == ToolFigure::kPeripheryTaken) return true;
-  if (m.figure == ToolFigure::kHeelDrag) return job->hasGround(m.since) && hasAllFlanks(*job);
+  if (m.figure == ToolFigure::kHeelDrag) return hasAllFlanks(*job);
   if (m.figure == ToolFigure::kUncutDiameter) return hasEdges(job, next);
   if (m.figure == ToolFigure::kShortFrom) return hasEdges(job, next) && job->cutter.end_center_teeth > 0;
   return job->hasGround(m.since);
@@ -135,7 +137,7 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}};
+    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}};
     const double radius = cutter_.end_diameter / 2;
     const bool has_edge = hasEdges(job_, next_);
     const bool is_short = job_->isShort(static_cast<int>(tooth));
@@ -153,7 +155,7 @@ class EndCheck {
       take(place, tooth);
     }
     if (!(inner < outer)) take(place, tooth);
-    if (hasAllFlanks(*job_)) measureHeel(tooth, inner, outer);
+    if (hasAllFlanks(*job_)) measureHeel(place, tooth, inner, outer);
   }
 
   CutterCheck result() {
@@ -166,26 +168,29 @@ class EndCheck {
   }
 
  private:
-  /// By which the end stands in front of an edge, up to the next tooth that has one as far in.
-  double drag(std::size_t tooth, const EndSection& at) const {
-    const EndTooth own = endToothOf(*job_, static_cast<int>(tooth));
-    return end_.heelDrag(tooth, at, at.r < own.next_from ? units::kTurn / cutter_.end_center_teeth : own.pitch);
+  /// Where a tooth to the centre has no edge, nothing may stand in front of where that would be.
+  /// @param place of the tooth.
+  void measureHeel(EndPlace place, std::size_t tooth, double inner, double outer) {
+    const bool to_axis = cutter_.end_center_teeth > 0 && !job_->isShort(static_cast<int>(tooth));
+    for (int i = 1; to_axis && i <= kCenterHeels; ++i) {
+      EndSection at;
+      at.r = inner * i / (kCenterHeels + 1);
+      at.edge = (cutter_.end_diameter / 2 - at.r) * std::tan(cutter_.end_dish);
+      takeHeel(place, tooth, at);
+    }
+    for (int i = 0; i < kHeels && inner < outer; ++i) {
+      takeHeel(place, tooth, end_.edgeAt(tooth, inner + (outer - inner) * i / (kHeels - 1)));
+    }
   }
 
-  /// Where a tooth to the centre has no edge, nothing may stand in front of where that would be.
-  void measureHeel(std::size_t tooth, double inner, double outer) {
-    const auto heel_drag = std::find_if(std::begin(kEndMeasurements), std::end(kEndMeasurements),
-                                        [](const EndMeasurement& m) { return m.figure == ToolFigure::kHeelDrag; });
-    const bool to_axis = cutter_.end_center_teeth > 0 && !job_->isShort(static_cast<int>(tooth));
-    const double first = to_axis ? outer / kHeels : inner;
-    for (int i = 0; i < kHeels && first < outer; ++i) {
-      const double r = first + (outer - first) * i / (kHeels - 1);
-      EndSection at;
-      at.r = r;
-      at.edge = (cutter_.end_diameter / 2 - r) * std::tan(cutter_.end_dish);
-      if (r >= inner) at = end_.edgeAt(tooth, r);
-      if (at.edge) add(*heel_drag, drag(tooth, at), r, static_cast<int>(tooth));
-    }
+  /// Takes by how much the end stands in front of an edge, up to the next tooth that has one as far in.
+  void takeHeel(EndPlace& place, std::size_t tooth, const EndSection& at) {
+    if (!at.edge) return;
+    const EndTooth own = endToothOf(*job_, static_cast<int>(tooth));
+    place.at = EndSection{};
+    place.at.r = at.r;
+    place.drag = end_.heelDrag(tooth, at, at.r < own.next_from ? units::kTurn / cutter_.end_center_teeth : own.pitch);
+    take(place, tooth);
   }
 
   /// The length of the periphery's edge, behind the chamfer, that is taken away.

@@ -60,16 +60,16 @@ GroundEnd::Surface GroundEnd::surface(std::size_t tooth, double r, double behind
 GroundEnd::Surface GroundEnd::surface(const Ray& ray) const {
   std::vector<Range> flutes;
   for (std::size_t i = 0; i < flutes_.teeth(); ++i) flutes_.addRemoved(i, ray.r, ray.angle, flutes);
-  Surface left{blank_x_, nullptr};
+  Surface left{blank_x_, nullptr, false};
   for (double before = -std::numeric_limits<double>::infinity(); left.x > before;) {
     before = left.x;
     for (const EndCut& cut : cuts_) {
       if (&cut == left.cut) continue;
       const std::optional<double> to = cut.sweep.removedTo(ray.at, left.x);
-      if (to && *to > left.x) left = {*to, &cut};
+      if (to && *to > left.x) left = {*to, &cut, false};
     }
     for (const Range& range : flutes) {
-      if (range.from <= left.x && range.to > left.x) left = {range.to, nullptr};
+      if (range.from <= left.x && range.to > left.x) left = {range.to, nullptr, true};
     }
   }
   return left;
@@ -156,22 +156,26 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
 }
 
 double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double pitch) const {
-  const double step = std::min(kHeelStep, kStep * radius_ / section.r), edge = std::atan2(section.behind, section.r);
+  const double step = std::min(kHeelStep, kStep * radius_ / section.r), nearby = kNearby * radius_ / section.r;
+  const double end = pitch - nearby;
   const auto at = [&](double turn) { return surface(rayAt(section.r, tooth_angles_[tooth] + hand_ * turn)); };
-  double drag = 0, turn = edge + kNearby * radius_ / section.r;
-  for (Surface before = at(turn); turn < pitch - step; turn += step) {
-    const Surface here = at(turn);
-    drag = std::max(drag, *section.edge - here.x);
+  double drag = 0, from = std::atan2(section.behind, section.r) + nearby;
+  const auto look = [&](double turn, const Surface& here) {
+    const bool of_next = here.cut != nullptr && here.cut->tooth != tooth && isEndFlank(here.cut->kind);
+    if (!of_next || turn < pitch - step) drag = std::max(drag, *section.edge - here.x);
+  };
+  for (Surface before = at(from); from < end;) {
+    const double to = std::min(from + step, end);
+    const Surface here = at(to);
+    look(to, here);
     // A fin may be narrower than a step: it begins where a face ends.
-    double from = turn - step;
-    for (int faces = 0; before.cut != here.cut && faces < kFacesInStep; ++faces) {
-      from = changeBetween(
-                 from, turn, [&](double to) { return at(to).cut != before.cut; }, kHalvings) +
-             kNearby;
+    for (int faces = 0; !before.isAlike(here) && faces < kFacesInStep; ++faces) {
+      const auto is_other = [&](double turn) { return !at(turn).isAlike(before); };
+      from = std::min(changeBetween(from, to, is_other, kHalvings) + nearby, to);
       before = at(from);
-      drag = std::max(drag, *section.edge - before.x);
+      look(from, before);
     }
-    before = here;
+    before = here, from = to;
   }
   return drag;
 }

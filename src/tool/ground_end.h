@@ -66,7 +66,8 @@ class GroundEnd {
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
   /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.
-  /// What is narrower than a fiftieth of the radius is found only where a face ends.
+  /// What is narrower than a fiftieth of the radius is found only where a face ends. The land of the next tooth, which
+  /// may begin as far before the angle of that one, does not count.
   /// @param section of the tooth, with an edge.
   /// @param pitch angle to the next tooth [rad].
   double heelDrag(std::size_t tooth, const EndSection& section, double pitch) const;
@@ -82,10 +83,12 @@ class GroundEnd {
   };
   static Ray rayAt(double r, double angle);
   Ray rayAt(std::size_t tooth, double r, double behind) const;
-  /// The surface that is left on a ray: its X, and the cut that formed it, or none.
+  /// The surface that is left on a ray: its X, and the cut on the end or else the flute that formed it, or none.
   struct Surface {
     double x;
     const EndCut* cut;
+    bool of_flute;
+    bool isAlike(const Surface& other) const { return cut == other.cut && of_flute == other.of_flute; }
   };
   Surface surface(const Ray& ray) const;
   Surface surface(std::size_t tooth, double r, double behind) const;

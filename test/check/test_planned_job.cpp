@@ -79,6 +79,27 @@ TEST(PlannedJob, IsGivenUpByItsWatch) {
   }
 }
 
+/// The passes of an earlier relief are computed once more for the check of the cutter.
+TEST(PlannedJob, IsGivenUpAfterItsPlanToo) {
+  GrindJob job = readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary");
+  GrindProcess& primary = job.operations[1];
+  primary.infeed = 0;
+  primary.roughing_passes = 2;
+  primary.wheel_wear_per_pass = 1e-7;
+  double planned_up_to = 0;
+  int after = 0;
+  const auto watch = [&](double done) {
+    EXPECT_GE(done, planned_up_to);
+    planned_up_to = done;
+    if (done == 1) ++after;
+    return after < 10;
+  };
+  const PlannedJob whole = planned(job, test_support::roomyMachine(), watch);
+  EXPECT_EQ(after, 10);
+  EXPECT_EQ(whole.fault, PlanFault::kGivenUp) << text(whole.reasons);
+  EXPECT_FALSE(whole.closest);
+}
+
 TEST(PlannedJob, HasWhatItsPassesRemoveIfThatIsAskedAndItIsGood) {
   PlannedJob whole = planned(paper());
   EXPECT_FALSE(whole.passes);

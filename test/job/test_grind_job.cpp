@@ -363,12 +363,21 @@ TEST(GrindJob, HasTeethToTheCentreWhereOthersAreBesideThem) {
   EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_center_teeth = 3; }),
             "cutter.end.center_teeth = 3; allowed: 0 to 2\n");
   EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_short_from = 0.1e-3; }),
-            "cutter.end.short_from_mm = 0.1 mm; allowed: 0.2 to 5 mm\n");
+            "cutter.end.short_from_mm = 0.1 mm; allowed: at least 0.2 mm\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_short_from = 5e-3; }),
+            "cutter.end.short_from_mm = 5 mm; allowed: less than 5 mm, the cutter's radius at the end\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.process().gash_short_past = -5e-3; }),
+            "process.short.past_mm = -5 mm; allowed: more than the cutter's radius at the end, -5 mm\n");
   EXPECT_EQ(refusal([](GrindJob& job) { job.process().gash_short_angle = 4 * units::kDegree; }),
             "process.short.angle_deg = 4 deg; allowed: 0, or from 5 deg\n");
   EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_center_teeth = 0; }),
-            "cutter.end.short_from_mm = 1.5 mm; allowed: 0 without cutter.end.center_teeth\n"
+            "cutter.end.short_from_mm = 1.5 mm; allowed: 0 without cutter.end.center_teeth\n");
+  EXPECT_EQ(refusal([](GrindJob& job) { job.cutter.end_center_teeth = 0, job.cutter.end_short_from = 0; }),
             "process.short.past_mm = -0.5 mm; allowed: 0 without cutter.end.center_teeth\n");
+  // From the flutes on.
+  EXPECT_EQ(refusal([&](GrindJob& job) { job.operation = 0, evenly(job, 5); }), of_two);
+  EXPECT_EQ(refusal([](GrindJob& job) { job.operation = 0, job.cutter.end_center_teeth = 0; }),
+            "cutter.end.short_from_mm = 1.5 mm; allowed: 0 without cutter.end.center_teeth\n");
 }
 
 TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {

@@ -1,3 +1,4 @@
+#include "flute_grinder/job/job_file.h"
 #include "plans.h"
 
 #include <gtest/gtest.h>
@@ -57,6 +58,25 @@ TEST(JobPlan, RefusesAJobThatTakesTooLongBeforeItIsMade) {
     const double before = order == GrindOrder::kToothMajor ? 10 * 300 + 5 : 5 * 64 + 10;
     EXPECT_NEAR(rest.reasons[0].value, (64 * 300 - before) * pass, 1e-6 * pass);
   }
+}
+
+/// The gashes of short teeth are shorter than the first.
+TEST(JobPlan, RefusesNoGashesThatTakeLessThanAllowed) {
+  GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "gash");
+  job.process().feed = 1e-5;
+  const ValidJob gash(job), flutes(job.ofOperation(0));
+  const ValidJob valid = gash.withEdges(flutes, std::vector<EdgeHelix>(job.tooth_angles.size()));
+  double strokes = 0;
+  for (const JobPass& pass : valid.passes()) {
+    const FaceStroke stroke = valid.faceStroke(pass.place.tooth, valid.deepest(), 0);
+    strokes += (stroke.to - stroke.from).head<3>().matrix().norm() / job.process().feed;
+  }
+  Machine machine = roomyMachine();
+  machine.max_job_duration = 1;
+  const JobPlan plan = planJob(valid, machine, machine.park);
+  ASSERT_EQ(plan.fault, PlanFault::kTooLong) << textOf(plan);
+  EXPECT_LT(plan.reasons[0].value, strokes);
+  EXPECT_GT(plan.reasons[0].value, 0.8 * strokes);
 }
 
 TEST(JobPlan, RefusesAJobOnceItTakesTooLong) {

@@ -106,6 +106,17 @@ TEST(EndRun, AConstantErrorIsAsDeepAsItIsAcrossThePlane) {
   }
 }
 
+/// The bottom of a short tooth's gash may have an angle of its own.
+TEST(EndRun, AGashThatIsTooDeepIsSoAcrossTheBottomOfItsTooth) {
+  GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "gash");
+  job.process().gash_short_angle = 30 * kDegree;
+  const std::vector<Gouge> gouges = gougesOf(runOf(withLaws(ValidJob(job)), along(kY, -kOff)), 1e-9);
+  EXPECT_FALSE(gouges.empty());
+  for (const Gouge& gouge : gouges) {
+    EXPECT_NEAR(gouge.depth, kOff * std::cos((gouge.place.tooth % 2 ? 30 : 45) * kDegree), 1e-9) << gouge.place.tooth;
+  }
+}
+
 /// A secondary flank that is lower meets the primary one nearer to the edge.
 TEST(EndRun, AFlankIsMeasuredWhereItWasGround) {
   const ValidJob job = jobOf("end_secondary");

@@ -224,6 +224,20 @@ TEST(EndCheck, TeethToTheCentreBeginAtTheAxisAndTheOthersAsAsked) {
   EXPECT_EQ(find(checked(jobOf("chamfer", kShipped)).figures, ToolFigure::kShortFrom), nullptr);
 }
 
+/// Rounded corners of the wheel leave a nib at the axis, where no edge is.
+TEST(EndCheck, NothingMayStandAtTheAxisInFrontOfTeethToTheCentre) {
+  const CutterCheck check = checked(centerCutting("chamfer", [](GrindJob& job) {
+    for (GrindProcess& p : job.operations) {
+      if (isEndFlank(p.kind)) p.wheel_corner_radius_lower = 0.1 * kMillimetre;
+    }
+  }));
+  const GroundFigure* drag = find(check.figures, ToolFigure::kHeelDrag);
+  ASSERT_TRUE(drag);
+  EXPECT_GT(drag->largest.value, 5e-6);
+  EXPECT_LT(drag->largest.x, 0.1 * kMillimetre);
+  EXPECT_NE(text(check.reasons).find("the heel drag of tooth 1 is "), std::string::npos) << text(check.reasons);
+}
+
 TEST(EndCheck, RefusesShortTeethThatBeginTooFarOut) {
   const CutterCheck check =
       checked(centerCutting("chamfer", [](GrindJob& job) { gashOf(job).gash_short_past = -1.5 * kMillimetre; }));
@@ -260,6 +274,14 @@ Change withoutFlanks(CutDirection cut) {
       p.setup_height *= -1;
     }
   };
+}
+
+TEST(EndCheck, WithoutFlanksThereIsNoHeel) {
+  GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "chamfer");
+  withoutFlanks(CutDirection::kRightHand)(job);
+  const CutterCheck check = checked(job);
+  EXPECT_EQ(find(check.figures, ToolFigure::kHeelDrag), nullptr);
+  EXPECT_EQ(text(check.reasons).find("heel drag"), std::string::npos) << text(check.reasons);
 }
 
 TEST(EndCheck, ALeftHandEndMeasuresAsItsMirrorImage) {

@@ -1,6 +1,9 @@
 #include "tool/ground_end.h"
 
 #include "flute_grinder/base/units.h"
+#include "flute_grinder/job/job_file.h"
+#include "flute_grinder/tool/ground_job.h"
+#include "flute_grinder/tool/z_law.h"
 #include "random_cases.h"
 
 #include <gtest/gtest.h>
@@ -251,6 +254,50 @@ TEST(GroundEnd, FindsFromWhereEdgesAreWholeAndTheChamfer) {
       EXPECT_NEAR(chamfer->clearance, end.chamfer_clearance, 1e-4);
     }
   }
+}
+
+/// An end of which a flute is ground, and perhaps a gash behind it.
+TEST(GroundEnd, FindsWhatOfTheBlankIsLeftBehindAFlute) {
+  const EndFlutes flutes(groundCutterOf(withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", "flute")))));
+  constexpr double kR = 4 * kMillimetre, kRadius = 5 * kMillimetre, kDeep = 0.1 * kMillimetre, kFine = 0.01 * kDegree;
+  const auto is_flute = [&](double turn) {
+    std::vector<Range> ranges;
+    for (std::size_t i = 0; i < flutes.teeth(); ++i) flutes.addRemoved(i, kR, turn, ranges);
+    return std::any_of(ranges.begin(), ranges.end(), [](const Range& x) { return x.from <= 0 && x.to > kDeep; });
+  };
+  double heel = 5 * kDegree;
+  while (!is_flute(heel)) heel += kFine;
+  double edge = heel + kDegree;
+  while (is_flute(edge)) edge += kFine;
+
+  const EndTooth tooth{kRadius, kPi / 2, CutDirection::kRightHand};
+  const FaceWheel wheel = wheelOf(100, 1);
+  const FaceStroke stroke = gashStroke(tooth, gashNormal(0, 0), 45 * kDegree, 0, wheel, 1 * kMillimetre);
+  const auto gashAt = [&](double angle) {
+    return FaceSweep(stroke, wheel, WheelProfile::straight(2 * wheel.radius, wheel.width), kRadius, angle);
+  };
+  double width = 0;
+  while (gashAt(0).removes({kR * std::cos(width + kFine), -kR * std::sin(width + kFine)}, kDeep)) width += kFine;
+  EXPECT_GT(width, 10 * kDegree);
+
+  // By which the end stands in front of a place so deep, from within the flute.
+  const auto drag = [&](double face, double to) {
+    const GroundEnd end(kRadius, tooth.cut, {0, kPi / 2, kPi, 1.5 * kPi}, {{1, OperationKind::kGash, gashAt(face)}}, 0,
+                        flutes);
+    EndSection from;
+    from.r = kR;
+    from.edge = kDeep;
+    from.behind = kR * std::tan(heel + 2 * kDegree);
+    return end.heelDrag(0, from, to);
+  };
+  // A gash that begins in the flute, and one that leaves a fin beside it.
+  EXPECT_EQ(drag(edge + width - kDegree, edge + 5 * kDegree), 0);
+  for (const double fin : {0.2 * kDegree, 0.7 * kDegree}) {
+    EXPECT_EQ(drag(edge + width + fin, edge + 5 * kDegree), kDeep);
+  }
+  // What is narrower than a step, just before where the heel ends.
+  EXPECT_EQ(drag(edge + kPi, edge - 0.1 * kDegree), 0);
+  EXPECT_EQ(drag(edge + kPi, edge + 0.2 * kDegree), kDeep);
 }
 
 /// A left-hand tool's edge is the lowest place of the chamfer's flank: one of its ends, by the helix.

@@ -57,10 +57,10 @@ std::vector<ToolFigure> ownFigures(OperationKind kind) {
   }
 }
 
-/// The slope of a figure from its values a step before, at, and a step behind a place; NaN if it has none.
-double slopeOf(OperationKind kind, double before, double at, double behind, double step) {
-  if (kind == OperationKind::kFlute) return (behind - before) / (2 * step);
-  const double falling = (at - before) / step, rising = (behind - at) / step;
+/// The slope of a figure from its values a step below, at, and a step above a turn; NaN if it has none.
+double slopeOf(OperationKind kind, double below, double at, double above, double step) {
+  if (kind == OperationKind::kFlute) return (above - below) / (2 * step);
+  const double falling = (at - below) / step, rising = (above - at) / step;
   if (std::isnan(falling) || std::isnan(rising)) return std::isnan(falling) ? rising : falling;
   return std::abs(falling) > std::abs(rising) ? falling : rising;
 }
@@ -117,10 +117,9 @@ FigureModel figureModel(const ValidJob& job, const std::vector<FigureAt>& figure
                     Eigen::Matrix<double, Eigen::Dynamic, kSetupTurnCount>(count, kSetupTurnCount)};
   for (const SetupTurnRow& row : kSetupTurns) {
     const Turns step = row.step * Turns::Unit(indexOf(row.value));
-    const Eigen::VectorXd before = figuresOffBy(job, figures, -step), behind = figuresOffBy(job, figures, step);
+    const Eigen::VectorXd below = figuresOffBy(job, figures, -step), above = figuresOffBy(job, figures, step);
     for (Eigen::Index i = 0; i < count; ++i) {
-      model.slope(i, indexOf(row.value)) =
-          slopeOf(job->process().kind, before[i], model.planned[i], behind[i], row.step);
+      model.slope(i, indexOf(row.value)) = slopeOf(job->process().kind, below[i], model.planned[i], above[i], row.step);
     }
   }
   Sections sections(cutterOffBy(job, Turns::Zero()));

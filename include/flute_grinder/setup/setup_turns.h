@@ -45,7 +45,7 @@ struct FigureAt {
 std::string text(const FigureAt& at);
 
 /// The figures of a job's first tooth, near its planned set-up: planned + slope * turns. A relief that is too high
-/// leaves an edge as it is, so its diameter has a slope to one side alone; the steeper side counts.
+/// leaves an edge as it is, so its diameter has a slope to one side alone. Of its figures the steeper side counts.
 struct FigureModel {
   std::vector<FigureAt> figures;
   Eigen::VectorXd planned;    ///< with the planned set-up [m], [rad]
@@ -62,7 +62,7 @@ bool isCorrectable(OperationKind kind) noexcept;
 /// width that it leaves of the primary. @param job an operation that isCorrectable().
 std::vector<FigureAt> judgedFigures(const GrindJob& job);
 
-/// The figures of the first tooth that a job's strokes grind on a machine whose set-up is off, behind earlier
+/// The figures of the first tooth that a job's strokes grind on a machine whose set-up is off, after earlier
 /// operations as planned.
 /// @param job an operation that isCorrectable(), with its laws.
 /// @param off how far the set-up is off.

@@ -136,7 +136,8 @@ std::string whatLimitsStraight(const JobSetup& setup, const Range& swivel) {
   const GrindProcess& p = setup.job.process();
   const JobSetup::Straight& straight = *setup.straight;
   const std::string past = format("%.3f mm %s the cutter's axis, at Y %.3f mm", std::abs(mm(straight.past_axis)),
-                                  straight.past_axis < 0 ? "before" : "past", mm(straight.last.to[kY]));
+                                  straight.past_axis < 0 ? "before" : "past", mm(straight.last.to[kY])) +
+                           (setup.job.cutter.end_center_teeth > 0 ? ", at the first tooth" : "");
   std::string ends = setup.job.comesAlongX() ? "goes round the next tooth, and ends " : "ends ";
   if (p.kind == OperationKind::kChamfer) ends += format("%g mm beyond the flank, ", mm(kEndGap));
   return swivelText(std::min(p.setup_swivel - swivel.from, swivel.to - p.setup_swivel)) + line("rim", ends + past) +

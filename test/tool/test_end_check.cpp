@@ -242,7 +242,7 @@ TEST(EndCheck, RefusesShortTeethThatBeginTooFarOut) {
   const CutterCheck check =
       checked(centerCutting("chamfer", [](GrindJob& job) { gashOf(job).gash_short_past = -1.5 * kMillimetre; }));
   const std::string why = text(check.reasons);
-  EXPECT_NE(why.find("the short edge's start of tooth 2 is 1.6"), std::string::npos) << why;
+  EXPECT_NE(why.find("the beginning of the short edge of tooth 2 is 1.6"), std::string::npos) << why;
 }
 
 /// The plan of a gash tells which edges it spoils, once the flank that follows can be planned.

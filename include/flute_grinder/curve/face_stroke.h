@@ -62,8 +62,8 @@ struct EndTooth {
   CutDirection cut = CutDirection::kRightHand;
   /// Radius outside which the next tooth has an edge [m].
   double next_from = 0;
-  /// Distance by which the rim passes the axis, for an edge up to it; not without `next_from`. 0: the rim stays before
-  /// the axis [m].
+  /// Distance by which the rim passes the axis, for an edge up to it; not without `next_from`. 0: as far as the next
+  /// tooth's edge allows [m].
   double past_axis = 0;
 };
 
@@ -81,8 +81,8 @@ struct FaceStroke {
 /// farther; what is left of the heel is the gash's. Stock is normal to the flank.
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
-/// @param gap least distance of the rim from the next tooth's edge; with `past_axis`, both together less than
-///        `next_from` [m].
+/// @param gap least distance of the rim from the next tooth's edge; with `past_axis`, gap and `past_axis` together
+///        less than `next_from` [m].
 /// @param clear distance of the wheel from the blank at the beginning [m].
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
                      double gap, double clear) noexcept;

@@ -88,7 +88,7 @@ inline constexpr ToolFigureRow kToolFigures[]{
     figureOfEnd(ToolFigure::kChamferAngle, "chamfer_angle", "chamfer angle", Unit::kRadian),
     figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
     figureOfEnd(ToolFigure::kHeelDrag, "heel_drag", "heel drag", Unit::kMetre),
-    figureOfEnd(ToolFigure::kShortFrom, "short_from", "short edge's start", Unit::kMetre),
+    figureOfEnd(ToolFigure::kShortFrom, "short_from", "beginning of the short edge", Unit::kMetre),
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

@@ -106,8 +106,8 @@ SetupFindings findingsOf(const ValidJob& job, std::vector<ToolNumber> tools, std
 
 std::string byHandText(const Correction& correction) {
   if (!correction.by_swivel) return "";
-  return format("turn the swivel by %+.3f deg, at its scale or stop, and confirm the job's angle again",
-                correction.turn[indexOf(SetupTurn::kSwivel)] / units::kDegree);
+  return "turn the swivel by " + format("%+.3f", correction.turn[indexOf(SetupTurn::kSwivel)] / units::kDegree) +
+         " deg, at its scale or stop, and confirm the job's angle again";
 }
 
 std::string settingsText(const SetupFindings& found, const Correction& correction) {
@@ -120,8 +120,9 @@ std::string settingsText(const SetupFindings& found, const Correction& correctio
   std::string lines;
   for (const CorrectedAxis& one : kCorrectedAxes) {
     const double by = correction.turn[indexOf(one.turn)], to = found.last.offset[indexOf(one.turn)] + by;
-    lines += format("%swork offset of %c: %+.4f mm, to %.4f mm", lines.empty() ? "" : "\n", axisLetter(one.axis),
-                    by / units::kMillimetre, to / units::kMillimetre);
+    if (!lines.empty()) lines += "\n";
+    lines += std::string("work offset of ") + axisLetter(one.axis) + ": " + format("%+.4f", by / units::kMillimetre) +
+             " mm, to " + format("%.4f", to / units::kMillimetre) + " mm";
   }
   return correction.by_swivel ? lines + "\n" + byHandText(correction) + "; then use 'grind correct --since'" : lines;
 }

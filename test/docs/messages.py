@@ -59,7 +59,7 @@ MESSAGES = {
         'Set the work offsets of Y and Z; nothing moves', 'Set them to what they were before the last correction', 'Measured tools of',
         'Correct the zero points?', 'Set them back?', 'Close this window', 'Reading the records ...', 'Set them',
         ', the last of this job and set-up, ground until', '. Enter what a gauge says of its first tooth.',
-        'What is shown then counts; nothing moves', 'The work offsets of Y and Z are set. Grind the next tool.'),
+        'What is shown then counts; nothing moves', 'The work offsets of Y and Z are set.', 'Grind the next tool.', 'Before the next tool,'),
     'src/cli/measured.cpp': (),
     'src/cli/correct.cpp': (),
     'src/node/diagnostics.cpp': ('of the allowed [%]', 'cycle duration', 'wake-up delay'),

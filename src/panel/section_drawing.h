@@ -9,8 +9,8 @@
 namespace grinder {
 
 /// Draws a section of the ground cutter, seen from the shank and turned until the first tooth's edge is at the top, or
-/// its end. In a section the first tooth's rake and land, the core and the cutter's diameter are dimensioned; the values
-/// asked for are dashed.
+/// its end. In a section the first tooth's rake and land, the core and the cutter's diameter are dimensioned; the
+/// values asked for are dashed.
 class SectionDrawing : public QWidget {
   Q_OBJECT
 

@@ -175,7 +175,7 @@ class Tool:
 class RightHandEndByForce(unittest.TestCase):
     FILE = 'jobs/end_mill_d10_t4.yaml'
     PARTS = [0.1, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured
-    KEPT_NEAR = 1e-4  # by which another tooth's stroke may set an edge back near its beginning [mm]
+    KEPT = 1e-4  # by which another tooth's stroke may set an edge back [mm]
 
     @classmethod
     def setUpClass(cls):
@@ -221,13 +221,12 @@ class RightHandEndByForce(unittest.TestCase):
                 faces.append(low)
             self.near(tooth, 'rake', numpy.degrees(numpy.arctan((faces[1] - faces[0]) / 0.04)), self.end['rake_deg'], 0.01)
 
-    def is_whole(self, tooth, rs, begin):
+    def is_whole(self, tooth, rs):
         """Whether an edge is where the tooth's own strokes leave it, in the plane that is asked, so that no other touches it."""
         all_strokes, own = (self.tool.edges(strokes, tooth, rs, 'end_primary', -0.02, 0.1)
                             for strokes in (self.tool.strokes, self.tool.of(tooth)))
         plane = (self.tool.radius - rs) * self.dish + all_strokes[0] * self.clearance
-        kept = numpy.where(rs < begin + 0.05, self.KEPT_NEAR, 1e-4)
-        return ((abs(all_strokes[0] - own[0]) < kept) & (abs(all_strokes[1] - own[1]) < kept) &
+        return ((abs(all_strokes[0] - own[0]) < self.KEPT) & (abs(all_strokes[1] - own[1]) < self.KEPT) &
                 (abs(all_strokes[1] - plane) < 1e-3))
 
     def printed_beginning(self, tooth):
@@ -243,7 +242,7 @@ class RightHandEndByForce(unittest.TestCase):
             printed = self.printed_beginning(tooth)
             near = printed + numpy.arange(-0.04, 0.05, 0.01)
             rs = numpy.concatenate([near[near > 0], numpy.linspace(printed + 0.05, self.corner - 0.02, 6)])
-            whole = self.is_whole(tooth, rs, printed)
+            whole = self.is_whole(tooth, rs)
             self.assertTrue(whole.any() and not whole.all())
             self.near(tooth, 'whole from', rs[~whole].max(), printed, 0.02)
 
@@ -290,7 +289,7 @@ class SixTeethByForce(RightHandEndByForce):
 class CentreCuttingByForce(RightHandEndByForce):
     FILE = 'jobs/center_cutting_d10_t4.yaml'
     PARTS = [0.35, 0.5, 0.7, 0.9]  # where the short teeth are, too
-    KEPT_NEAR = 0.01  # rims end across edges, at a narrow angle; the plan allows as much
+    KEPT = 0.01  # rims end across edges, at a narrow angle; the plan allows as much
 
     def test_nothing_stands_in_front_of_the_edges_over_the_centre(self):
         turn = numpy.linspace(0, 2 * math.pi, 720, endpoint=False)

@@ -72,6 +72,8 @@ TEST_F(SectionOnStage, OfAnOperationOnTheEndIsItsEnd) {
     panel.chooseOperation(operation);
     openSection(panel);
   };
+  open("1 flute");
+  WAIT_FOR(panel.enabled("section_x") && shows(panel, "Rake "));
   open("4 gash");
   WAIT_FOR(shows(panel, "Gash rake 3.000 deg") && pixels(gash) > 100);
   EXPECT_FALSE(panel.enabled("section_x"));
@@ -81,8 +83,6 @@ TEST_F(SectionOnStage, OfAnOperationOnTheEndIsItsEnd) {
   WAIT_FOR(shows(panel, "Chamfer width") && pixels(chamfer) > 0);
   EXPECT_GT(pixels(secondary), pixels(gash)) << "it took most of it";
   panel.picture("section_end");
-  open("1 flute");
-  WAIT_FOR(panel.enabled("section_x") && shows(panel, "Rake "));
 }
 
 TEST_F(SectionOnStage, LandsDifferAsThePitchesDo) {

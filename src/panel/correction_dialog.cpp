@@ -131,7 +131,7 @@ void CorrectionDialog::layOut() {
   question_->setFixedHeight(question_->minimumSizeHint().height());
   showQuestion(false);
   resize(kDialogWidth * fontMetrics().horizontalAdvance('0'), minimumSizeHint().height());
-  refresh(std::nullopt, false);
+  for (QPushButton* button : {keep_, apply_, back_}) button->setEnabled(false);
 }
 
 void CorrectionDialog::begin(std::vector<MeasuredFigure> figures) {
@@ -173,14 +173,13 @@ void CorrectionDialog::take(Done done) {
   showText(done.text, done.good);
   if (table_ != nullptr) table_->setEnabled(true);
   // What was shown stays, with what has been typed, if nothing could be read.
-  if (done.found || !done_.found) done_ = std::move(done);
-  if (done_.found && done_.text == says_->text()) {
-    tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
-                           "first tooth.")
-                       .arg(done_.tool.number)
-                       .arg(localTime(done_.found->last.ended)));
-    showTable();
-  }
+  if (!done.found) return;
+  done_ = std::move(done);
+  tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
+                         "first tooth.")
+                     .arg(done_.tool.number)
+                     .arg(localTime(done_.found->last.ended)));
+  showTable();
 }
 
 void CorrectionDialog::showTable() {

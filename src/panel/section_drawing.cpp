@@ -183,13 +183,12 @@ class Painting {
 
 }  // namespace
 
-SectionDrawing::SectionDrawing(QWidget* parent) : QWidget(parent) {
-  setMinimumHeight(5 * fontMetrics().lineSpacing());
-  setSection(nullptr);
-}
+SectionDrawing::SectionDrawing(QWidget* parent) : QWidget(parent) { setSection(nullptr); }
 
 void SectionDrawing::setSection(std::shared_ptr<const CutterSection> section) {
   section_ = std::move(section);
+  // The legend of an end has up to eight lines.
+  setMinimumHeight((section_ && section_->end ? 9 : 5) * fontMetrics().lineSpacing());
   setToolTip(section_ && section_->end ? "The end, seen along the axis; the first tooth's edge is at the top"
                                        : "Seen from the shank, turned until the first tooth's edge is at the top");
   update();

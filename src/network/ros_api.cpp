@@ -1,9 +1,12 @@
 #include "flute_grinder/network/ros_api.h"
 
+#include <ros/master.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>
 
 #include <chrono>
+#include <stdexcept>
+#include <utility>
 
 namespace grinder {
 
@@ -11,20 +14,24 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-constexpr std::chrono::seconds kTimeout(1);
+constexpr std::chrono::seconds kTimeout(1), kParameterTimeout(10);
 constexpr double kSlice = 0.02;  ///< time between looks at `stop` [s]
 
-/// The value of a ROS API response [1, text, value]; nothing if it is malformed or reports an error.
-std::optional<XmlRpcValue> valueOf(XmlRpcValue& answer) {
-  const bool complete = answer.getType() == XmlRpcValue::TypeArray && answer.size() == 3;
-  if (!complete || answer[0].getType() != XmlRpcValue::TypeInt || static_cast<int>(answer[0]) != 1) return std::nullopt;
-  return answer[2];
+struct Answer {
+  bool success;
+  XmlRpcValue value;
+};
+
+/// What a ROS API response [code, text, value] says; nothing if it is malformed.
+std::optional<Answer> answerOf(XmlRpcValue& response) {
+  const bool complete = response.getType() == XmlRpcValue::TypeArray && response.size() == 3;
+  if (!complete || response[0].getType() != XmlRpcValue::TypeInt) return std::nullopt;
+  return Answer{static_cast<int>(response[0]) == 1, response[2]};
 }
 
-}  // namespace
-
-std::optional<XmlRpcValue> callRosApi(const std::string& host, unsigned port, const char* method,
-                                      const std::vector<XmlRpcValue>& arguments, const std::atomic<bool>& stop) {
+std::optional<Answer> call(const std::string& host, unsigned port, const char* method,
+                           const std::vector<XmlRpcValue>& arguments, std::chrono::seconds timeout,
+                           const std::atomic<bool>& stop) {
   XmlRpcValue all;
   all[0] = ros::this_node::getName();
   for (std::size_t i = 0; i < arguments.size(); ++i) all[static_cast<int>(i) + 1] = arguments[i];
@@ -32,13 +39,29 @@ std::optional<XmlRpcValue> callRosApi(const std::string& host, unsigned port, co
   if (!client.executeNonBlock(method, all)) return std::nullopt;
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  const auto due = std::chrono::steady_clock::now() + kTimeout;
+  const auto due = std::chrono::steady_clock::now() + timeout;
   while (!stop && client.getfd() >= 0 && std::chrono::steady_clock::now() < due) {
     dispatch.work(kSlice);
-    XmlRpcValue answer;
-    if (client.executeCheckDone(answer)) return valueOf(answer);
+    XmlRpcValue response;
+    if (client.executeCheckDone(response)) return answerOf(response);
   }
   return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<XmlRpcValue> callRosApi(const std::string& host, unsigned port, const char* method,
+                                      const std::vector<XmlRpcValue>& arguments, const std::atomic<bool>& stop) {
+  auto answer = call(host, port, method, arguments, kTimeout, stop);
+  if (!answer || !answer->success) return std::nullopt;
+  return std::move(answer->value);
+}
+
+std::optional<XmlRpcValue> readParameter(const std::string& name, const std::atomic<bool>& stop) {
+  auto answer = call(ros::master::getHost(), ros::master::getPort(), "getParam", {name}, kParameterTimeout, stop);
+  if (!answer) throw std::runtime_error("the ROS master at " + ros::master::getURI() + " does not answer");
+  if (!answer->success) return std::nullopt;
+  return std::move(answer->value);
 }
 
 }  // namespace grinder

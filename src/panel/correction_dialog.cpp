@@ -14,7 +14,6 @@
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
 
-#include <ros/master.h>
 #include <ros/names.h>
 #include <QDateTime>
 #include <QHBoxLayout>
@@ -40,7 +39,7 @@ constexpr double kSameOffset = 1e-9;  ///< [m]
 constexpr const char* kHeads[] = {"figure", "asked", "measured", "next tool, unchanged", "next tool, corrected"};
 
 XmlRpc::XmlRpcValue parameter(const std::string& name, const std::atomic<bool>& stop) {
-  auto value = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {name}, stop);
+  auto value = readParameter(name, stop);
   if (!value) throw std::runtime_error("no parameter " + name + " from the ROS master");
   return std::move(*value);
 }

@@ -13,7 +13,6 @@
 #include "panel/text_view.h"
 #include "panel/wheel_guard.h"
 
-#include <ros/master.h>
 #include <ros/names.h>
 #include <QFontDatabase>
 #include <QHBoxLayout>
@@ -139,7 +138,7 @@ SetupDialog::Done SetupDialog::solve() const {
   const auto refused = [](const std::string& why) { return Done{nullptr, false, QString::fromStdString(why), false}; };
   try {
     const JobToSetUp asked = readJobToSetUp(file_, operation_);
-    auto description = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {description_}, stop_);
+    auto description = readParameter(description_, stop_);
     if (!description || description->getType() != XmlRpc::XmlRpcValue::TypeString) {
       return refused("the machine's swivel is not known: no parameter " + description_ + " from the ROS master");
     }
@@ -166,7 +165,7 @@ SetupDialog::Done SetupDialog::solve() const {
 }
 
 std::optional<double> SetupDialog::aboveSwivel(const JobFile& asked, const GrindJob& job) const {
-  auto flange = callRosApi(ros::master::getHost(), ros::master::getPort(), "getParam", {flange_}, stop_);
+  auto flange = readParameter(flange_, stop_);
   const auto number = flange ? numberOf(*flange) : std::nullopt;
   if (!number) return std::nullopt;
   MachineGeometry machine;

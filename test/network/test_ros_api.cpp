@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <ros/init.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -11,13 +12,13 @@
 #include <string>
 #include <thread>
 
-// callRosApi against a master that answers, hangs, closes, or sends something else.
+// Calls of a master that answers, hangs, closes, or sends something else.
 namespace grinder {
 namespace test_ros_api {
 
 using XmlRpc::XmlRpcValue;
 
-/// Listens on a port of its own, and treats one connection as a test wants. Ends with this object.
+/// Listens on a port of its own, and treats each connection as a test wants. Ends with this object.
 class Server {
  public:
   using Treat = std::function<void(int connection)>;
@@ -32,10 +33,9 @@ class Server {
       throw std::runtime_error("no port");
     }
     thread_ = std::thread([this, treat = std::move(treat)] {
-      const int connection = ::accept(listener_, nullptr, nullptr);
-      if (connection < 0) return;
-      treat(connection);
-      ::close(connection);
+      for (int connection = 0; (connection = ::accept(listener_, nullptr, nullptr)) >= 0; ::close(connection)) {
+        treat(connection);
+      }
     });
   }
   ~Server() {
@@ -143,6 +143,25 @@ TEST(RosApi, GivesNothingOnceItIsStopped) {
     send(connection, answer(integer(1) + kText + integer(42)));
   });
   EXPECT_FALSE(call(server, true));
+}
+
+TEST(RosApi, TellsAParameterThatIsNotSetFromAMasterThatDoesNotAnswer) {
+  const std::atomic<bool> never{false};
+  int code = 1;
+  {
+    const Server master([&](int connection) {
+      read(connection);
+      send(connection, answer(integer(code) + kText + integer(42)));
+    });
+    ros::init(ros::M_string{{"__master", "http://127.0.0.1:" + std::to_string(master.port())}}, "test",
+              ros::init_options::NoRosout);
+    std::optional<XmlRpcValue> value = readParameter("/flange", never);
+    ASSERT_TRUE(value);
+    EXPECT_EQ(static_cast<int>(*value), 42);
+    code = -1;
+    EXPECT_FALSE(readParameter("/flange", never));
+  }
+  EXPECT_THROW(static_cast<void>(readParameter("/flange", never)), std::runtime_error);
 }
 
 }  // namespace test_ros_api

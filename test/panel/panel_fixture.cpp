@@ -128,6 +128,15 @@ void Panel::plan() {
   WAIT_FOR(enabled("start"));
 }
 
+std::string Panel::texts() {
+  std::string all;
+  for (const auto* widget : panel_->findChildren<QWidget*>()) {
+    const QString text = widget->property(widget->property("plainText").isValid() ? "plainText" : "text").toString();
+    if (widget->isVisible() && !text.isEmpty()) all += (widget->objectName() + ": " + text + '\n').toStdString();
+  }
+  return all;
+}
+
 void Panel::press(const char* name) {
   const auto offered = [&] {
     // An answer to a question is taken once its end was in sight.
@@ -136,7 +145,7 @@ void Panel::press(const char* name) {
     }
     return isVisible(name) && enabled(name);
   };
-  EXPECT_TRUE(QTest::qWaitFor(offered, kPatience)) << name;
+  EXPECT_TRUE(QTest::qWaitFor(offered, kPatience)) << name << " is not offered; the panel says\n" << texts();
   click(name);
 }
 

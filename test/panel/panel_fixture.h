@@ -78,6 +78,8 @@ class Panel {
     const auto* widget = panel_->findChild<QWidget*>(name);
     return widget && widget->isVisible();
   }
+  /// All texts in sight, with the names of what shows them.
+  std::string texts();
   bool enabled(const char* name) { return the<QWidget>(name).isEnabled(); }
   std::string state() { return label("state"); }
   /// Shows one of the tabs by a click.

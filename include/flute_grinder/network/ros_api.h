@@ -17,4 +17,12 @@ std::optional<XmlRpc::XmlRpcValue> callRosApi(const std::string& host, unsigned 
                                               const std::vector<XmlRpc::XmlRpcValue>& arguments,
                                               const std::atomic<bool>& stop);
 
+/// A parameter of the ROS master, which has ten seconds to answer: a busy computer must not look like one that has no
+/// such parameter.
+/// @param name resolved name.
+/// @param stop as for callRosApi().
+/// @return nothing if it is not set.
+/// @throw std::runtime_error if the master does not answer.
+std::optional<XmlRpc::XmlRpcValue> readParameter(const std::string& name, const std::atomic<bool>& stop);
+
 }  // namespace grinder

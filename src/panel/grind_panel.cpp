@@ -118,6 +118,7 @@ GrindPanel::GrindPanel(QWidget* parent)
       legend_(new LegendBox),
       look_(new PanelButton("look_at_tool", "Look at the tool",
                             "Turn rviz's view back to the tool; it does so by itself when another tool is shown")),
+      cut_open_(new QCheckBox("Cut open")),
       tabs_(new QTabWidget),
       override_(new OverrideBox),
       progress_(new ProgressBox),
@@ -150,6 +151,9 @@ GrindPanel::GrindPanel(QWidget* parent)
   connect(touch_off_, &TouchOffBox::reclampedWanted, this, &GrindPanel::askReclamped);
   connect(touch_off_, &TouchOffBox::measuredWanted, this, &GrindPanel::openCorrection);
   connect(look_, &QPushButton::clicked, this, [this] { rviz_->lookAt(*looked_at_); });
+  cut_open_->setObjectName("cut_open");
+  cut_open_->setToolTip("Leave out a wedge of the ground cutter in rviz, to see its section along the axis");
+  connect(cut_open_, &QCheckBox::clicked, this, [this](bool open) { rviz_->setCutOpen(open); });
   connect(choose_node_, &QPushButton::clicked, this, [this] { node_dialog_->ask(node_); });
   connect(node_dialog_, &NodeDialog::chosen, this, [this](const QString& node) {
     if (node == node_) return;
@@ -240,6 +244,7 @@ QLayout* GrindPanel::layOutSwitches() {
 QWidget* GrindPanel::viewTab() {
   auto* buttons = new QHBoxLayout;
   buttons->addWidget(look_);
+  buttons->addWidget(cut_open_);
   buttons->addStretch(1);
   buttons->addWidget(choose_node_);
   auto* tab = new QWidget;
@@ -401,6 +406,9 @@ void GrindPanel::showLegend(const std::optional<flute_grinder::Legend>& legend) 
   legend_->show(legend);
   position_->setTolerance(legend ? std::optional<double>(legend->tolerance) : std::nullopt);
   look_->setEnabled(rviz_ && looked_at_);
+  const std::optional<bool> open = rviz_ ? rviz_->isCutOpen() : std::nullopt;
+  cut_open_->setEnabled(open.has_value());
+  cut_open_->setChecked(open.value_or(false));
   if (!rviz_ || !legend) return;
   // Only for another tool, so that a view chosen by the operator stays.
   const bool other = !looked_at_ || !isSameSize(*looked_at_, legend->cutter);

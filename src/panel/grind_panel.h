@@ -17,6 +17,7 @@
 #include "panel/touch_off_box.h"
 
 #include <rviz/panel.h>
+#include <QCheckBox>
 #include <QPlainTextEdit>
 #include <QPointer>
 #include <QPushButton>
@@ -128,7 +129,8 @@ class GrindPanel : public rviz::Panel {
   JogBox* jog_;
   TouchOffBox* touch_off_;
   LegendBox* legend_;
-  QPushButton* look_;         ///< looks at the tool
+  QPushButton* look_;  ///< looks at the tool
+  QCheckBox* cut_open_;
   QTabWidget* tabs_;          ///< tabs of job, section, jog, zero points and view
   RvizView* rviz_ = nullptr;  ///< null without rviz
   std::optional<flute_grinder::Cutter> looked_at_;

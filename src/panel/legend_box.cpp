@@ -27,7 +27,7 @@ class Gradient : public QWidget {
     QLinearGradient gradient(0, 0, width(), 0);
     for (int i = 0; i <= kStops; ++i) {
       const double at = static_cast<double>(i) / kStops;
-      const std_msgs::ColorRGBA c = heat(at);
+      const std_msgs::ColorRGBA c = errorColour(at);
       gradient.setColorAt(at, QColor::fromRgbF(c.r, c.g, c.b));
     }
     QPainter(this).fillRect(rect(), gradient);

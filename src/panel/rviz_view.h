@@ -7,10 +7,13 @@
 #include <QTimer>
 
 #include <chrono>
+#include <optional>
+#include <vector>
 
 namespace grinder {
 
-/// Controls the direction and the frame rate of rviz's view.
+/// Controls the direction and the frame rate of rviz's view, and what it shows of the cutter. After rviz's *Reset* it
+/// has the grinder's markers sent again, which come once.
 class RvizView : public QObject {
   Q_OBJECT
 
@@ -28,6 +31,10 @@ class RvizView : public QObject {
   /// otherwise: without a graphics card each frame costs processor time. To be called often.
   void keepPace(bool moves);
 
+  /// Whether the cutter is shown cut open; nothing while none is shown.
+  std::optional<bool> isCutOpen() const;
+  void setCutOpen(bool open);
+
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
 
@@ -36,10 +43,15 @@ class RvizView : public QObject {
 
   void beginFrame();
   void resume();
+  void askForMarkers();
+  std::vector<rviz::Display*> markers() const;
+  /// What shows or hides kCutOut; null while no cutter is shown.
+  rviz::Property* cutOut() const;
 
   rviz::VisualizationManager& manager_;
   Clock::time_point last_motion_ = Clock::now();
-  QTimer pause_;  ///< pause between two frames
+  QTimer pause_;             ///< pause between two frames
+  double last_elapsed_ = 0;  ///< rviz's clock at the last frame, which Reset puts back [s]
 };
 
 }  // namespace grinder

@@ -6,12 +6,14 @@
 #include "flute_grinder/tool/end_volumes.h"
 #include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/ground_tool.h"
+#include "scene/shading.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <utility>
 
 namespace grinder {
 
@@ -21,11 +23,12 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
-constexpr double kMaxTriangles = 17000;    ///< maximum number of triangles, of 72 bytes each, before the cut adds some
-constexpr double kMaxWithEnd = 13000;      ///< the same where the end adds some, too
+constexpr double kMaxTriangles = 12000;    ///< maximum number of triangles, of 120 bytes each, before the cut adds some
+constexpr double kMaxWithEnd = 9000;       ///< the same where the end adds some, too
 constexpr double kLabelHeight = 0.03;      ///< height of letters, as a fraction of the flute's length
+constexpr double kOverlap = 0.02;          ///< of the shank and the ground part, as a fraction of the radius
 constexpr std::size_t kPlaces = 13;        ///< places over the flute's length where rake and clearance are measured
-constexpr std::size_t kErrorColours = 16;  ///< number of colours; markers are lit only if they have one colour each
+constexpr std::size_t kErrorColours = 16;  ///< number of colours within the tolerance
 constexpr std::size_t kPointsPerMarker = kMaxMarkerPoints / 3 * 3;
 /// The cut seen by the camera of rviz/grinder.rviz at A = 0: the section along the axis, above what remains of the
 /// flutes.
@@ -217,6 +220,14 @@ std_msgs::ColorRGBA colourOf(SurfaceKind kind) {
   return colour(0.93, 0.89, 0.70);  // different from the wheel's colour
 }
 
+void appendShadedSolid(MarkerArray& array, const char* ns, const std::vector<OutlinePoint>& outline,
+                       const std_msgs::ColorRGBA& colour) {
+  Marker& m = appendSolid(array, ns, "cutter", outline, colour);
+  std::vector<Eigen::Vector3d> corners;
+  for (const geometry_msgs::Point& p : m.points) corners.emplace_back(p.x, p.y, p.z);
+  for (const Eigen::Vector3d& normal : smoothNormals(corners)) m.colors.push_back(lit(colour, normal));
+}
+
 /// The neck, if there is one, and the shank, as far as they lie beyond extentOf().
 void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
   const ConicalCutter cutter(job->cutter);
@@ -224,44 +235,117 @@ void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
   const auto neck_end = shankOf(job->cutter);
   const double from = neck_end ? extent.to : extent.shank_to, shank = neck_end.value_or(from);
   const double end = std::max(kEnd, shank), radius = job->cutter.shank_diameter / 2;
-  std::vector<OutlinePoint> outline{{from, 0}};
-  if (neck_end) outline.insert(outline.end(), {{from, cutter.radius(from)}, {shank, cutter.radius(shank)}});
+  const double first = neck_end ? cutter.radius(from) : radius;
+  // It begins a little inside the ground part, whose facets are not its own: through the cracks one would see dots.
+  std::vector<OutlinePoint> outline{{from - kOverlap * first, 0}, {from - kOverlap * first, (1 - kOverlap) * first}};
+  if (neck_end) outline.insert(outline.end(), {{from, first}, {shank, cutter.radius(shank)}});
   outline.insert(outline.end(), {{shank, radius}, {end, radius}, {end, 0}});
-  appendSolid(array, ns, "cutter", outline, colourOf(SurfaceKind::kShank));
+  appendShadedSolid(array, ns, outline, colourOf(SurfaceKind::kShank));
 }
 
-constexpr std::size_t kSurfaceKinds = static_cast<std::size_t>(SurfaceKind::kCut) + 1;
+/// Which of the error's colours stands for a deviation, as a fraction of the tolerance; the last beyond it.
+std::size_t levelOf(double deviation) {
+  return static_cast<std::size_t>(std::min(deviation, 1.0) * static_cast<double>(kErrorColours));
+}
+
+std_msgs::ColorRGBA colourOfLevel(std::size_t level) {
+  return errorColour((static_cast<double>(level) + 0.5) / kErrorColours);
+}
+
+constexpr std::size_t kColours = 1 + kErrorColours + 1;  ///< number of colours of a kind of surface
 
 /// The blank before the first stroke.
 void appendBlank(MarkerArray& array, const ValidJob& job, const char* ns) {
   const ConicalCutter cutter(job->cutter);
   const double shank = shankOf(job->cutter).value_or(extentOf(job).to), end = std::max(kEnd, shank);
   const double radius = job->cutter.shank_diameter / 2;
-  appendSolid(array, ns, "cutter",
-              {{0, 0}, {0, cutter.radius(0)}, {shank, cutter.radius(shank)}, {shank, radius}, {end, radius}, {end, 0}},
-              colourOf(SurfaceKind::kShank));
+  appendShadedSolid(
+      array, ns,
+      {{0, 0}, {0, cutter.radius(0)}, {shank, cutter.radius(shank)}, {shank, radius}, {end, radius}, {end, 0}},
+      colourOf(SurfaceKind::kShank));
 }
 
-void appendSolid(MarkerArray& array, const CutterSolid& solid, const Deviations& deviations, const char* ns) {
-  std::array<std::vector<geometry_msgs::Point>, kSurfaceKinds + kErrorColours> by_colour;
-  for (const SolidTriangle& t : solid.triangles) {
-    const double x = solid.vertices[t.vertices[0]].x();
-    const auto deviation = deviations.at(t.kind, x, t.tooth);
-    const std::size_t level =
-        static_cast<std::size_t>(std::min(deviation.value_or(0), 1 - 1e-9) * static_cast<double>(kErrorColours));
-    auto& points = by_colour[deviation ? kSurfaceKinds + level : static_cast<std::size_t>(t.kind)];
-    for (const std::uint32_t v : t.vertices) {
-      points.push_back(point(solid.vertices[v].x(), solid.vertices[v].y(), solid.vertices[v].z()));
+/// One of the parts of the cutter that rviz shows or hides.
+struct Part {
+  const char* ns;
+  CutterSolid solid;
+};
+
+/// The cutter without a wedge, with the faces of the cut, and the surface of the wedge.
+std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const char* ns,
+                          const std::optional<Reached>& reached) {
+  const EndVolumes end = endSoFar(job, reached);
+  const SolidResolution resolution = resolutionOf(job, end.removed.empty() ? kMaxTriangles : kMaxWithEnd);
+  SolidExtent extent = extentOf(job);
+  extent.from = end.blank_x;
+  const RemovedVolume cut_out = wedge(kCutFrom, kCutTo);
+  std::vector<RemovedVolume> removed = end.removed;
+  removed.push_back(cut_out);
+  Part rest{ns, cutterSolid(cutter, extent, resolution, removed)};
+  removed.pop_back();
+  for (const Plane& plane : cut_out.body) removed.push_back({{{-plane.normal, -plane.offset}}, {}});
+  Part wedge{kCutOut, cutterSolid(cutter, extent, resolution, removed)};
+  auto& faces = wedge.solid.triangles;
+  const auto is_cut = [](const SolidTriangle& t) { return t.kind == SurfaceKind::kCut; };
+  faces.erase(std::remove_if(faces.begin(), faces.end(), is_cut), faces.end());
+  return {std::move(rest), std::move(wedge)};
+}
+
+/// Corners of triangles in one colour.
+struct Corners {
+  std::vector<geometry_msgs::Point> at;
+  std::vector<Eigen::Vector3d> normals;  ///< of each corner, or none, for rviz to light it facet by facet
+};
+
+void appendTriangles(MarkerArray& array, const char* ns, const Corners& corners, const std_msgs::ColorRGBA& colour) {
+  for (std::size_t first = 0; first < corners.at.size(); first += kPointsPerMarker) {
+    Marker& m = append(array, ns, Marker::TRIANGLE_LIST, "cutter");
+    m.color = colour;
+    for (std::size_t i = first; i < std::min(first + kPointsPerMarker, corners.at.size()); ++i) {
+      m.points.push_back(corners.at[i]);
+      if (!corners.normals.empty()) m.colors.push_back(lit(colour, corners.normals[i]));
     }
   }
-  for (std::size_t i = 0; i < by_colour.size(); ++i) {
-    const auto& points = by_colour[i];
-    for (std::size_t first = 0; first < points.size(); first += kPointsPerMarker) {
-      Marker& m = append(array, ns, Marker::TRIANGLE_LIST, "cutter");
-      m.color = i < kSurfaceKinds ? colourOf(static_cast<SurfaceKind>(i))
-                                  : heat((static_cast<double>(i - kSurfaceKinds) + 0.5) / kErrorColours);
-      const auto from = points.begin() + static_cast<std::ptrdiff_t>(first);
-      m.points.assign(from, from + static_cast<std::ptrdiff_t>(std::min(kPointsPerMarker, points.size() - first)));
+}
+
+/// Appends the faces of the cut, which are plane: rviz lights them well.
+void appendCut(MarkerArray& array, const Part& part) {
+  Corners corners;
+  for (const SolidTriangle& t : part.solid.triangles) {
+    if (t.kind != SurfaceKind::kCut) continue;
+    for (const std::uint32_t v : t.vertices) {
+      const Eigen::Vector3d& at = part.solid.vertices[v];
+      corners.at.push_back(point(at.x(), at.y(), at.z()));
+    }
+  }
+  appendTriangles(array, part.ns, corners, colourOf(SurfaceKind::kCut));
+}
+
+/// Appends the surfaces of one kind of all parts, whose normals go on from part to part.
+void appendSurfaces(MarkerArray& array, const std::vector<Part>& parts, SurfaceKind kind,
+                    const Deviations& deviations) {
+  std::vector<Eigen::Vector3d> corners;
+  for (const Part& part : parts) {
+    for (const SolidTriangle& t : part.solid.triangles) {
+      if (t.kind != kind) continue;
+      for (const std::uint32_t v : t.vertices) corners.push_back(part.solid.vertices[v]);
+    }
+  }
+  const std::vector<Eigen::Vector3d> normals = smoothNormals(corners);
+  std::size_t next = 0;
+  for (const Part& part : parts) {
+    std::array<Corners, kColours> by_colour;
+    for (const SolidTriangle& t : part.solid.triangles) {
+      if (t.kind != kind) continue;
+      const auto deviation = deviations.at(t.kind, corners[next].x(), t.tooth);
+      Corners& same = by_colour[deviation ? 1 + levelOf(*deviation) : 0];
+      for (const std::size_t end = next + 3; next < end; ++next) {
+        same.at.push_back(point(corners[next].x(), corners[next].y(), corners[next].z()));
+        same.normals.push_back(normals[next]);
+      }
+    }
+    for (std::size_t i = 0; i < kColours; ++i) {
+      appendTriangles(array, part.ns, by_colour[i], i == 0 ? colourOf(kind) : colourOfLevel(i - 1));
     }
   }
 }
@@ -308,13 +392,12 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
       appendBlank(array, job, ns);
       return array;
     }
-    EndVolumes end = endSoFar(job, reached);
-    const SolidResolution resolution = resolutionOf(job, end.removed.empty() ? kMaxTriangles : kMaxWithEnd);
-    end.removed.push_back(wedge(kCutFrom, kCutTo));
-    SolidExtent extent = extentOf(job);
-    extent.from = end.blank_x;
-    const CutterSolid solid = cutterSolid(cutter, extent, resolution, end.removed);
-    appendSolid(array, solid, Deviations(cutter, job, reached), ns);
+    const std::vector<Part> parts = partsOf(cutter, job, ns, reached);
+    const Deviations deviations(cutter, job, reached);
+    appendCut(array, parts.front());
+    for (std::size_t kind = 0; kind < static_cast<std::size_t>(SurfaceKind::kCut); ++kind) {
+      appendSurfaces(array, parts, static_cast<SurfaceKind>(kind), deviations);
+    }
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
     array = clearedArray();

@@ -3,9 +3,25 @@
 #include "flute_grinder/base/units.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace grinder {
+
+namespace {
+
+/// The scale viridis at equal distances, without its darkest fifth, which shaded would be black: red, green, blue.
+constexpr std::array<std::array<double, 3>, 9> kViridis{{{0.254, 0.265, 0.530},
+                                                         {0.207, 0.372, 0.553},
+                                                         {0.164, 0.471, 0.558},
+                                                         {0.128, 0.567, 0.551},
+                                                         {0.135, 0.659, 0.518},
+                                                         {0.267, 0.749, 0.441},
+                                                         {0.478, 0.821, 0.318},
+                                                         {0.741, 0.873, 0.150},
+                                                         {0.993, 0.906, 0.144}}};
+
+}  // namespace
 
 using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
@@ -27,10 +43,15 @@ std_msgs::ColorRGBA colour(double r, double g, double b, double a) {
   return c;
 }
 
-std_msgs::ColorRGBA heat(double fraction) {
-  const double f = std::clamp(fraction, 0.0, 1.0);
-  return colour(std::clamp(4 * f - 1.5, 0.1, 1.0), std::clamp(1.6 - std::abs(4 * f - 2), 0.1, 1.0),
-                std::clamp(1.5 - 3 * f, 0.1, 1.0));
+std_msgs::ColorRGBA errorColour(double fraction) {
+  if (!(fraction <= 1)) return colour(0.86, 0.08, 0.10);
+  constexpr std::size_t steps = kViridis.size() - 1;
+  const double at = std::max(fraction, 0.0) * steps;
+  const std::size_t i = std::min(static_cast<std::size_t>(at), steps - 1);
+  const auto part = [&](std::size_t k) {
+    return kViridis[i][k] + (at - static_cast<double>(i)) * (kViridis[i + 1][k] - kViridis[i][k]);
+  };
+  return colour(part(0), part(1), part(2));
 }
 
 MarkerArray clearedArray() {

@@ -202,7 +202,7 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
     const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
     for (std::size_t i = first; i <= last; ++i) {
       m.points.push_back(pointOf(flute, i));
-      if (!active && !flute.errors.empty()) m.colors.push_back(heat(flute.errors[i] / tolerance_));
+      if (!active && !flute.errors.empty()) m.colors.push_back(errorColour(flute.errors[i] / tolerance_));
     }
   }
 }
@@ -319,7 +319,7 @@ MarkerArray PathErrorMarkers::markers() const {
     to.y += offset * (-around * std::sin(p.a) - along * sin_cone * std::cos(p.a));
     to.z += offset * (around * std::cos(p.a) - along * sin_cone * std::sin(p.a));
     arrows.points.insert(arrows.points.end(), {from, to});
-    arrows.colors.insert(arrows.colors.end(), 2, heat(std::abs(p.deviation) / tolerance_));
+    arrows.colors.insert(arrows.colors.end(), 2, errorColour(std::abs(p.deviation) / tolerance_));
   }
   return array;
 }

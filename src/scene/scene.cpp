@@ -4,6 +4,7 @@
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/motion/setpoint_stream.h"
 #include "flute_grinder/tool/ground_job.h"
+#include "scene/scale.h"
 
 #include <algorithm>
 
@@ -15,7 +16,6 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr std::uint64_t kUpdatesPerPathError = 5;  ///< updates per path error, which changes slowly
-constexpr double kTitleHeight = 0.06;              ///< height of letters, as a fraction of the flute's length
 const ros::WallDuration kGreeting(1);              ///< time within which a new viewer learns the frames
 
 /// All strokes of a job have the same errors.
@@ -34,11 +34,7 @@ PathErrorMarkers errorsOfFirstStroke(const std::shared_ptr<const GrindProgram>& 
 MarkerArray sceneMarkers(const GrindJob& job, const std::string& shown) {
   MarkerArray array = clearedArray();
   appendWheel(array, wheelOf(job).worn(job.process().wheel_wear));
-  Marker& label = append(array, "shown", Marker::TEXT_VIEW_FACING, "work");
-  const double height = kTitleHeight * job.cutter.flute_length;
-  label.pose.position = point(job.cutter.flute_length, 0, -2 * job.cutter.end_diameter - 4 * height);
-  label.scale.z = height;
-  label.text = shown;
+  appendScale(array, job.cutter, shown);
   return array;
 }
 

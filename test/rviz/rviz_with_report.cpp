@@ -79,9 +79,13 @@ void writeWhatIsSeen(std::ostream& text) {
   }
 }
 
-/// A button by its name, rviz's view, or what rviz gives no name: the panel's close box, and the arrow that folds it.
+/// A button by its name, rviz's view, or what rviz gives no name: its reset, the panel's close
+/// box, and the arrow that folds it.
 QWidget* widgetNamed(const QString& name) {
   if (name == "view") return window()->getManager()->getRenderPanel();
+  for (auto* button : window()->findChildren<QToolButton*>()) {
+    if (name == "reset_of_rviz" && button->text() == "Reset") return button;
+  }
   if (name == "fold") return window()->centralWidget()->findChildren<QToolButton*>().last();
   for (auto* dock : window()->findChildren<rviz::PanelDockWidget*>()) {
     if (name == "close_box" && dock->windowTitle().startsWith("Grinder")) {

@@ -26,9 +26,9 @@ JOB = gc.paper(end_diameter=12 * MM, spiral_angle=38 * DEG, flute_length=26 * MM
                wheel_wear=0.02 * MM)
 HELD = 2  # the tooth in whose first pass the job is held
 TOPICS = ['scene', 'ground_cutter', 'tool_path', 'executed_path', 'path_error']
-CAMERA = [4.2, 0.9, 0.12, 0.015, 0, 0]  # of rviz/grinder.rviz
+CAMERA = [4.2, 0.9, 0.36, 0.01, 0, 0]  # of rviz/grinder.rviz
 # Colours that are to be seen in the view, and of the state in the panel.
-WHEEL, GUARD, PLANNED, ACTIVE, MEASURED = (134, 91, 61), (52, 78, 100), (184, 184, 184), (255, 51, 230), (26, 26, 255)
+WHEEL, GUARD, PLANNED, ACTIVE, MEASURED = (134, 91, 61), (52, 78, 100), (184, 184, 184), (255, 51, 230), (60, 76, 137)
 READY_STATE, HELD_STATE = (30, 125, 52), (154, 91, 0)
 
 
@@ -119,7 +119,7 @@ class Rviz:
             image = ImageGrab.grab(xdisplay=os.environ['DISPLAY'])
             pixels = numpy.asarray(image.convert('RGB')).astype(int)
             view, panel = pixels[top:top + height, left:left + width], pixels[:, left + width:]
-            return [c for c in colours if (abs((panel if c == colours[-1] else view) - c).max(axis=2) < 4).sum() < 100]
+            return [c for c in colours if (abs((panel if c == colours[-1] else view) - c).max(axis=2) < 8).sum() < 100]
 
         image = view = None
         try:
@@ -201,6 +201,27 @@ class TestScene(unittest.TestCase):
         self.assertEqual(rviz.flutes(), canceled)
         rviz.plan(JOB)
         rviz.wait_flutes([PLANNED] * 4)
+
+    def test_4_reset_of_rviz_brings_wheel_and_tool_back(self):
+        rviz = self.rviz
+        rviz.plan(JOB)
+        rviz.look('work', CAMERA)
+        rviz.operate('click reset_of_rviz')
+        rviz.take_picture('after_reset', WHEEL, PLANNED, READY_STATE)
+
+    def test_5_the_cutter_is_whole_until_it_is_cut_open(self):
+        rviz = self.rviz
+        rviz.plan(JOB)
+        rviz.look('work', [4.2, 0.9, 0.08, 0.01, 0, 0])
+        rviz.operate('tab View')
+
+        def section():
+            red, green, blue = numpy.moveaxis(rviz.take_picture('cut_open', PLANNED, READY_STATE), 2, 0)
+            return ((red > 80) & (abs(red - green) < 22) & (red - blue > 25)).sum()
+
+        self.assertEqual(section(), 0)
+        rviz.operate('click cut_open')
+        gc.poll(lambda: section() > 50, 'the section')
 
 
 if __name__ == '__main__':

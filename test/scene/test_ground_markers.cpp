@@ -130,10 +130,11 @@ TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
   }
 }
 
-/// The part of the tolerance that a rake face's colour stands for; nothing for the colours of other surfaces.
+/// The part of the tolerance that a rake face's colour stands for, beyond 1 if it is out; nothing for the colours of
+/// other surfaces.
 std::optional<double> deviationOf(const Marker& m) {
-  for (int level = 0; level < 16; ++level) {
-    const std_msgs::ColorRGBA c = heat((level + 0.5) / 16);
+  for (int level = 0; level <= 16; ++level) {
+    const std_msgs::ColorRGBA c = errorColour((level + 0.5) / 16);
     if (m.color.r == c.r && m.color.g == c.g && m.color.b == c.b) return (level + 0.5) / 16;
   }
   return std::nullopt;
@@ -218,9 +219,9 @@ double areaOf(const std::vector<geometry_msgs::Point>& corners) {
 TEST(GroundMarkers, ColourThePrimaryReliefsByTheirDeviationWithinTheTolerance) {
   const GroundCutter cutter = groundCutterOf(withLaws(ValidJob(reamer("secondary"))));
   const double length = 16 * kMillimetre;
-  // As wide as asked at the small end, and wider with the diameter, of six edges; a wedge of 85 deg is cut out.
-  const double width = (0.3 + 0.353) / 2 * kMillimetre, shown = (360 - 85) / 360.0;
-  const double area = 6 * width * length / std::cos(12 * kDegree) * shown;
+  // As wide as asked at the small end, and wider with the diameter, of six edges.
+  const double width = (0.3 + 0.353) / 2 * kMillimetre;
+  const double area = 6 * width * length / std::cos(12 * kDegree);
   for (const auto& [off, expected] : {std::pair{-0.25, 0.5}, {0.6, 1.0}}) {
     SCOPED_TRACE(off);
     GrindJob asked = reamer("secondary");
@@ -254,6 +255,27 @@ TEST(GroundMarkers, ColourAReliefOnlyWhereItsLastPassHasBeenAndTheRakeFacesFromT
   EXPECT_LT(half, done);
   // Without the secondary one it reaches far beyond the land.
   EXPECT_GT(done, 6 * 16 * kMillimetre * 0.353 * kMillimetre);
+}
+
+TEST(GroundMarkers, AreWholeAndCutOpenWithoutAWedge) {
+  const MarkerArray array = plannedMarkers(jobOf("roughing_d10_t4"));
+  const auto angles = [&](const std::string& ns, bool faces_of_cut) {
+    std::set<long> found;
+    for (const Marker& m : solidOf(array, ns)) {
+      if ((m.color.r > 1.2 * m.color.b) != faces_of_cut) continue;
+      for (const geometry_msgs::Point& p : m.points) {
+        if (std::hypot(p.y, p.z) > kMillimetre) found.insert(std::lround(std::atan2(p.z, p.y) / kDegree));
+      }
+    }
+    return found;
+  };
+  const std::set<long> wedge = angles(kCutOut, false), rest = angles("planned", false);
+  EXPECT_EQ(*wedge.begin(), 35);
+  EXPECT_EQ(*wedge.rbegin(), 120);
+  EXPECT_TRUE(angles(kCutOut, true).empty());
+  EXPECT_EQ(angles("planned", true), (std::set<long>{35, 120}));
+  // The shank, which nothing touches, is not cut.
+  EXPECT_GT(rest.size(), 300U);
 }
 
 /// The maximum radius of all points between two X [m]; 0 if there are none.

@@ -138,13 +138,25 @@ TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
   }
   const Marker strip = flutes.markers().markers.at(1);
   ASSERT_EQ(strip.colors.size(), strip.points.size());
+  double last = 0;
   for (std::size_t i = 0; i < strip.points.size(); ++i) {
-    // Blue, green, yellow, red at the tolerance and beyond.
-    const double fraction = std::min(2 * strip.points[i].x / length, 1.0);
+    // Ever lighter, from blue by green to yellow at the tolerance, and red beyond it.
+    const double fraction = 2 * strip.points[i].x / length;
     const std_msgs::ColorRGBA& c = strip.colors[i];
-    EXPECT_NEAR(c.r, std::clamp(4 * fraction - 1.5, 0.1, 1.0), 0.05);
-    EXPECT_NEAR(c.g, std::clamp(1.6 - std::abs(4 * fraction - 2), 0.1, 1.0), 0.05);
-    EXPECT_NEAR(c.b, std::clamp(1.5 - 3 * fraction, 0.1, 1.0), 0.05);
+    const double light = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
+    if (fraction < 0.95) {
+      EXPECT_GE(light, last - 0.01) << "read by those who are colour-blind";
+      last = light;
+    }
+    if (fraction < 0.05) {
+      EXPECT_GT(c.b, 1.7 * c.r);
+    }
+    if (std::abs(fraction - 0.5) < 0.05) {
+      EXPECT_GT(c.g, 2 * c.r);
+    }
+    if (fraction > 1.05) {
+      EXPECT_TRUE(c.r > 0.8 && c.g < 0.2 && c.b < 0.2) << fraction;
+    }
   }
 }
 
@@ -237,8 +249,8 @@ TEST(PathMarkers, OfStrokesOnTheEndAreTheirLinesWithTheColoursOfTheirErrors) {
       };
       EXPECT_LT(distance(strip.points.front(), on_cutter(0)), 1e-12);
       EXPECT_LT(distance(strip.points.back(), on_cutter(1)), 1e-12);
-      EXPECT_TRUE(strip.colors.front().b > 0.9 && strip.colors.front().r < 0.2);
-      EXPECT_TRUE(strip.colors.back().b < 0.2 && strip.colors.back().r > 0.9);
+      EXPECT_GT(strip.colors.front().b, 1.5 * strip.colors.front().r) << "blue";
+      EXPECT_GT(strip.colors.back().r, 5 * strip.colors.back().g) << "red";
     }
     MarkerArray path;
     executed.append(path);

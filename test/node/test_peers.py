@@ -264,8 +264,8 @@ class TestPeers(unittest.TestCase):
         topics, services = self.targets()
         # Among the first two may be stops. Of no bytes, roscpp reads one from freed memory for the second subscription to a topic in a process.
         for maker, targets, messages, what, goes_on in (
-                (Fuzzer(23), topics + services, 3000, 'messages and requests with fields at random', False),
-                (Noise(9, 600), topics, 2000, 'messages of random bytes', False), (Noise(9, 0), topics, 1000, 'empty messages', True)):
+                (Fuzzer(23), topics + services, 1000, 'messages and requests with fields at random', False),
+                (Noise(9, 600), topics, 700, 'messages of random bytes', False), (Noise(9, 0), topics, 300, 'empty messages', True)):
             self.check(lambda: self.send(maker, targets, messages), '%d %s' % (len(self.stops) * messages, what), goes_on)
         self.grinder.make_ready()
         run = self.grinder.run(gc.SHORT)

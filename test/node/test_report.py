@@ -556,7 +556,7 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assertIn('Ground without the check of the zero points (--answer ignore-offsets): flute.', page.text)
 
     def test_last_is_the_newest(self):
-        done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder']})
+        done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder'], 'ROS_HOME': ''})
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.assertEqual(json.loads(done.stdout)['outcome'], 'canceled')
         done = gc.grind('--node', 'another', 'report', '--last', '--json')

@@ -106,7 +106,7 @@ class TestRecords(gc.OwnNode):
     def grind(self, *arguments, node=('--node', 'kept'), **environment):
         """`grind history`, without a master."""
         return gc.grind(*node, 'history', *arguments, environment=dict(
-            dict(HOME=self.home, ROS_HOME='', ROS_MASTER_URI='http://localhost:1', TZ='UTC-1'), **environment))
+            dict(HOME=self.home, ROS_HOME=self.home + '/.ros', ROS_MASTER_URI='http://localhost:1', TZ='UTC-1'), **environment))
 
     def check_command(self, first, second):
         """The newest is the last; the node's name is resolved."""
@@ -210,7 +210,7 @@ class TestRecords(gc.OwnNode):
 
     def command(self, status, *arguments):
         """A command for this grinder."""
-        done = gc.grind('--node', self.name, *arguments, environment=dict(HOME=self.home, ROS_HOME=''))
+        done = gc.grind('--node', self.name, *arguments, environment=dict(ROS_HOME=self.home + '/.ros'))
         self.assertEqual(done.returncode, status, done.stdout + done.stderr)
         return done
 

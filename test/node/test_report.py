@@ -57,7 +57,7 @@ class Recording:
             self.wait_for_recorder()
             self.node.make_ready()
             self.grind_with_hold_and_override()
-            self.node.make_ready(0.2)
+            self.node.make_ready(0.4)
             self.node.send(gc.PAPER).wait_in_stroke(6 * MM)
         finally:
             launch.send_signal(signal.SIGINT)
@@ -556,7 +556,7 @@ class TestRecordOfTheGrinder(ReportCase):
         self.assertIn('Ground without the check of the zero points (--answer ignore-offsets): flute.', page.text)
 
     def test_last_is_the_newest(self):
-        done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'HOME': FILES['folder'], 'ROS_HOME': ''})
+        done = gc.grind('--node', 'recorded', 'report', '--last', '--json', environment={'ROS_HOME': self.path('.ros')})
         self.assertEqual((done.returncode, done.stderr), (0, ''))
         self.assertEqual(json.loads(done.stdout)['outcome'], 'canceled')
         done = gc.grind('--node', 'another', 'report', '--last', '--json')

@@ -1,5 +1,5 @@
-// The strokes of an operation on a tool's end: straight, in the plane of a face of the wheel. test/rides hold and retract
-// them at any moment, with a cup round the work, too.
+// The strokes of an operation on the end of a tool: straight, in the plane of a face of the wheel. test/rides hold them
+// at any moment, with a cup round the work, too.
 
 #include "flute_grinder/motion/job_plan.h"
 

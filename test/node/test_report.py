@@ -518,8 +518,9 @@ class TestRecordOfTheGrinder(ReportCase):
             self.assertAlmostEqual(mine[key], theirs[key], delta=1e-6, msg=key)
         # The record begins with the start of the job, the bag with the first setpoint, once the spindle turns.
         begun = [timestamp(data['started']) + data['strokes'][0]['started_s'] for data in (record, bag)]
-        self.assertAlmostEqual(*begun, delta=0.06)
-        self.assertAlmostEqual(mine['duration_s'], theirs['duration_s'], delta=0.06)
+        # Within a batch, which takes longer than its cycles if the host stalls.
+        self.assertAlmostEqual(*begun, delta=0.5)
+        self.assertAlmostEqual(mine['duration_s'], theirs['duration_s'], delta=0.5)
         for key, value in theirs['following_error'].items():
             self.assertAlmostEqual(mine['following_error'][key], value, delta=1e-6, msg=key)
         self.assertEqual([o['percent'] for o in record['overrides']], [40, 50, 100])

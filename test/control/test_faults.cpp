@@ -393,7 +393,7 @@ TEST(PowerThatStaysOn, IsReportedAfterTheTimeInWhichItComesOn) {
 
 TEST(FaultIn, AnyStateEndsTheJobAndNothingMovesUntilResetEnableAndStart) {
   for (const S state : {S::kReady, S::kHoming, S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting,
-                        S::kRetracted, S::kResuming, S::kCanceling, S::kLifting}) {
+                        S::kRetracted, S::kResuming, S::kCanceling, S::kLifting, S::kJogging, S::kJoggingRetracted}) {
     SCOPED_TRACE(toString(state));
     RigIn rig(state);
     const bool in_work = rig.last().wheel_in_work;
@@ -404,6 +404,7 @@ TEST(FaultIn, AnyStateEndsTheJobAndNothingMovesUntilResetEnableAndStart) {
     rig.drive.on_read = [](FakeDrive& d) { d.status.emergency_stop = false; };
     EXPECT_EQ(rig.last().job_ended, isInJob(state));
     EXPECT_EQ(rig.last().wheel_in_work, in_work);
+    EXPECT_EQ(rig.loop->status().jogs_ended, rig.loop->status().jogs_begun);
     if (rig.loop->status().jobs_started > 0) {
       EXPECT_EQ(rig.loop->status().end, JobEnd::kFault);
       EXPECT_EQ(rig.loop->status().fault.kind,

@@ -8,7 +8,6 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -96,10 +95,6 @@ Excess excessOf(const Case& c, const std::vector<double>& xs, double h) {
     }
   }
   return result;
-}
-
-void expectWithin(const Excess& excess) {
-  if (excess.worst > 1 + 1e-6) RC_FAIL(excess.what + " " + std::to_string(excess.worst) + " of its limit");
 }
 
 RC_GTEST_PROP(FeedScheduleProperty, GoesOneWayOnlyFromOneEndOfTheStrokeExactlyToTheOther, ()) {
@@ -214,28 +209,6 @@ RC_GTEST_PROP(FeedScheduleProperty, TheRunUpIsTheWayToTheFeedFromRest, ()) {
   RC_ASSERT(law.cruising());
   RC_ASSERT(law.position() >= schedule.runUp() * (1 - 1e-9));
   RC_ASSERT(law.position() <= schedule.runUp() * (1 + 1e-9) + speed * all_of_it / 10000 * (1 + 1e-9));
-}
-
-RC_GTEST_PROP(FeedScheduleProperty, AMotionWithStopsKeepsAllAxesWithinTheirLimits, ()) {
-  const Case c = Case::draw();
-  const FeedSchedule schedule = c.schedule();
-  const MotionLimits limits = schedule.limits();
-  SCurveProfile law(limits, schedule.length(), limits.velocity);
-  const double h = std::max(c.machine.period, law.timeLeft() / 4000);
-  std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
-  std::uniform_real_distribution<double> fraction(0, 1);
-  const double chance = *test_support::logUniform(0.002, 0.1);
-  std::vector<double> xs(3, schedule.x(0));
-  for (int i = 0; i < 6000 && !law.finished(); ++i) {
-    if (i < 3000 && fraction(random) < chance)
-      law.setTarget(limits.velocity * std::max(0.0, 1.5 * fraction(random) - 0.5));
-    if (i >= 3000) law.setTarget(limits.velocity);
-    law.advance(h);
-    xs.push_back(schedule.x(law.position()));
-  }
-  for (int i = 0; i < 3; ++i) xs.push_back(xs.back());
-  if (!law.resting()) xs.resize(xs.size() - 3);
-  expectWithin(excessOf(c, xs, h));
 }
 
 TEST(FeedSchedule, TurnsAEvenlyAtItsLimitWhereThatCutsTheFeed) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -165,63 +164,6 @@ TEST(GrindProgram, RefusesAMachineOrAStartThatNoJobMayRunOn) {
     const std::string error =
         test_support::refusalOf<std::invalid_argument>([&] { GrindProgram(ValidJob(paperJob()), machine, start); });
     EXPECT_TRUE(contains(error, row.part)) << row.part << ", got: " << error;
-  }
-}
-
-RC_GTEST_PROP(GrindProgramProperty, WearOfAllPassesBeforeMovesYOfInfeedsAndStrokesOnly, ()) {
-  Work work = *test_support::toothedWork(3000);
-  const std::vector<JobPass> passes = work.valid().passes();
-  const int begin = *whole(0, static_cast<int>(passes.size()) - 1);
-  const RunStart run{work.start, passes[static_cast<std::size_t>(begin)].place};
-  const GrindProgram without(work.valid(), work.machine, run);
-  const double before = *test_support::uniform(0, 1e-3), wear = *test_support::uniform(1e-6, 1e-4);
-  work.job.process().wheel_wear = before;
-  work.job.process().wheel_wear_per_pass = wear;
-  const GrindProgram with(work.valid(), work.machine, run);
-  RC_ASSERT(with.moves().size() == without.moves().size());
-  double deeper = before + (begin - 1) * wear;
-  for (std::size_t i = 0; i < with.moves().size(); ++i) {
-    const Move& worn = with.moves()[i];
-    Axes moved = worn.to - without.moves()[i].to;
-    const bool cuts = worn.kind == MoveKind::kInfeed || worn.kind == MoveKind::kStroke;
-    if (worn.kind == MoveKind::kInfeed) deeper += wear;
-    RC_ASSERT(std::abs(moved[kY] + (cuts ? deeper : 0)) <= 1e-16);
-    moved[kY] = 0;
-    RC_ASSERT((moved == 0).all());
-  }
-}
-
-/// Which axes a move is for.
-std::vector<int> axesOf(MoveKind kind) {
-  switch (kind) {
-    case MoveKind::kIndex: return {kA};
-    case MoveKind::kPosition: return {kX, kZ};
-    case MoveKind::kLift:
-    case MoveKind::kApproach:
-    case MoveKind::kInfeed:
-    case MoveKind::kRetract: return {kY};
-    default: return {kX, kY, kZ, kA};
-  }
-}
-
-RC_GTEST_PROP(GrindProgramProperty, EveryMoveMovesItsAxesOnlyAndBelowTheClearancePlaneOnlyAStrokeXZAndA, ()) {
-  const Work work = *test_support::toothedWork(3000);
-  const GrindProgram program = work.program();
-  const double growth = std::tan(work.job.cutter.cone_angle);
-  const double plane =
-      std::max(program.strokeFrom() * growth, program.strokeTo() * growth) + work.job.process().clearance;
-  RC_ASSERT(std::abs(program.clearanceHeight() - plane) <= 1e-15);
-  Axes at = work.start;
-  for (const Move& move : program.moves()) {
-    const auto axes = axesOf(move.kind);
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      if (std::find(axes.begin(), axes.end(), axis) == axes.end()) RC_ASSERT(move.to[axis] == at[axis]);
-    }
-    const bool only_y = move.to[kX] == at[kX] && move.to[kZ] == at[kZ] && move.to[kA] == at[kA];
-    if (move.kind != MoveKind::kStroke && !only_y) {
-      RC_ASSERT(std::min(at[kY], move.to[kY]) >= plane - 1e-15);
-    }
-    at = move.to;
   }
 }
 

@@ -1,4 +1,5 @@
-// The strokes of an operation on a tool's end: straight, in the plane of a face of the wheel.
+// The strokes of an operation on the end of a tool: straight, in the plane of a face of the wheel. test/rides hold them
+// at any moment, with a cup round the work, too.
 
 #include "flute_grinder/motion/job_plan.h"
 
@@ -8,7 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -135,104 +135,6 @@ TEST(StraightStrokes, ArePlannedByTheirShapesAsOneByOne) {
     EXPECT_EQ(whole.statistics.setpoints, by_shapes.statistics.setpoints);
     EXPECT_EQ(whole.move_ends, by_shapes.move_ends);
   }
-}
-
-/// After a retract the wheel begins the stroke anew, and so leaves nothing standing.
-TEST(StraightStrokes, BeginAnewAfterARetract) {
-  for (const OperationKind kind : kKinds) {
-    SCOPED_TRACE(toString(kind));
-    const ValidJob job = validEndJob(kind);
-    SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
-    Setpoint p;
-    while (stream.next(p) && !(p.move == MoveKind::kStroke && p.tooth == 1 && p.move_fraction > 0.6)) continue;
-    ASSERT_EQ(p.move, MoveKind::kStroke);
-    stream.hold();
-    all(stream, p);
-    const Setpoint left = p;
-    stream.retract();
-    const std::vector<Setpoint> off = all(stream, p);
-    ASSERT_EQ(stream.rest(), Rest::kLifted);
-    for (const Setpoint& at : off) {
-      EXPECT_EQ(at.position[kX], left.position[kX]);
-      EXPECT_EQ(at.position[kZ], left.position[kZ]);
-      EXPECT_EQ(at.position[kA], left.position[kA]);
-    }
-    EXPECT_GE(p.position[kY], 1e-3);
-    stream.resume();
-    const FaceStroke stroke = job.faceStroke(left.tooth, job.depths()[left.pass], 0);
-    while (stream.next(p) && p.move != MoveKind::kStroke) {
-      EXPECT_GE(p.position[kY], stroke.from[kY] - 1e-15);
-    }
-    EXPECT_LT(p.move_fraction, 0.01);
-    EXPECT_EQ(p.move_index, left.move_index);
-    while (stream.next(p) && p.move == MoveKind::kStroke && p.move_fraction < 1) continue;
-    EXPECT_TRUE((p.position == stroke.to).all());
-    all(stream, p);
-    EXPECT_EQ(stream.rest(), Rest::kEnd);
-  }
-}
-
-/// The inner edge of a cup's rim is round the next tooth of a left-hand end: the wheel goes in and out along X alone.
-TEST(StraightStrokes, OfACupGoInAndOutAlongX) {
-  for (const OperationKind kind : {OperationKind::kPrimaryEnd, OperationKind::kSecondaryEnd}) {
-    SCOPED_TRACE(toString(kind));
-    const ValidJob job = validEndJob(kind, CutDirection::kLeftHand);
-    std::vector<Setpoint> setpoints;
-    const JobPlan plan =
-        planJob(job, plainMachine(), plainMachine().park, [&](const Setpoint& p) { setpoints.push_back(p); });
-    ASSERT_TRUE(plan.good()) << text(plan.reasons);
-    EXPECT_EQ(beyondLimits(setpoints, plainMachine()), "");
-    std::set<std::uint32_t> strokes;
-    for (std::size_t i = 1; i < setpoints.size(); ++i) {
-      const Setpoint &p = setpoints[i], &before = setpoints[i - 1];
-      const FaceStroke stroke = job.faceStroke(p.tooth, job.depths()[p.pass], 0);
-      if (p.move == MoveKind::kStroke && p.move_fraction == 1) {
-        EXPECT_TRUE((p.position == stroke.to).all());
-        strokes.insert(p.move_index);
-      }
-      if (std::min(p.position[kY], before.position[kY]) >= job->process().clearance) continue;
-      EXPECT_TRUE(p.position[kY] == before.position[kY] || p.position[kX] == before.position[kX]);
-      EXPECT_TRUE(p.position[kY] == stroke.to[kY] || p.position[kX] <= stroke.from[kX]);
-      EXPECT_EQ(p.position[kZ], before.position[kZ]);
-      EXPECT_EQ(p.position[kA], before.position[kA]);
-    }
-    EXPECT_EQ(strokes.size(), job.passes().size());
-  }
-}
-
-/// A retract, held on its way and asked again, backs off before it lifts.
-TEST(StraightStrokes, OfACupBackOffBeforeTheyAreLifted) {
-  const ValidJob job = validEndJob(OperationKind::kPrimaryEnd, CutDirection::kLeftHand);
-  SetpointStream stream(GrindProgram(job, plainMachine(), plainMachine().park));
-  Setpoint p;
-  while (stream.next(p) && !(p.move == MoveKind::kStroke && p.tooth == 1 && p.move_fraction > 0.9)) continue;
-  ASSERT_EQ(p.move, MoveKind::kStroke);
-  stream.hold();
-  all(stream, p);
-  const Setpoint left = p;
-  const FaceStroke first = job.faceStroke(left.tooth, job.depths().front(), 0);
-  stream.retract();
-  while (stream.next(p) && p.position[kX] > (left.position[kX] + first.from[kX]) / 2) continue;
-  stream.hold();
-  all(stream, p);
-  ASSERT_EQ(stream.rest(), Rest::kHeld);
-  stream.retract();
-  bool is_back = false;
-  while (stream.next(p)) {
-    is_back = is_back || p.position[kX] == first.from[kX];
-    EXPECT_TRUE(is_back || p.position[kY] == left.position[kY]);
-    EXPECT_TRUE(!is_back || p.position[kX] == first.from[kX]);
-  }
-  ASSERT_EQ(stream.rest(), Rest::kLifted);
-  EXPECT_TRUE(is_back);
-  EXPECT_EQ(p.position[kY], job->process().clearance);
-  stream.resume();
-  const FaceStroke stroke = job.faceStroke(left.tooth, job.depths()[left.pass], 0);
-  while (stream.next(p) && p.move != MoveKind::kStroke) EXPECT_LE(p.position[kX], stroke.from[kX]);
-  EXPECT_LT(p.move_fraction, 0.01);
-  EXPECT_EQ(p.move_index, left.move_index);
-  while (stream.next(p) && p.move == MoveKind::kStroke && p.move_fraction < 1) continue;
-  EXPECT_TRUE((p.position == stroke.to).all());
 }
 
 TEST(StraightStrokes, NeedTheSwivelOfTheirPlane) {

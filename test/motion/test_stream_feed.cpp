@@ -61,17 +61,6 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathO
   }
 }
 
-/// An infeed whose feed is beyond the limit of Y.
-TEST(SetpointStream, OverriddenAnInfeedKeepsTheLimitOfItsAxis) {
-  Work work{paperJob(), plainMachine(), plainMachine().park};
-  work.job.process().feed = 0.16;
-  work.job.process().clearance = 30e-3;
-  work.machine.limits.max_velocity[kY] = 0.05;
-  SetpointStream stream(work.program());
-  stream.setFeedOverride(kMaxFeedOverride);
-  EXPECT_EQ(beyondLimits(all(stream), work.machine), "");
-}
-
 TEST(SetpointStream, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
   Work work{paperJob(), plainMachine(), plainMachine().park};
   work.machine.limits.max_velocity << 0.2, 0.2, 0.2, 20;

@@ -36,9 +36,7 @@ class AwkwardDrive : public grinder::Drive {
     grinder::DriveCapabilities can;
     can.prepares = how_ == "hangs in prepare";
     if (how_ == "slow bus") can.shortest_period = 0.002;
-    if (how_ == "slightly slow bus") can.shortest_period = 0.0010000001;
     if (how_ == "no figure") can.shortest_period = std::numeric_limits<double>::quiet_NaN();
-    if (how_ == "negative") can.shortest_period = -0.001;
     if (how_ == "long buffer") can.buffer = 5000;
     return can;
   }

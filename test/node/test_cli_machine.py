@@ -8,7 +8,7 @@ import shutil
 import unittest.mock
 
 import rospy
-from flute_grinder.msg import GrinderState, GrindResult
+from flute_grinder.msg import GrinderState
 
 import grinder_client as gc
 from grind_command import PAPER_JOB, Command, CommandLine, RunTest
@@ -99,39 +99,22 @@ class TestMachine(CommandLine):
         with unittest.mock.patch.dict(os.environ, ROS_HOME=self.path('ros')):
             self.assertRegex(self.grind(2, 'run', job).stderr, re.escape(missing) + r'secondary \([-0-9]{10} [:0-9]{8}\)\n')
 
-    def test_hold_retract_and_resume(self):
+    def test_a_job_is_held_retracted_and_resumed_without_a_home_and_status_says_where_and_why(self):
         self.grind(0, 'override', '20')
         self.addCleanup(grinder().set_feed_override, 1)
         batches = len(grinder().batches)
         command = Command('run', PAPER_JOB, '--answer', 'discard', '--answer', 'ignore-offsets')
         self.addCleanup(command.close)
         RunTest.wait_in_stroke(grinder(), batches)
-        self.grind(0, 'hold')
-        grinder().wait_state(GrinderState.HELD)
-        printed = self.grind(0, 'status').stdout
-        self.assertRegex(printed, r'(?m)^state +held$')
-        self.assertRegex(printed, r'(?m)^feed +0\.0 mm/min, override 20 %$')
-        self.grind(0, 'retract')
-        grinder().wait_state(GrinderState.RETRACTED)
-        self.grind(0, 'override', '120')
-        self.grind(0, 'resume')
-        self.assertEqual(command.end(), 0, command.text)
-        self.assertRegex(command.stdout, r'streamed +\d+ setpoints in \S+ s, 0 missed\n')
-        for state in ('running', 'held', 'retracted'):
-            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, command.text)
-
-    def test_stops_need_no_home_and_status_reports_why_the_job_is_held(self):
-        grinder().make_ready(0.2)
-        run = grinder().send(gc.PAPER).wait_in_stroke(0)
-        self.assertTrue(grinder().set_feed_override(0.1).success)
         reported, _ = self.json(0, 'status')
         self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
                          ('running', 1, 1, False, True))
-        self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for s in run.setpoints})
+        grinder().fresh_state()
+        self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for batch in grinder().batches[batches:] for s in batch.setpoints})
         with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
             self.grind(0, 'hold')
             grinder().wait_state(GrinderState.HELD)
-            self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^state +held$')
+            self.assertRegex(self.grind(0, 'status').stdout, r'(?ms)^state +held$.*^feed +0\.0 mm/min, override 20 %$')
             self.grind(0, 'resume')
             grinder().wait_state(GrinderState.RUNNING)
             if grinder().injects_faults():
@@ -142,9 +125,19 @@ class TestMachine(CommandLine):
                 for line in ('state +retracted', 'coolant +off', 'held because +no coolant flows'):
                     self.assertRegex(printed, '(?m)^%s$' % line)
                 self.assertEqual(self.grind(1, 'resume').stderr, 'resume refused: no coolant flows\n')
+                grinder().inject('none')
+                gc.poll(lambda: grinder().fresh_state().coolant_on, 'the coolant')
+                self.grind(0, 'resume')
+                grinder().wait_state(GrinderState.RUNNING)
+            self.grind(0, 'hold')
+            grinder().wait_state(GrinderState.HELD)
+            self.grind(0, 'retract')
+            grinder().wait_state(GrinderState.RETRACTED)
             self.grind(0, 'cancel')
             self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
-        self.assertEqual(run.wait().code, GrindResult.CANCELED)
+        self.assertEqual(command.end(), 1, command.text)
+        for state in ('running', 'held', 'retracted'):
+            self.assertIn('  %s  tooth 1/1  pass 1/1  X ' % state, command.text)
         self.assertRegex(self.grind(0, 'status').stdout, r'(?m)^it ended +canceled; stopped on the path \(stroke, tooth 1, pass 1,')
 
     def test_dry_run_reports_what_plan_reports_and_output_that_cannot_be_printed_is_no_success(self):

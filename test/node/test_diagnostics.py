@@ -46,7 +46,7 @@ class Reports:
 
 
 class TestDiagnostics(gc.OwnNode):
-    def test_at_rest_all_is_well_but_a_recorder_that_does_not_start_or_dies(self):
+    def test_at_rest_all_is_well_but_a_recorder_that_dies(self):
         grinder = self.start(dict(gc.machine(), recorder='bag'))
         grinder.make_ready()
         reports = Reports(self.addCleanup, self.node.name)
@@ -54,15 +54,14 @@ class TestDiagnostics(gc.OwnNode):
         for name, text in (('Drive link', 'enabled'), ('Following error', 'within'), ('Limit margin', 'no setpoints'),
                            ('Buffer', 'the drive does not buffer'), ('Journal', 'kept'), ('History', 'kept')):
             self.assertEqual(reports.wait(name, OK, text, mark).hardware_id, 'flute_grinder/SimulatedDrive')
-        said = 'the recorder /bag takes no setpoints: no bag has what the grinder does'
-        reports.wait('Recorder', ERROR, said)
         bag = os.path.join(gc.temp_folder(self.addCleanup), 'x.bag')
         recorder = subprocess.Popen(['rosrun', 'rosbag', 'record', '-O', bag, self.node.name + '/setpoints', '__name:=bag'],
                                     stdout=subprocess.DEVNULL, start_new_session=True)
         self.addCleanup(recorder.wait)
         reports.wait('Recorder', OK, 'recording')
         os.killpg(recorder.pid, signal.SIGKILL)
+        said = 'the recorder /bag takes no setpoints: no bag has what the grinder does'
         reports.wait('Recorder', ERROR, said)
-        gc.poll(lambda: self.node.output.count(said) == 2, 'the log')
+        gc.poll(lambda: said in self.node.output, 'the log')
         # The grinder does not mind.
         grinder.make_ready()

@@ -1,7 +1,6 @@
 """Shows what the node does with drive plugins from a package of their own: those of another version of the drive interface it
 refuses before it makes the drive, those that cannot do what the machine needs before they get power, and it waits for slow ones."""
 
-import contextlib
 import re
 import signal
 import unittest
@@ -55,9 +54,7 @@ class TestDrivePlugin(unittest.TestCase):
 
     def test_what_it_cannot_do_and_exceptions_are_refused(self):
         for how, said in (('slow bus', r'parameter /doubtful\d+/control_rate = 1000; allowed: up to 500, which the drive tested/Plugin can hold'),
-                          ('slightly slow bus', r'control_rate = 1000; allowed: up to 999\.9999\d*, which the drive'),
                           ('no figure', r'the drive tested/Plugin states a shortest_period of nan s; allowed: 0 or more'),
-                          ('negative', r'the drive tested/Plugin states a shortest_period of -0.001 s; allowed: 0 or more'),
                           ('long buffer', 'the drive tested/Plugin buffers 5000 commands; allowed: up to 4095'),
                           ('throws no text in init', 'the drive tested/Plugin: no text'),
                           ('throws in constructor', 'the drive tested/Plugin: its constructor has thrown what is no std::exception'),
@@ -75,30 +72,22 @@ class TestDrivePlugin(unittest.TestCase):
         grinder.wait_state(GrinderState.DISABLED)
         self.assertEqual(node.end(signal.SIGTERM), 0, node.output)
 
-    def test_signal_during_init(self):
+    def test_signal_during_a_call_outside_the_loop(self):
         """It ends a drive that waits for ever, and leaves nothing at the master."""
-        for with_signal in signal.SIGINT, signal.SIGTERM:
-            node = self.awkward('waits')
-            with contextlib.ExitStack() as stack:
-                gc.publisher(stack.callback, '/%s/hardware/go' % node.name, Empty)
+        for how, function, with_signal in (('init', 'init()', signal.SIGINT), ('constructor', 'constructor', signal.SIGTERM),
+                                           ('capabilities', 'capabilities()', signal.SIGTERM)):
+            with self.subTest(function=function):
+                node = self.awkward('hangs in ' + how)
+                gc.poll(lambda: 'hangs now' in node.output, 'the call')
                 self.assertEqual(node.end(with_signal), 0, node.output)
-            self.assertIn('ended by a signal before the return of the init() of the drive tested/Plugin', node.output)
-            self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
+                self.assertIn('ended by a signal before the return of the %s of the drive tested/Plugin' % function, node.output)
+                self.assertNotIn(node.name, str(rosgraph.Master(rospy.get_name()).getSystemState()))
 
     def running(self, how, state=GrinderState.DISABLED):
         node = self.awkward(how)
         grinder = node.client()
         self.addCleanup(grinder.close)
         return node, grinder.wait_state(state)
-
-    def test_signal_during_a_call(self):
-        """Of what is called outside the control loop."""
-        for function, shown in ('constructor', 'constructor'), ('capabilities', 'capabilities()'):
-            with self.subTest(function=function):
-                node = self.awkward('hangs in ' + function)
-                gc.poll(lambda: 'hangs now' in node.output, 'the call')
-                self.assertEqual(node.end(signal.SIGTERM), 0, node.output)
-                self.assertIn('ended by a signal before the return of the %s of the drive tested/Plugin' % shown, node.output)
 
     def test_what_hangs_delays_the_end_and_does_not_prevent_it(self):
         node, _ = self.running('hangs in prepare')

@@ -19,7 +19,7 @@ OFFSETS = [-0.0213, 0.0237, -0.0119, 1.25]
 SWIVEL, HEIGHT, X_SHIFT = 20 * DEG, 3 * MM, -15 * MM
 TEETH = [0.0, 100 * DEG]
 # Its stroke takes some seconds.
-JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=5 * MM, clearance=1 * MM, tooth_angles=TEETH,
+JOB = gc.paper(end_diameter=12 * MM, feed=100 * MM_MIN, flute_length=3 * MM, clearance=1 * MM, tooth_angles=TEETH,
                setup_swivel=SWIVEL, setup_height=HEIGHT, setup_x_shift=X_SHIFT)
 HELIX = checks.Helix(JOB)
 # Of a cutter of 12 mm and a wheel of 100 mm.

@@ -223,9 +223,9 @@ class TestPeers(unittest.TestCase):
         return time.monotonic() - begin
 
     def check(self, mistake, what, goes_on=True):
-        """The mistake, made in a stroke ahead of each kind of stop, harms neither."""
+        """The mistake, made in a stroke ahead of each kind of stop, or of one if it may end the stroke, harms neither."""
         before, took = self.memory(), []
-        for name, stop in self.stops.items():
+        for name, stop in list(self.stops.items())[:None if goes_on else 1]:
             self.into_stroke()
             x = self.run_.last.position[X]
             mistake()
@@ -265,8 +265,8 @@ class TestPeers(unittest.TestCase):
         # Among the first two may be stops. Of no bytes, roscpp reads one from freed memory for the second subscription to a topic in a process.
         for maker, targets, messages, what, goes_on in (
                 (Fuzzer(23), topics + services, 3000, 'messages and requests with fields at random', False),
-                (Noise(9, 600), topics, 2000, 'messages of random bytes', False), (Noise(9, 0), topics, 1000, 'empty messages', True)):
-            self.check(lambda: self.send(maker, targets, messages), '%d %s' % (len(self.stops) * messages, what), goes_on)
+                (Noise(9, 600), topics, 2000, 'messages of random bytes', False), (Noise(9, 0), topics, 300, 'empty messages', True)):
+            self.check(lambda: self.send(maker, targets, messages), '%d %s' % (messages, what), goes_on)
         self.grinder.make_ready()
         run = self.grinder.run(gc.SHORT)
         self.assertEqual(run.status, 'SUCCEEDED', run.text)

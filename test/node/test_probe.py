@@ -31,33 +31,27 @@ class ProbeTest(gc.OwnNode):
     def setUp(self):
         self.folder = gc.temp_folder(self.addCleanup)
 
-    def start(self, blank=BLANK, **changes):
-        """Starts a node, ready, with the probe swung in before the blank."""
+    def start(self, x=0.0, y=0.0, blank=BLANK, **changes):
+        """Starts a node, ready, with the probe's ball at X in machine coordinates and a distance from the axis, at the axis' height."""
         parameters = gc.machine()
         # A client that a busy host leaves without a processor is not to count as gone.
         parameters['jog_timeout'] = 1.0
         parameters['probing'].update(velocity=dict(parameters['probing']['velocity'], axis_x=4 * MM, axis_y=4 * MM), slow=0.4)
         parameters.update(changes)
-        parameters['hardware'].pop('blank', None)
+        hardware = parameters['hardware']
         if blank:
-            parameters['hardware']['blank'] = blank
+            hardware['blank'] = blank
+        for joint, position in zip(gc.JOINTS, (x - BALL_X, y - BALL_Y, -BALL_Z)):
+            hardware[joint]['start_position'] = position
         self.disk = gc.SlowDisk(self.folder)
         super().start(parameters, environment=self.disk.environment).make_ready()
         self.addCleanup(self.disk.release)
 
     def jog(self, axis, distance):
-        reply = self.client._call('jog_step', JogStep, axis, distance, 1.0 if axis == A else 50 * MM)
+        reply = self.client._call('jog_step', JogStep, axis, distance, 5.0 if axis == A else 100 * MM)
         self.assertTrue(reply.success, reply.message)
         self.client.wait_state(GrinderState.READY)
         self.client.wait_rest()
-
-    def bring_ball(self, x, y):
-        """Its centre to X in machine coordinates and a distance from the axis, at the axis' height."""
-        # Over the blank.
-        for axis, to in ((Y, 20 * MM - BALL_Y), (Z, -BALL_Z), (X, x - BALL_X), (Y, y - BALL_Y)):
-            distance = to - self.client.wait_rest()[axis]
-            if abs(distance) > 1e-6:
-                self.jog(axis, distance)
 
     def cycle(self, *arguments):
         """Runs `grind probe`; what it printed, by its names."""
@@ -81,9 +75,8 @@ def number(text):
 
 class TestCycles(ProbeTest):
     def test_the_end_face_gives_the_stick_out_and_the_offset(self):
-        self.start()
+        self.start(14 * MM)
         self.check_goals()
-        self.bring_ball(12 * MM, 0)
         self.check_touches()
         said = self.cycle('end-face', '--job', JOB)
         for figure in ('end face', 'stick-out'):
@@ -104,7 +97,6 @@ class TestCycles(ProbeTest):
         self.assertGreater(abs(self.offset(X)['offset_mm'] - before), 5)
 
     def check_goals(self):
-        self.assertEqual(self.client.probe(math.nan).message, 'probing refused: within = nan; allowed: finite, and above 0')
         self.assertIn('; allowed: up to 300 mm', self.client.probe(1.0).message)
         self.client.disable()
         self.assertIn('state disabled; allowed: ready', self.client.probe(1 * MM).message)
@@ -126,7 +118,7 @@ class TestCycles(ProbeTest):
         geometry = gc.machine()['geometry']
         geometry['collet_face']['x'] += 1 * MM
         del geometry['probe']
-        self.start(None, geometry=geometry)
+        self.start(blank=None, geometry=geometry)
         self.assertEqual(self.grind(1, 'probe', 'diameter').stderr,
                          'probing refused: the machine has no parameter geometry/probe\n')
         reported = self.json('zeros', JOB, '--stickout', '45')
@@ -137,8 +129,7 @@ class TestCycles(ProbeTest):
         self.assertIn('--stickout = 20 mm; allowed: ', self.grind(1, 'zeros', JOB, '--stickout', '20', '--set').stderr)
 
     def test_a_blank_clamped_too_short_gives_its_figures_and_no_offset(self):
-        self.start(dict(BLANK, end_face=42 * MM))
-        self.bring_ball(37 * MM, 0)
+        self.start(39 * MM, blank=dict(BLANK, end_face=42 * MM))
         done = self.grind(1, 'probe', 'end-face', '--job', JOB)
         found = re.match(r"probing ended: stick-out = (\S+) mm; allowed: the flutes' length or more, ", done.stderr).group(1)
         self.assertIn('stick-out       %s mm\n' % found, done.stdout)
@@ -157,12 +148,11 @@ class TestCycles(ProbeTest):
         with open(path, 'w') as file:
             yaml.safe_dump(job, file)
         angle = 0.7
-        self.start(dict(BLANK, run_out=0.0, rake_face={'height': 1.2 * MM, 'angle': angle}))
-        self.bring_ball(12 * MM, 3 * MM)
+        self.start(14 * MM, 3 * MM, dict(BLANK, run_out=0.0, rake_face={'height': 1.2 * MM, 'angle': angle}))
         self.assertIn('probe the end face first', self.grind(1, 'probe', 'tooth', '--job', path).stderr)
         self.jog(A, angle + math.pi / 2)  # what is left of the end face comes before the ball
         self.cycle('end-face', '--job', path)
-        self.jog(A, -2)
+        self.jog(A, -1.7)  # not far from the tooth
         self.jog(Y, 7 * MM)
         self.jog(X, 12 * MM)
         self.jog(Y, -5.5 * MM)
@@ -192,7 +182,7 @@ class TestStop(ProbeTest):
     @contextlib.contextmanager
     def begun(self):
         """While a search is under way, of 45 mm into nothing; gives the action's client."""
-        self.bring_ball(-35 * MM, 0)
+        self.jog(X, -95 * MM - self.client.wait_rest()[X])
         with self.client.probing(45 * MM) as cycle:
             self.client.wait_state(GrinderState.JOGGING)
             yield cycle
@@ -203,7 +193,7 @@ class TestStop(ProbeTest):
         self.assertLess(self.client.wait_rest()[X], 0)
 
     def test_stops_and_the_end_of_its_client_and_of_the_node(self):
-        self.start()
+        self.start(-30 * MM)
         with self.begun() as cycle:
             self.assertIn('probing refused: another probing cycle is in progress; ', self.client.probe(1 * MM).message)
             run = self.client.send(gc.SHORT).wait()
@@ -225,7 +215,7 @@ class TestStop(ProbeTest):
             self.assertEqual(self.node.process.wait(timeout=gc.PATIENCE), 0)
 
     def check_killed_client(self):
-        self.bring_ball(-35 * MM, 0)
+        self.jog(X, -95 * MM - self.client.wait_rest()[X])
         before = self.client.wait_rest()[X]
         client = self.command('end-face', '--job', JOB, '--within', '45')
         # For longer than a client that is gone may move the axis.
@@ -239,8 +229,7 @@ class TestStop(ProbeTest):
         self.assertIn('probing ended: its client was silent for 1 s; ~probe_alive is to be repeated', self.node.output)
 
     def test_ctrl_c_ends_a_cycle_between_its_touches_too(self):
-        self.start()
-        self.bring_ball(30 * MM, 7 * MM)
+        self.start(30 * MM, 7 * MM)
         before = self.client.wait_rest()[A]
         cycle = self.command('diameter')
         self.client.wait_for(lambda: abs(self.client.joints[-1].position[A] - before) > 0.1, 'the turn')

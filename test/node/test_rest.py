@@ -66,7 +66,7 @@ class TestRest(unittest.TestCase):
         self.assertTrue(step.success, step.message)
         g.wait_state(GrinderState.READY)
         moving = [j for j in g.joints[seen:] if j.velocity[Y] != 0]
-        self.assertLess(statistics.median(intervals(moving)), REST / 4)
+        self.assertLess(statistics.median(intervals(moving)), REST / 2)
         states = [s for s in g.states if s.state == GrinderState.JOGGING]
         self.assertLess(statistics.median(intervals(states)), 3 * REST / 4)
         # Though the axes do not move yet, as while the spindle runs up.
@@ -74,4 +74,4 @@ class TestRest(unittest.TestCase):
         seen = len(g.joints)
         run = g.send(gc.SHORT).wait_complete()
         self.assertEqual(run.status, 'SUCCEEDED', run.text)
-        self.assertLess(statistics.median(intervals(g.joints[seen:])), REST / 4)
+        self.assertLess(statistics.median(intervals(g.joints[seen:])), REST / 2)

@@ -11,13 +11,14 @@ import threading
 import actionlib
 import rosgraph
 import rospy
+from actionlib_msgs.msg import GoalStatusArray
 from flute_grinder.msg import (FeedLimit, GrindAction, GrinderState, GrindFeedback, GrindResult, Need, PathStatistics, PlanReport, SetpointBatch, Stop,
                                WorkOffsets, WrittenSetpoint)
 from flute_grinder.srv import SetFeedOverride
 from std_srvs.srv import Trigger, TriggerResponse
 
 import grinder_client as gc
-from grind_command import PAPER_JOB, RunTest
+from grind_command import PAPER_JOB, RunTest, default_signals
 
 
 class StandIn:
@@ -109,18 +110,36 @@ class TestStandIn(RunTest):
         command = self.grind('run', PAPER_JOB, *arguments, **options)
         return command, self.node.await_goal()
 
-    def test_planning_is_shown_and_can_be_canceled(self):
+    def test_planning_is_shown_and_canceled_by_signals_but_by_no_hangup_under_nohup(self):
+        def nohup():
+            default_signals()
+            signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+        for before, signals in ((default_signals, [signal.SIGINT]), (default_signals, [signal.SIGHUP]), (nohup, [signal.SIGHUP, signal.SIGTERM])):
+            self.node.goals.clear()
+            self.node.canceled.clear()
+            command, goal = self.start_run(before=before)
+            goal.publish_feedback(GrindFeedback(state='planning', planned=0.43))
+            command.wait_text('planning 43 %\n')
+            self.assertRegex(command.text, r'(?m)^\[#{12}\.{18}\]  planning 43 %$')
+            for number in signals:
+                command.send(number)
+            gc.poll(lambda: self.node.canceled, 'the cancel')
+            self.assertEqual(self.node.canceled[0].get_goal_id().id, goal.get_goal_id().id)
+            goal.set_canceled(GrindResult(error_code=GrindResult.CANCELED, error_string='canceled while it was planned'))
+            self.assertEqual(command.end(), 1)
+            # The hang-up was none of them.
+            self.assertTrue(command.text.endswith('%\ncanceling: waiting for the stop\ncanceled while it was planned (code -11)\n'), command.text)
+            self.assertEqual(command.stdout, '')
+
+    def test_grinder_that_no_longer_knows_the_job(self):
         command, goal = self.start_run()
-        goal.publish_feedback(GrindFeedback(state='planning', planned=0.43))
-        command.wait_text('planning 43 %\n')
-        self.assertRegex(command.text, r'(?m)^\[#{12}\.{18}\]  planning 43 %$')
-        command.send(signal.SIGINT)
-        gc.poll(lambda: self.node.canceled, 'the cancel')
-        self.assertEqual(self.node.canceled[0].get_goal_id().id, goal.get_goal_id().id)
-        goal.set_canceled(GrindResult(error_code=GrindResult.CANCELED, error_string='canceled while it was planned'))
+        statuses = gc.publisher(self.addCleanup, '/grinder/grind/status', GoalStatusArray)
+        # As of a new process.
+        gc.poll(lambda: statuses.publish(GoalStatusArray()) or command.process.poll() is not None, 'its end')
         self.assertEqual(command.end(), 1)
-        self.assertTrue(command.text.endswith('\ncanceled while it was planned (code -11)\n'), command.text)
-        self.assertEqual(command.stdout, '')
+        self.assertTrue(command.text.endswith('the grinder no longer knows the job: it has been restarted\n'), command.text)
+        goal.set_aborted()
 
     def test_texts_of_a_peer_are_shown_escaped(self):
         bad, shown = 'a\x1b[2J', 'a\\x1b[2J'

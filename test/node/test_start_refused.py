@@ -15,7 +15,7 @@ TO_SET = 'set it to 31.769 deg and confirm it: grind confirm-swivel 31.769'
 
 class TestHoming(gc.OwnNode):
     def test_machine_whose_encoders_do_not_know_where_it_is(self):
-        parameters = gc.machine()
+        parameters = gc.machine(pace=5)
         hardware = parameters['hardware']
         hardware.update(absolute_encoders=False, spindle_run_up_time=0)
         hardware['axis_x']['start_position'] = -0.045

@@ -20,6 +20,7 @@ class TestStream(unittest.TestCase):
         cls.job_run = grinder().send(gc.MOTION).wait_complete(timeout=120)
 
     def test_setpoints_come_in_batches_with_velocities(self):
+        self.assertEqual(self.job_run.result.plan.passes, [], 'only a dry run says what they remove')
         batches, period = self.job_run.batches, grinder().period()
         self.assertTrue(all(batch.setpoints and batch.period == period for batch in batches))
         stamps = [batch.header.stamp.to_sec() for batch in batches]
@@ -55,14 +56,6 @@ class TestStream(unittest.TestCase):
         # It is the largest since the feedback before, and so never one from before the stroke.
         self.assertEqual(feedback[0].path_error, 0)
 
-    def test_only_a_dry_run_says_what_its_passes_remove_though_its_plan_is_kept(self):
-        grinder().make_ready_at_park()
-        pass_, = grinder().send(gc.SHORT, dry_run=True).wait().result.plan.passes
-        self.assertEqual(pass_.depth, gc.SHORT['process.depth'])
-        self.assertTrue(pass_.area > 0 and pass_.rate > 0 and pass_.volume > 0, pass_)
-        run = grinder().send(gc.SHORT).wait()
-        self.assertEqual((run.status, run.result.plan.passes), ('SUCCEEDED', []))
-
     def test_dry_run_moves_nothing_needs_no_power_and_is_shown_in_rviz(self):
         positions = grinder().make_ready_at_park()
         batches, joints = len(grinder().batches), len(grinder().joints)
@@ -71,6 +64,9 @@ class TestStream(unittest.TestCase):
             self.assertEqual((run.status, run.code), ('SUCCEEDED', 0), run.text)
             self.assertEqual(run.result.plan.statistics, self.job_run.result.plan.statistics)
             self.assertTrue(run.result.plan.valid)
+            pass_, = run.result.plan.passes
+            self.assertEqual(pass_.depth, gc.MOTION['process.depth'])
+            self.assertTrue(pass_.area > 0 and pass_.rate > 0 and pass_.volume > 0, pass_)
             self.assertEqual(run.result.reasons, [])
             self.assertEqual(grinder().fresh_state().state, state)
             self.assertEqual(len(grinder().batches), batches)

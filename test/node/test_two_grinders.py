@@ -113,7 +113,7 @@ class TestTroubleOfOne(unittest.TestCase):
     def test_override_hold_emergency_stop_and_death_of_one_do_not_touch_the_other(self):
         left, right = clients()
         # Its stroke takes seven seconds, time to interfere in it even on a host that stalls.
-        runs = [client.send(gc.paper(flute_length=10 * gc.MM, feed=100 * gc.MM_MIN)) for client in (left, right)]
+        runs = [client.send(gc.paper(flute_length=10 * gc.MM, feed=100 * gc.MM_MIN, clearance=1 * gc.MM)) for client in (left, right)]
         for run in runs:
             run.wait_past(lambda s: s.move == gc.STROKE, 'the stroke')
         self.assertTrue(left.set_feed_override(0.5).success)

@@ -5,7 +5,6 @@ place between two of them. Besides the shipped reamer, random cutters are set up
 number is scaled as RapidCheck's by RC_PARAMS."""
 
 import collections
-import csv
 import functools
 import math
 import os
@@ -13,7 +12,6 @@ import pathlib
 import random
 import re
 import sys
-import tempfile
 import unittest
 
 import numpy
@@ -23,6 +21,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
+from planned_strokes import Refused, grind, plan, read_job  # noqa: E402
 
 REAMER = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
 KINDS = ('flute', 'primary', 'secondary')
@@ -38,17 +37,12 @@ def random_cases():
 class Stroke:
     """The last stroke of a tooth in an operation."""
 
-    def __init__(self, cutter, process, rows, tooth):
+    def __init__(self, process, poses):
         wheel = process['wheel']
         self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
         swivel = math.radians(process['setup']['swivel_deg'])
         self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
-        last = max(int(row['pass']) for row in rows)
-        # Of the wheel's centre, and A.
-        self.poses = numpy.array([
-            (float(row['x_mm']), cutter['end_diameter_mm'] / 2 + self.radius + float(row['y_mm']),
-             process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
-            for row in rows if int(row['tooth']) == tooth and int(row['pass']) == last]).T
+        self.poses = poses
 
     def ray(self, x, angle, poses):
         """Where a ray from the axis, at an angle of the cutter, first meets the wheel."""
@@ -107,16 +101,6 @@ def boundary(low, high, is_low):
     return (low + high) / 2
 
 
-class Refused(Exception):
-    """What a program does not do, and why."""
-
-
-def grind(*arguments):
-    done = gc.grind(*arguments)
-    if done.returncode != 0:
-        raise Refused('%s: %s' % (' '.join(a for a in arguments if '/' not in a), done.stderr or done.stdout))
-
-
 # What is measured of a tooth in a section: how far its first relief takes the edge's radius or leaves it [mm], where the reliefs begin
 # behind the edge and with what clearance [rad], and the width of the first [mm].
 Measured = collections.namedtuple('Measured', 'edge begins clearance second_clearance land')
@@ -125,33 +109,16 @@ Measured = collections.namedtuple('Measured', 'edge begins clearance second_clea
 class Tool:
     """The file of a job whose operations are all planned. Angles behind an edge are positive."""
 
-    def __init__(self, path, rate):
-        with open(path, encoding='utf-8') as file:
-            job = yaml.safe_load(file)
+    def __init__(self, path, rate, folder):
+        job = read_job(path)
         self.cutter, self.operations = job['cutter'], job['operations']
         self.hand = -1 if self.cutter['cut'] == 'left_hand' else 1
         self.asked = [math.radians(self.cutter.get(key, 0)) for key in ('clearance_deg', 'second_clearance_deg')]
         # What is asked again and again, for as long as there is the tool.
-        self.strokes, self.edge = functools.lru_cache(None)(self.strokes), functools.lru_cache(None)(self.edge)
-        self.rows = []
-        with tempfile.TemporaryDirectory() as folder:
-            machine = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=rate)
-            with open(os.path.join(os.path.dirname(path), self.operations[0]['setup']['file']), encoding='utf-8') as file:
-                setups = yaml.safe_load(file)
-            for number, process in enumerate(self.operations):
-                process['setup'] = setups[process.get('relief', 'flute')]
-                if 'file' in process['wheel']:
-                    with open(os.path.join(os.path.dirname(path), process['wheel']['file']), encoding='utf-8') as file:
-                        process['wheel'] = yaml.safe_load(file)
-                setpoints = os.path.join(folder, 'setpoints.csv')
-                grind('plan', path, '--operation', str(number + 1), '--machine', machine, '--csv', setpoints)
-                with open(setpoints, encoding='utf-8') as file:
-                    names = next(file)
-                    self.rows.append(list(csv.DictReader((line for line in file if ',stroke,' in line), names.strip().split(','))))
-
-    def strokes(self, tooth):
-        """Of all operations."""
-        return [Stroke(self.cutter, process, rows, tooth) for process, rows in zip(self.operations, self.rows)]
+        self.edge = functools.lru_cache(None)(self.edge)
+        # Of all operations, for each tooth.
+        self.strokes = list(zip(*([Stroke(process, poses) for poses in plan(path, job, process, rate, folder)[1]]
+                                  for process in self.operations)))
 
     def radius(self, x):
         return self.cutter['end_diameter_mm'] / 2 + x * math.tan(math.radians(self.cutter['cone_angle_deg']))
@@ -167,9 +134,9 @@ class Tool:
     def edge(self, x, tooth):
         """The angle at which the flute's rake face meets the cone."""
         # What is cut by less than the way between two setpoints shows, is found in between.
-        flute, r = self.strokes(tooth)[0], self.radius(x)
+        flute, r = self.strokes[tooth][0], self.radius(x)
         step = math.radians(2)
-        inside = [flute.outside(x, i * step, r, flute.poses).min() < 0 for i in range(180)]
+        inside = flute.outside(x, step * numpy.arange(180)[:, None], r, flute.poses).min(axis=1) < 0
         last, = (i for i in range(180) if inside[i] and not inside[(i + self.hand) % 180])
         return boundary(last * step, (last + 2 * self.hand) * step, lambda a: flute.cuts(x, a, r))
 
@@ -180,7 +147,7 @@ class Tool:
         return math.atan((3 * r0 - 4 * r1 + r2) / (2 * step * r0))
 
     def measure(self, x, tooth):
-        edge, radius, (_, primary, *more) = self.edge(x, tooth), self.radius(x), self.strokes(tooth)
+        edge, radius, (_, primary, *more) = self.edge(x, tooth), self.radius(x), self.strokes[tooth]
 
         def at(behind):
             return edge + self.hand * behind
@@ -242,7 +209,7 @@ def set_up(job, path):
         yaml.safe_dump(job, file)
     for kind, _ in zip(KINDS, job['operations']):
         grind('setup', path, '--operation', kind, '--write')
-    return Tool(path, RATE)
+    return Tool(path, RATE, os.path.dirname(path))
 
 
 class ReliefGround(unittest.TestCase):
@@ -263,10 +230,10 @@ class ReliefGround(unittest.TestCase):
                     self.near('land [mm]', found.land - tool.cutter['land_mm'], 0.02)
                 for part in (0.1, 0.5, 0.9) if tool.margin() else ():
                     angle = tool.edge(x, tooth) + part * tool.margin() * tool.hand
-                    self.assertGreater(tool.strokes(tooth)[1].left(x, angle), radius)
+                    self.assertGreater(tool.strokes[tooth][1].left(x, angle), radius)
 
     def test_the_shipped_reamer(self):
-        self.check(Tool(REAMER, SLOW), teeth=(0, 5))
+        self.check(Tool(REAMER, SLOW, gc.temp_folder(self.addCleanup)), teeth=(0, 5))
 
     def test_random_cutters(self):
         cases, refused = random_cases(), []

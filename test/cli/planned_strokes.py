@@ -1,7 +1,6 @@
 """The strokes of a job's operations, for tests that hold them against a geometry of their own: from the file of `grind plan --csv`,
 and the wheels and set-ups of the job's files. All lengths in mm."""
 
-import csv
 import functools
 import json
 import os
@@ -45,11 +44,10 @@ def plan(path, job, process, rate, folder):
     in columns: X, Y and Z of the wheel's centre, and A."""
     machine, setpoints = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=rate), os.path.join(folder, 'setpoints.csv')
     printed = grind('plan', path, '--operation', process['name'], '--machine', machine, '--json', '--csv', setpoints)
-    strokes = {}
     with open(setpoints, encoding='utf-8') as file:
-        names = next(file).strip().split(',')
-        tooth, number, first = (names.index(name) for name in ('tooth', 'pass', 'x_mm'))
-        for row in csv.reader(line for line in file if ',stroke,' in line):
-            strokes.setdefault(int(row[tooth]), {}).setdefault(int(row[number]), []).append(row[first:first + 4])
+        names, lines = next(file).strip().split(','), [line for line in file if ',stroke,' in line]
+    first, last = names.index('x_mm'), lines[-1].split(',')[names.index('pass')]
+    strokes = [[line.split(',')[first:first + 4] for line in lines if ',stroke,%d,%s,' % (tooth, last) in line]
+               for tooth in range(job['cutter']['teeth'])]
     off = [[0], [(job['cutter']['end_diameter_mm'] + process['wheel']['diameter_mm']) / 2], [process['setup']['height_mm']], [0]]
-    return json.loads(printed), [numpy.array(passes[max(passes)], float).T + off for _, passes in sorted(strokes.items())]
+    return json.loads(printed), [numpy.array(rows, float).T + off for rows in strokes]

@@ -154,8 +154,8 @@ class Tool:
 
 
 class RightHandEndByForce(unittest.TestCase):
-    FILE = 'jobs/end_mill_d10_t4.yaml'
-    PARTS = [0.1, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured
+    FILE = 'jobs/end_mill_d12_t6.yaml'
+    PARTS = [0.2, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured: farther in, the next gash takes the secondary one
     KEPT = 1e-4  # by which another tooth's stroke may set an edge back [mm]
 
     @classmethod
@@ -270,11 +270,7 @@ class RightHandEndByForce(unittest.TestCase):
 
 class LeftHandEndByForce(RightHandEndByForce):
     FILE = 'jobs/left_hand_end_mill_d8_t3.yaml'
-
-
-class SixTeethByForce(RightHandEndByForce):
-    FILE = 'jobs/end_mill_d12_t6.yaml'
-    PARTS = [0.2, 0.3, 0.6, 0.9]  # farther in, the next gash takes the secondary flank
+    PARTS = [0.1, 0.3, 0.6, 0.9]
 
 
 class CentreCuttingByForce(RightHandEndByForce):

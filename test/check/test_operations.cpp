@@ -161,7 +161,6 @@ TEST(Operations, AReliefsStrokesAreTheClosedForm) {
 }
 
 TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
-  EXPECT_TRUE(checkOf(reamer("primary")).reasons.empty());
   const CutterCheck good = checkOf(reamer("secondary"));
   EXPECT_TRUE(good.reasons.empty()) << text(good.reasons);
   EXPECT_NEAR(find(good.figures, ToolFigure::kClearance)->least.value / kDegree, 10, 0.02);
@@ -195,16 +194,14 @@ TEST(Operations, AReliefThatWouldSpoilTheToolIsRefused) {
 // With another shift the flutes leave an edge that is up to 1 deg off the asked helix, along which a relief would take
 // more off it than is allowed.
 TEST(Operations, AReliefFollowsTheEdgeAsItIsGround) {
-  for (const char* name : {"primary", "secondary"}) {
-    GrindJob job = reamer(name);
-    job.cutter.spiral_tolerance = 1 * kDegree;
-    job.operations[0].setup_x_shift += 3e-3;
-    const CutterCheck check = checkOf(job);
-    EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
-    EXPECT_GT(find(check.figures, ToolFigure::kOffHelix)->largest.value, 0.9 * kDegree) << name;
-    const GroundFigure clearance = *find(check.figures, ToolFigure::kClearance);
-    EXPECT_NEAR(clearance.least.value, clearance.largest.value, 0.02 * kDegree) << name;
-  }
+  GrindJob job = reamer("secondary");
+  job.cutter.spiral_tolerance = 1 * kDegree;
+  job.operations[0].setup_x_shift += 3e-3;
+  const CutterCheck check = checkOf(job);
+  EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
+  EXPECT_GT(find(check.figures, ToolFigure::kOffHelix)->largest.value, 0.9 * kDegree);
+  const GroundFigure clearance = *find(check.figures, ToolFigure::kClearance);
+  EXPECT_NEAR(clearance.least.value, clearance.largest.value, 0.02 * kDegree);
 }
 
 TEST(Operations, ALandIsNotWiderThanTheRimOfThePrimaryReachesBehindTheEdge) {

@@ -8,7 +8,6 @@
 #include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/setup/job_setup.h"
 #include "flute_grinder/tool/ground_job.h"
-#include "flute_grinder/tool/run_strokes.h"
 #include "flute_grinder/tool/z_law.h"
 #include "motion/examples.h"
 
@@ -188,24 +187,6 @@ TEST(ConstantRake, ItGivesUpWhenToldToAndWithoutCorrectionsNoCutterIsComputed) {
   }
   EXPECT_EQ(looks, 5);
   EXPECT_THROW(groundCutterOf(ValidJob(job)), std::invalid_argument);
-}
-
-// From the job to the streamed setpoints and back to the cutter.
-TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
-  const ValidJob job = withLaws(ValidJob(steepJob()));
-  RunStrokes strokes(job);
-  Axes actual = test_support::roomyMachine().park;
-  const JobPlan plan =
-      planJob(job, test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
-        strokes.add(p, actual);
-        actual = p.position;
-      });
-  strokes.finish();
-  ASSERT_TRUE(plan.good()) << text(plan.reasons);
-  for (const RunStroke& stroke : strokes.strokes()) {
-    for (const PathDeviation& d : stroke.deviations) EXPECT_LT(std::abs(d.z), 1e-12);
-  }
-  EXPECT_LT(rakeError(strokes.cutter(), *job), 0.006);  // sampled from setpoints
 }
 
 }  // namespace test_constant_rake

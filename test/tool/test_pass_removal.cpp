@@ -181,18 +181,5 @@ TEST(PassRemoval, IsGivenUpByItsWatch) {
   }
 }
 
-// The wear of an earlier relief follows from its passes.
-TEST(PassRemoval, OfAnEarlierReliefIsGivenUpByTheWatch) {
-  GrindJob asked = readJobFile("jobs/taper_reamer_d6_t6.yaml", "secondary");
-  asked.tooth_angles = {0};
-  asked.operations[1] = byRemoval(asked.ofOperation(1), 2, 0).process();
-  asked.operations[1].wheel_wear_per_pass = 1e-7;
-  const ValidJob job = withLaws(ValidJob(asked));
-  const auto before = [&](const PlanWatch& watch) { groundBefore(job, watch); };
-  EXPECT_EQ(stopped(10, before), ReasonKind::kGivenUp);
-  const auto check = [&](const PlanWatch& watch) { throw ReasonError(checkGroundCutter(job, watch).reasons.at(0)); };
-  EXPECT_EQ(stopped(10, check), ReasonKind::kGivenUp);
-}
-
 }  // namespace test_pass_removal
 }  // namespace grinder

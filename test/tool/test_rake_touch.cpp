@@ -267,18 +267,6 @@ TEST(RakeTouch, ABallThatTouchesAnythingElseIsRefusedWithTheDistancesAtWhichItWo
   }
 }
 
-TEST(RakeTouch, ABallThatIsTooLargeForTheFluteIsRefusedWithOneThatIsNot) {
-  const ValidJob job = leftHand();
-  const Ball ball{10 * kMillimetre, 5 * kMillimetre, 0, 6 * kMillimetre};
-  const auto reason = refusal(job, ball);
-  ASSERT_TRUE(reason);
-  EXPECT_EQ(reason->field, "ball diameter");
-  EXPECT_DOUBLE_EQ(reason->value, ball.diameter);
-  EXPECT_LT(reason->limit, ball.diameter);
-  EXPECT_EQ(refusal(job, {ball.x, ball.from_axis, 0, reason->limit}).value_or(Reason{}).field,
-            "ball's distance from the axis");
-}
-
 TEST(RakeTouch, InASlotTheOtherWallIsTouchedFirstByABallThatIsWiderThanTheSlot) {
   GrindJob job = straight(CutDirection::kRightHand);
   job.process().depth = 3 * kMillimetre;

@@ -271,6 +271,13 @@ struct Part {
   CutterSolid solid;
 };
 
+/// Removes faces from a solid.
+template <typename Which>
+void drop(CutterSolid& solid, Which which) {
+  auto& faces = solid.triangles;
+  faces.erase(std::remove_if(faces.begin(), faces.end(), which), faces.end());
+}
+
 /// The cutter without a wedge, with the faces of the cut, and the surface of the wedge.
 std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const char* ns,
                           const std::optional<Reached>& reached) {
@@ -285,9 +292,15 @@ std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const
   removed.pop_back();
   for (const Plane& plane : cut_out.body) removed.push_back({{{-plane.normal, -plane.offset}}, {}});
   Part wedge{kCutOut, cutterSolid(cutter, extent, resolution, removed)};
-  auto& faces = wedge.solid.triangles;
-  const auto is_cut = [](const SolidTriangle& t) { return t.kind == SurfaceKind::kCut; };
-  faces.erase(std::remove_if(faces.begin(), faces.end(), is_cut), faces.end());
+  drop(wedge.solid, [](const SolidTriangle& face) { return face.kind == SurfaceKind::kCut; });
+  for (CutterSolid* solid : {&rest.solid, &wedge.solid}) {
+    // Toward the shank: through the cracks one would see dots of it.
+    const double end = std::max(extent.to, extent.shank_to);
+    drop(*solid, [&](const SolidTriangle& face) {
+      return std::all_of(face.vertices.begin(), face.vertices.end(),
+                         [&](std::uint32_t v) { return solid->vertices[v].x() == end; });
+    });
+  }
   return {std::move(rest), std::move(wedge)};
 }
 

@@ -1,12 +1,8 @@
 #!/usr/bin/env python3
 """Holds the setpoints of the flutes, gashes, end teeth and chamfers of shipped end mills of both hands against what the wheels
-leave that follow them: from the file of `grind plan --csv`, the wheels and the set-up of the job file, and nothing of the package.
-On rays parallel to the axis, each position of a wheel takes away a range of X, of a cup with its recess two."""
+leave that follow them: from the file of `grind plan --csv`, the wheels On rays parallel to the axis, each position of a wheel takes away a range of X, of a cup with its recess two."""
 
-import csv
-import json
 import math
-import os
 import pathlib
 import shutil
 import sys
@@ -15,30 +11,20 @@ import unittest
 
 import numpy
 import rostest
-import yaml
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
+from planned_strokes import plan, read_job  # noqa: E402
 
-KINDS = {'flute': 'flute', 'gash': 'gash', 'end primary': 'end_primary', 'end secondary': 'end_secondary', 'chamfer': 'chamfer'}
 RATE = 200  # [Hz] of the setpoints; of the flutes', whose edges are off by more between them, it is five times as high
 STEP = 0.01  # of differences [mm]
-
-
-def read(path):
-    with open(path, encoding='utf-8') as file:
-        return yaml.safe_load(file)
-
-
-def beside(path, name):
-    return read(os.path.join(os.path.dirname(path), name))
 
 
 class Stroke:
     """The last stroke of a tooth in an operation. All lengths in mm."""
 
-    def __init__(self, diameter, process, rows, tooth, every):
+    def __init__(self, process, poses, tooth, every):
         wheel = process['wheel']
         self.kind, self.tooth = process['name'], tooth
         self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
@@ -47,19 +33,20 @@ class Stroke:
         self.recess = self.radius - wheel['rim_mm'] if 'rim_mm' in wheel else None
         swivel = math.radians(process['setup']['swivel_deg'])
         self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
-        own = [row for row in rows if int(row['tooth']) == tooth]
-        last = max(int(row['pass']) for row in own)
-        # Of the wheel's centre, and A.
-        poses = [(float(row['x_mm']), diameter / 2 + self.radius + float(row['y_mm']),
-                  process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
-                 for row in own if int(row['pass']) == last]
         if self.kind == 'flute':  # the rest of it is far from the end
-            poses = [pose for pose in poses if pose[0] < 12]
-        self.poses = numpy.array(poses[::every] + poses[-1:])[:, :, None]
+            poses = poses[:, poses[0] < 12]
+        self.poses = numpy.hstack([poses[:, ::every], poses[:, -1:]])
 
     def removed(self, r, angle):
-        """The ranges of X on rays, one for each position and ray; from infinity to there if there is none."""
-        centre_x, centre_y, centre_z, a = (self.poses[:, i] for i in range(4))
+        """The ranges of X on rays, for each position and ray; from infinity to there if there is none.
+        @return the indices of the rays that are met at all, and the ranges on these."""
+        # In a wheel, whose spindle is at right angles to Y, a place is not farther from the axis along -Y.
+        near = r * numpy.cos(angle - self.poses[3][:, None]) > self.poses[1][:, None] - self.radius
+        poses, rays = self.poses[:, near.any(axis=1), None], near.any(axis=0).nonzero()[0]
+        return (rays, *self.on_rays(poses, r[rays], angle[rays]))
+
+    def on_rays(self, poses, r, angle):
+        centre_x, centre_y, centre_z, a = poses
         off_y, off_z = r * numpy.cos(angle - a) - centre_y, r * numpy.sin(angle - a) - centre_z
         # Over x from the centre: along the axis u - sine x; its square and the one of the distance from it are off ** 2 + x ** 2.
         u = self.cosine * off_z
@@ -90,31 +77,23 @@ class Tool:
     """The strokes of the job's operations on the end."""
 
     def __init__(self, file, folder):
-        job, path = read(file), os.path.join(folder, 'setpoints.csv')
+        job = read_job(file)
         self.cutter, self.printed, self.strokes = job['cutter'], {}, []
         self.radius, self.teeth = self.cutter['end_diameter_mm'] / 2, self.cutter['teeth']
+        # Those of which no two are alike, the first ones.
+        self.distinct = range(self.teeth // self.cutter['end'].get('center_teeth', self.teeth))
         self.hand = -1 if self.cutter['cut'] == 'left_hand' else 1  # of the way behind an edge, in the sense of A
         for process in job['operations']:
-            name = KINDS.get(('%s %s' % (process['kind'], process.get('relief', ''))).strip())
-            if name is None:
+            name = process['name']
+            if process['kind'] == 'relief':
                 continue
-            process.update(name=name, setup=beside(file, process['setup']['file'])[name])
-            if 'file' in process['wheel']:
-                process['wheel'] = beside(file, process['wheel']['file'])
-            rate = 5 * RATE if name == 'flute' else RATE
-            machine = gc.machine_file(os.path.join(folder, '%s.yaml' % name), control_rate=rate)
-            done = gc.grind('plan', file, '--operation', name, '--machine', machine, '--json', '--csv', path)
-            assert done.returncode == 0, done.stderr
-            self.printed[name] = json.loads(done.stdout)
-            with open(path, encoding='utf-8') as setpoints:
-                names = next(setpoints).strip().split(',')
-                rows = list(csv.DictReader((line for line in setpoints if ',stroke,' in line), names))
+            self.printed[name], poses = plan(file, job, process, 5 * RATE if name == 'flute' else RATE, folder)
             # Between some, about 1 um is left by a rim.
-            strokes, edges = ([Stroke(self.cutter['end_diameter_mm'], process, rows, tooth, every) for tooth in range(self.teeth)]
-                              for every in (4 if name == 'flute' else 20, 1))
+            strokes, every = ([Stroke(process, own, tooth, step) for tooth, own in enumerate(poses)]
+                              for step in (4 if name == 'flute' else 20, 1))
             self.strokes += strokes
-            self.flutes = edges if name == 'flute' else self.flutes
-        self.angles = [2 * math.pi * tooth / self.teeth for tooth in range(self.teeth)]
+            self.flutes = every if name == 'flute' else self.flutes
+        self.angles = [2 * math.pi * tooth / self.teeth for tooth in self.distinct]
         self.angles = [angle + self.helix(tooth, 0) for tooth, angle in enumerate(self.angles)]
 
     def of(self, tooth, *kinds):
@@ -139,8 +118,9 @@ class Tool:
         """At X on each ray."""
         taken = numpy.zeros(len(ray[0]), bool)
         for stroke in strokes:
-            low, high = stroke.removed(*ray)
-            taken |= ((low <= x) & (x <= high)).any(axis=0)
+            met, low, high = stroke.removed(*ray)
+            at = numpy.broadcast_to(x, taken.shape)[met]
+            taken[met] |= ((low <= at) & (at <= high)).any(axis=0)
         return taken
 
     def surface(self, strokes, tooth, r, behind):
@@ -150,9 +130,10 @@ class Tool:
         x, by = numpy.zeros(len(ray[0])), numpy.full(len(ray[0]), -1)
         while True:
             before = x.copy()
-            for i, (low, high) in enumerate(ranges):
-                reached = numpy.where(low <= x + 1e-12, high, -math.inf).max(axis=0)
-                by, x = numpy.where(reached > x, i, by), numpy.maximum(x, reached)
+            for i, (met, low, high) in enumerate(ranges):
+                reached = numpy.where(low <= x[met] + 1e-12, high, -math.inf).max(axis=0, initial=-math.inf)
+                farther = reached > x[met]
+                by[met[farther]], x[met[farther]] = i, reached[farther]
             if (x == before).all():
                 return x, by
 
@@ -173,8 +154,8 @@ class Tool:
 
 
 class RightHandEndByForce(unittest.TestCase):
-    FILE = 'jobs/end_mill_d10_t4.yaml'
-    PARTS = [0.1, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured
+    FILE = 'jobs/end_mill_d12_t6.yaml'
+    PARTS = [0.2, 0.3, 0.6, 0.9]  # of the radius, at which the flanks are measured: farther in, the next gash takes the secondary one
     KEPT = 1e-4  # by which another tooth's stroke may set an edge back [mm]
 
     @classmethod
@@ -199,8 +180,18 @@ class RightHandEndByForce(unittest.TestCase):
         x, inside, along = (self.x(tooth, self.rs - off, behind + way) for off, way in ((0, STEP), (STEP, STEP), (0, 2 * STEP)))
         return behind, numpy.degrees(numpy.arctan((along - x) / STEP)), numpy.degrees(numpy.arctan((inside - x) / STEP))
 
+    def test_the_other_teeth_are_ground_in_the_same_way(self):
+        for stroke in self.tool.strokes:
+            first = stroke.tooth % len(self.tool.distinct)
+            like, = self.tool.of(first, stroke.kind)
+            turned = stroke.poses - [[0], [0], [0], [2 * math.pi * (stroke.tooth - first) / self.tool.teeth]]
+            way = numpy.ptp(stroke.poses[:3], axis=1).argmax()
+            order = like.poses[way].argsort()
+            for row, of_like in zip(turned, like.poses):
+                self.near(stroke.tooth, stroke.kind, row, numpy.interp(turned[way], like.poses[way][order], of_like[order]), 1e-5)
+
     def test_flanks(self):
-        for tooth in range(self.tool.teeth):
+        for tooth in self.tool.distinct:
             for kind, key, first, last, begins in (('end_primary', 'clearance_deg', -0.02, 0.1, 0),
                                                    ('end_secondary', 'second_clearance_deg', 0.2, 0.6, self.end['land_mm'])):
                 behind, clearance, dish = self.flank(tooth, kind, first, last)
@@ -210,7 +201,7 @@ class RightHandEndByForce(unittest.TestCase):
                 self.near(tooth, kind, behind, begins, 0.002 if begins else 0.03)
 
     def test_rake_of_the_gash(self):
-        for tooth in range(self.tool.teeth):
+        for tooth in self.tool.distinct:
             x, faces = (self.tool.radius - self.rs) * self.dish, []
             for depth in (0.02, 0.06):
                 low, high = numpy.full(len(x), -0.02), numpy.full(len(x), 0.1)
@@ -238,7 +229,7 @@ class RightHandEndByForce(unittest.TestCase):
         return printed / part
 
     def test_edges_are_whole_from_where_they_begin(self):
-        for tooth in range(self.tool.teeth):
+        for tooth in self.tool.distinct:
             printed = self.printed_beginning(tooth)
             near = printed + numpy.arange(-0.04, 0.05, 0.01)
             rs = numpy.concatenate([near[near > 0], numpy.linspace(printed + 0.05, self.corner - 0.02, 6)])
@@ -248,7 +239,7 @@ class RightHandEndByForce(unittest.TestCase):
 
     def test_the_edges_of_the_periphery_are_untouched(self):
         strokes = [s for s in self.tool.strokes if s.kind != 'flute']
-        for tooth in range(self.tool.teeth):
+        for tooth in self.tool.distinct:
             # Behind the chamfer; in front of that it has taken them.
             x = numpy.concatenate([[0.1], numpy.linspace(0.23, self.tool.radius, 8)])
             angles = numpy.array([self.tool.angles[tooth] + self.tool.helix(tooth, at) for at in x])
@@ -258,7 +249,7 @@ class RightHandEndByForce(unittest.TestCase):
 
     def test_chamfer(self):
         radius = self.tool.radius
-        for tooth in range(self.tool.teeth):
+        for tooth in self.tool.distinct:
             def edge(kind, rs, tooth=tooth):
                 return self.tool.edges(self.tool.strokes, tooth, numpy.array(rs), kind, -0.02, 0.2)
 
@@ -279,11 +270,7 @@ class RightHandEndByForce(unittest.TestCase):
 
 class LeftHandEndByForce(RightHandEndByForce):
     FILE = 'jobs/left_hand_end_mill_d8_t3.yaml'
-
-
-class SixTeethByForce(RightHandEndByForce):
-    FILE = 'jobs/end_mill_d12_t6.yaml'
-    PARTS = [0.2, 0.3, 0.6, 0.9]  # farther in, the next gash takes the secondary flank
+    PARTS = [0.1, 0.3, 0.6, 0.9]
 
 
 class CentreCuttingByForce(RightHandEndByForce):

@@ -1,54 +1,33 @@
 #!/usr/bin/env python3
-"""Holds the setpoints of planned reliefs against what a wheel leaves that follows them: from the file of `grind plan --csv`, the wheel
-and the set-up of the job file, and nothing of the package. A point of a section is kept if it is in the wheel at no setpoint, and at no
-place between two of them. Besides the shipped reamer, random cutters are set up by `grind setup`; what that refuses is counted. Their
-number is scaled as RapidCheck's by RC_PARAMS."""
+"""Holds the setpoints of planned reliefs of either hand against what a wheel leaves that follows them: from the file of `grind plan
+--csv`, the wheel and the set-up of the job file. A point of a section is kept if it is in the wheel at no setpoint, and at no place
+between two of them."""
 
-import collections
-import csv
-import functools
 import math
-import os
 import pathlib
-import random
-import re
 import sys
-import tempfile
 import unittest
 
 import numpy
 import rostest
-import yaml
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
+from planned_strokes import plan, read_job  # noqa: E402
 
-REAMER = gc.package_file('jobs/taper_reamer_d6_t6.yaml')
-KINDS = ('flute', 'primary', 'secondary')
-USUAL_CASES = 5  # with RapidCheck's 100
-RATE, SLOW = 1000, 200  # [Hz] of the setpoints; with SLOW they are as close together at the reamer's feeds
-
-
-def random_cases():
-    more = re.search(r'max_success=(\d+)', os.environ.get('RC_PARAMS', ''))
-    return USUAL_CASES * int(more.group(1)) // 100 if more else USUAL_CASES
+RATE = 200  # [Hz] of the setpoints
 
 
 class Stroke:
     """The last stroke of a tooth in an operation."""
 
-    def __init__(self, cutter, process, rows, tooth):
+    def __init__(self, process, poses):
         wheel = process['wheel']
         self.radius, self.half_width = wheel['diameter_mm'] / 2, wheel['width_mm'] / 2
         swivel = math.radians(process['setup']['swivel_deg'])
         self.sine, self.cosine = math.sin(swivel), math.cos(swivel)
-        last = max(int(row['pass']) for row in rows)
-        # Of the wheel's centre, and A.
-        self.poses = numpy.array([
-            (float(row['x_mm']), cutter['end_diameter_mm'] / 2 + self.radius + float(row['y_mm']),
-             process['setup']['height_mm'] + float(row['z_mm']), float(row['a_rad']))
-            for row in rows if int(row['tooth']) == tooth and int(row['pass']) == last]).T
+        self.poses = poses
 
     def ray(self, x, angle, poses):
         """Where a ray from the axis, at an angle of the cutter, first meets the wheel."""
@@ -107,179 +86,59 @@ def boundary(low, high, is_low):
     return (low + high) / 2
 
 
-class Refused(Exception):
-    """What a program does not do, and why."""
-
-
-def grind(*arguments):
-    done = gc.grind(*arguments)
-    if done.returncode != 0:
-        raise Refused('%s: %s' % (' '.join(a for a in arguments if '/' not in a), done.stderr or done.stdout))
-
-
-# What is measured of a tooth in a section: how far its first relief takes the edge's radius or leaves it [mm], where the reliefs begin
-# behind the edge and with what clearance [rad], and the width of the first [mm].
-Measured = collections.namedtuple('Measured', 'edge begins clearance second_clearance land')
-
-
-class Tool:
-    """The file of a job whose operations are all planned. Angles behind an edge are positive."""
-
-    def __init__(self, path, rate):
-        with open(path, encoding='utf-8') as file:
-            job = yaml.safe_load(file)
-        self.cutter, self.operations = job['cutter'], job['operations']
-        self.hand = -1 if self.cutter['cut'] == 'left_hand' else 1
-        self.asked = [math.radians(self.cutter.get(key, 0)) for key in ('clearance_deg', 'second_clearance_deg')]
-        # What is asked again and again, for as long as there is the tool.
-        self.strokes, self.edge = functools.lru_cache(None)(self.strokes), functools.lru_cache(None)(self.edge)
-        self.rows = []
-        with tempfile.TemporaryDirectory() as folder:
-            machine = gc.machine_file(os.path.join(folder, 'machine.yaml'), control_rate=rate)
-            with open(os.path.join(os.path.dirname(path), self.operations[0]['setup']['file']), encoding='utf-8') as file:
-                setups = yaml.safe_load(file)
-            for number, process in enumerate(self.operations):
-                process['setup'] = setups[process.get('relief', 'flute')]
-                if 'file' in process['wheel']:
-                    with open(os.path.join(os.path.dirname(path), process['wheel']['file']), encoding='utf-8') as file:
-                        process['wheel'] = yaml.safe_load(file)
-                setpoints = os.path.join(folder, 'setpoints.csv')
-                grind('plan', path, '--operation', str(number + 1), '--machine', machine, '--csv', setpoints)
-                with open(setpoints, encoding='utf-8') as file:
-                    names = next(file)
-                    self.rows.append(list(csv.DictReader((line for line in file if ',stroke,' in line), names.strip().split(','))))
-
-    def strokes(self, tooth):
-        """Of all operations."""
-        return [Stroke(self.cutter, process, rows, tooth) for process, rows in zip(self.operations, self.rows)]
-
-    def radius(self, x):
-        return self.cutter['end_diameter_mm'] / 2 + x * math.tan(math.radians(self.cutter['cone_angle_deg']))
-
-    def margin(self):
-        """The angle in front of the first relief."""
-        return self.operations[1].get('behind_mm', 0) / self.radius(0)
-
-    def sections(self):
-        length = self.cutter['flute_length_mm']
-        return (0.0, length / 2, length)
-
-    def edge(self, x, tooth):
-        """The angle at which the flute's rake face meets the cone."""
-        # What is cut by less than the way between two setpoints shows, is found in between.
-        flute, r = self.strokes(tooth)[0], self.radius(x)
-        step = math.radians(2)
-        inside = [flute.outside(x, i * step, r, flute.poses).min() < 0 for i in range(180)]
-        last, = (i for i in range(180) if inside[i] and not inside[(i + self.hand) % 180])
-        return boundary(last * step, (last + 2 * self.hand) * step, lambda a: flute.cuts(x, a, r))
-
-    def clearance(self, stroke, x, angle):
-        """Of a surface behind an angle, from differences to the second order."""
-        step = math.radians(0.1)
-        r0, r1, r2 = (stroke.left(x, angle + self.hand * i * step) for i in range(3))
-        return math.atan((3 * r0 - 4 * r1 + r2) / (2 * step * r0))
-
-    def measure(self, x, tooth):
-        edge, radius, (_, primary, *more) = self.edge(x, tooth), self.radius(x), self.strokes(tooth)
-
-        def at(behind):
-            return edge + self.hand * behind
-
-        margin = self.margin()
-        begins = boundary(margin - 0.01, margin + 0.01, lambda b: primary.left(x, at(b)) > radius)
-        clearance, second_clearance, land = self.clearance(primary, x, at(begins)), None, None
-        if more:
-            end = boundary(begins, begins + 0.6, lambda b: more[0].left(x, at(b)) > primary.left(x, at(b)))
-            r = primary.left(x, at(end))
-            land = math.hypot(r * math.cos(end - begins) - radius, r * math.sin(end - begins))
-            second_clearance = self.clearance(more[0], x, at(end + 1e-5))
-        return Measured(primary.left(x, at(margin)) - radius, begins, clearance, second_clearance, land)
-
-
-def wheel(diameter, width):
-    return {'profile': 'straight', 'diameter_mm': diameter, 'width_mm': width, 'corner_radius_mm': [0, 0], 'wear_mm': 0}
-
-
-def job_of(cutter, teeth, flute_wheel, reliefs, **first_relief):
-    """Of a cutter whose operations have no set-up yet, in one pass each so that they are over soon.
-    @param cutter diameter, cone, spiral and length. @param reliefs clearance and wheel of each."""
-    diameter, cone, spiral, length = cutter
-    growth = 2 * length * math.tan(math.radians(cone))
-    passes = {'feed_mm_min': 3000, 'infeed_mm': 20, 'finish_infeed_mm': 0}
-    keys = {
-        'end_diameter_mm': diameter, 'cone_angle_deg': cone, 'spiral_angle_deg': spiral, 'flute_length_mm': length,
-        'rake_angle_deg': 6, 'rake_tolerance_deg': 0.5, 'chordal_rake_tolerance_deg': 40, 'spiral_tolerance_deg': 0.2,
-        'core_diameter_mm': 0.7 * diameter, 'core_diameter_end_mm': 0.7 * (diameter + growth), 'core_tolerance_mm': 0.02 * diameter,
-        'clearance_deg': reliefs[0][0], 'clearance_tolerance_deg': 0.5, 'cut': 'right_hand' if spiral >= 0 else 'left_hand',
-        'shank_diameter_mm': diameter, 'teeth': teeth}
-    if len(reliefs) > 1:
-        keys.update(land_mm=0.05 * diameter, second_clearance_deg=reliefs[1][0])
-    flute = dict(passes, kind='flute', spark_out=0, clearance_mm=3, order='tooth_major', direction='from_end',
-                 wheel=flute_wheel)
-    operations = [flute] + [dict(passes, kind='relief', relief=kind, wheel=its) for kind, (_, its) in zip(KINDS[1:], reliefs)]
-    for operation in operations:
-        operation['setup'] = {'file': 'tool.setup.yaml'}
-    operations[1].update(first_relief)
-    return {'cutter': keys, 'operations': operations,
-            'interpolation': {'even_step': 'exact', 'tolerance_um': 0.5, 'rotary_scale_mm_per_rad': 1}}
-
-
-def drawn(number):
-    """A random cutter of either hand, with one relief or two, now and then with a margin."""
-    draw = random.Random(number)
-    diameter, teeth = draw.uniform(3, 15), draw.randint(4, 8)
-    cutter = diameter, draw.choice([0, draw.uniform(-1, 8)]), draw.choice([-1, 1]) * draw.uniform(0, 40), draw.uniform(1, 1.5) * diameter
-    clearance = draw.uniform(6, 14)
-    reliefs = [(clearance, wheel(draw.uniform(60, 125), draw.uniform(4, 10))),
-               (clearance + draw.uniform(8, 16), wheel(draw.uniform(60, 125), draw.uniform(4, 10)))][:draw.choice([1, 2, 2])]
-    margin = draw.choice([{}, {'behind_mm': 0.02 * diameter}])
-    return job_of(cutter, teeth, wheel(draw.uniform(60, 125), draw.uniform(0.3, 1) * diameter / teeth), reliefs, **margin)
-
-
-def set_up(job, path):
-    """Writes the file of a job, with the set-ups that are found."""
-    with open(path, 'w', encoding='utf-8') as file:
-        yaml.safe_dump(job, file)
-    for kind, _ in zip(KINDS, job['operations']):
-        grind('setup', path, '--operation', kind, '--write')
-    return Tool(path, RATE)
-
-
 class ReliefGround(unittest.TestCase):
     def near(self, name, off, allowed):
         self.assertLessEqual(abs(off), allowed, name)
 
-    def check(self, tool, teeth=(0,)):
-        even = tool.cutter['cone_angle_deg'] == 0
+    def edge(self, flute, x, radius):
+        """The angle at which the flute's rake face meets the cone."""
+        # What is cut by less than the way between two setpoints shows, is found in between.
+        step = math.radians(2)
+        inside = flute.outside(x, step * numpy.arange(180)[:, None], radius, flute.poses).min(axis=1) < 0
+        last, = (i for i in range(180) if inside[i] and not inside[(i + self.hand) % 180])
+        return boundary(last * step, (last + 2 * self.hand) * step, lambda a: flute.cuts(x, a, radius))
+
+    def check_section(self, cutter, x, radius, strokes):
+        flute, primary, secondary = strokes
+        edge = self.edge(flute, x, radius)
+
+        def left(stroke, behind):
+            return stroke.left(x, edge + self.hand * behind)
+
+        def clearance(stroke, behind):
+            """From differences to the second order [deg]."""
+            step = math.radians(0.1)
+            r0, r1, r2 = (left(stroke, behind + i * step) for i in range(3))
+            return math.degrees(math.atan((3 * r0 - 4 * r1 + r2) / (2 * step * r0)))
+
+        begins = boundary(-0.01, 0.01, lambda b: left(primary, b) > radius)
+        end = boundary(begins, begins + 0.6, lambda b: left(secondary, b) > left(primary, b))
+        self.near('edge [um]', 1e3 * (left(primary, 0) - radius), 1.5 if cutter['cone_angle_deg'] else 0.5)
+        self.near('start of the relief [mm]', radius * begins, 0.02)
+        self.near('clearance [deg]', clearance(primary, begins) - cutter['clearance_deg'], 0.02)
+        self.near('second clearance [deg]', clearance(secondary, end + 1e-5) - cutter['second_clearance_deg'], 0.05)
+        if x == 0:
+            r, behind = left(primary, end), end - begins
+            land = math.hypot(r * math.cos(behind) - radius, r * math.sin(behind))
+            self.near('land [mm]', land - cutter['land_mm'], 0.02)
+
+    def check(self, name, teeth):
+        path, folder = gc.package_file('jobs/%s.yaml' % name), gc.temp_folder(self.addCleanup)
+        job = read_job(path)
+        cutter = job['cutter']
+        self.hand = -1 if cutter['cut'] == 'left_hand' else 1
+        strokes = [[Stroke(process, poses) for poses in plan(path, job, process, RATE, folder)[1]] for process in job['operations'][:3]]
         for tooth in teeth:
-            for x in tool.sections():
-                radius, found = tool.radius(x), tool.measure(x, tooth)
-                self.near('edge on a cylinder [um]' if even else 'edge on a cone [um]', 1e3 * found.edge, 0.5 if even else 1.5)
-                self.near('start of the relief [mm]', radius * (found.begins - tool.margin()), 0.02)
-                self.near('clearance [deg]', math.degrees(found.clearance - tool.asked[0]), 0.02)
-                if found.land:
-                    self.near('second clearance [deg]', math.degrees(found.second_clearance - tool.asked[1]), 0.05)
-                if found.land and x == 0:
-                    self.near('land [mm]', found.land - tool.cutter['land_mm'], 0.02)
-                for part in (0.1, 0.5, 0.9) if tool.margin() else ():
-                    angle = tool.edge(x, tooth) + part * tool.margin() * tool.hand
-                    self.assertGreater(tool.strokes(tooth)[1].left(x, angle), radius)
+            for part in (0, 0.5, 1):
+                x = part * cutter['flute_length_mm']
+                radius = cutter['end_diameter_mm'] / 2 + x * math.tan(math.radians(cutter['cone_angle_deg']))
+                self.check_section(cutter, x, radius, [of_teeth[tooth] for of_teeth in strokes])
 
-    def test_the_shipped_reamer(self):
-        self.check(Tool(REAMER, SLOW), teeth=(0, 5))
+    def test_reamer(self):
+        self.check('taper_reamer_d6_t6', (0, 5))
 
-    def test_random_cutters(self):
-        cases, refused = random_cases(), []
-        path = os.path.join(gc.temp_folder(self.addCleanup), 'job.yaml')
-        for number in range(cases):
-            try:
-                tool = set_up(drawn(number), path)
-            except Refused as refusal:
-                refused.append('%d: %s' % (number, refusal))
-                continue
-            with self.subTest('%d: %s' % (number, pathlib.Path(path).read_text())):
-                self.check(tool)
-        self.assertGreaterEqual(cases - len(refused), max(1, cases // 3), refused)
+    def test_left_hand_end_mill(self):
+        self.check('left_hand_end_mill_d8_t3', (1,))
 
 
 if __name__ == '__main__':

@@ -102,6 +102,8 @@ class TestRun(BagTest):
 
 
 class TestTool(BagTest):
+    rows = {}  # of the operations, planned once
+
     def setUp(self):
         super().setUp()
         text = pathlib.Path(gc.package_file('jobs/taper_reamer_d6_t6.yaml')).read_text()
@@ -112,7 +114,9 @@ class TestTool(BagTest):
             self.assertIn(old, text)
             text = text.replace(old, new)
         self.job = self.write('reamer.yaml', text)
-        self.rows = {operation: self.plan(self.job, '--operation', operation) for operation in ('flute', 'primary', 'secondary')}
+        for operation in ('flute', 'primary', 'secondary'):
+            if operation not in self.rows:
+                self.rows[operation] = self.plan(self.job, '--operation', operation)
 
     def bag_of(self, *runs):
         """@param runs of (operation, arguments of Bag.add()), each with all of its rows unless they are among these."""

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,8 +25,18 @@ using namespace units;
 constexpr double kOff = 5 * kMicrometre;
 const Axes kExact = Axes::Zero();
 
-ValidJob jobOf(const std::string& operation) {
-  return withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation)));
+/// A job, and the flutes and reliefs that it grinds.
+struct Planned {
+  explicit Planned(const GrindJob& asked) : job(withLaws(ValidJob(asked))), cutter(groundCutterOf(job)) {}
+
+  ValidJob job;
+  GroundCutter cutter;
+};
+
+/// Of the shipped end mill, computed once.
+const Planned& planned(const std::string& operation) {
+  static std::map<std::string, Planned> all;
+  return all.try_emplace(operation, readJobFile("jobs/end_mill_d10_t4.yaml", operation)).first->second;
 }
 
 /// @param broken whether the wheel is retracted from a stroke, and begins it anew.
@@ -56,9 +67,9 @@ std::vector<Setpoint> setpointsOf(const ValidJob& job, bool broken) {
   return all;
 }
 
-RunStrokes runOf(const ValidJob& job, const Axes& error, bool broken = false) {
-  RunStrokes strokes(job, groundCutterOf(job));  // flutes and reliefs are as planned, and measured
-  const std::vector<Setpoint> all = setpointsOf(job, broken);
+RunStrokes runOf(const Planned& on, const Axes& error, bool broken = false) {
+  RunStrokes strokes(on.job, on.cutter);
+  const std::vector<Setpoint> all = setpointsOf(on.job, broken);
   for (std::size_t i = 1; i < all.size(); ++i) strokes.add(all[i], all[i - 1].position + error);
   strokes.finish();
   return strokes;
@@ -99,7 +110,7 @@ TEST(EndRun, AConstantErrorIsAsDeepAsItIsAcrossThePlane) {
   for (const auto& row : rows) {
     SCOPED_TRACE(std::string(row.operation) + " " + std::to_string(row.axis));
     double deepest = 0;
-    for (const Gouge& gouge : gougesOf(runOf(jobOf(row.operation), along(row.axis, row.error)), 1e-9)) {
+    for (const Gouge& gouge : gougesOf(runOf(planned(row.operation), along(row.axis, row.error)), 1e-9)) {
       deepest = std::max(deepest, gouge.depth);
     }
     EXPECT_NEAR(deepest, row.depth, 1e-9);  // the set-up's swivels are rounded
@@ -110,7 +121,7 @@ TEST(EndRun, AConstantErrorIsAsDeepAsItIsAcrossThePlane) {
 TEST(EndRun, AGashThatIsTooDeepIsSoAcrossTheBottomOfItsTooth) {
   GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "gash");
   job.process().gash_short_angle = 30 * kDegree;
-  const std::vector<Gouge> gouges = gougesOf(runOf(withLaws(ValidJob(job)), along(kY, -kOff)), 1e-9);
+  const std::vector<Gouge> gouges = gougesOf(runOf(Planned(job), along(kY, -kOff)), 1e-9);
   EXPECT_FALSE(gouges.empty());
   for (const Gouge& gouge : gouges) {
     EXPECT_NEAR(gouge.depth, kOff * std::cos((gouge.place.tooth % 2 ? 30 : 45) * kDegree), 1e-9) << gouge.place.tooth;
@@ -119,7 +130,7 @@ TEST(EndRun, AGashThatIsTooDeepIsSoAcrossTheBottomOfItsTooth) {
 
 /// A secondary flank that is lower meets the primary one nearer to the edge.
 TEST(EndRun, AFlankIsMeasuredWhereItWasGround) {
-  const ValidJob job = jobOf("end_secondary");
+  const Planned& job = planned("end_secondary");
   const GroundTool exact = toolOf(runOf(job, kExact)), off = toolOf(runOf(job, along(kX, kOff)));
   const double nearer = kOff / (std::tan(18 * kDegree) - std::tan(8 * kDegree));
   for (const GroundFigure& figure : exact.check.figures) {
@@ -130,7 +141,7 @@ TEST(EndRun, AFlankIsMeasuredWhereItWasGround) {
 }
 
 TEST(EndRun, AStrokeThatIsBegunAnewCountsAsAWhole) {
-  const ValidJob job = jobOf("end_primary");
+  const Planned& job = planned("end_primary");
   const RunStrokes whole = runOf(job, kExact), broken = runOf(job, kExact, true);
   EXPECT_EQ(broken.strokes().size(), whole.strokes().size() + 1);
   expectSameFigures(toolOf(broken), toolOf(whole), 1e-12);
@@ -138,11 +149,11 @@ TEST(EndRun, AStrokeThatIsBegunAnewCountsAsAWhole) {
 }
 
 TEST(EndRun, IsReadFromItsRecordAsItWas) {
-  const ValidJob job = jobOf("end_secondary");
+  const Planned& job = planned("end_secondary");
   const RunStrokes run = runOf(job, along(kX, kOff));
   const Json json = Json::parse(toJson(run.strokes()).dump());
   EXPECT_EQ(json.back().at("x_nm").at(0), 5000);
-  const RunStrokes again(job, runStrokesFrom(json));
+  const RunStrokes again(job.job, runStrokesFrom(json));
   EXPECT_EQ(toJson(again.strokes()), json);
   expectSameFigures(toolOf(again), toolOf(run), 5e-9);
 }
@@ -153,17 +164,17 @@ Verdict verdictOn(const RunStrokes& run) {
 }
 
 TEST(EndRun, IsPassedIfAllTeethAreGroundWithoutAGouge) {
-  const ValidJob job = jobOf("chamfer");
-  const RunStrokes run = runOf(job, kExact);
+  const Planned& on = planned("chamfer");
+  const RunStrokes run = runOf(on, kExact);
   EXPECT_EQ(verdictOn(run).verdict, "passed");
   std::vector<RunStroke> strokes = run.strokes();
   const auto is_third = [](const RunStroke& stroke) { return stroke.place.tooth == 2; };
   strokes.erase(std::remove_if(strokes.begin(), strokes.end(), is_third), strokes.end());
-  const Verdict missing = verdictOn(RunStrokes(job, strokes, groundCutterOf(job)));
+  const Verdict missing = verdictOn(RunStrokes(on.job, strokes, on.cutter));
   EXPECT_EQ(missing.verdict, "incomplete");
-  EXPECT_GT(missing.because.size(), askedOfEnd(job).size());
+  EXPECT_GT(missing.because.size(), askedOfEnd(on.job).size());
   for (const std::string& why : missing.because) EXPECT_NE(why.find(": not measured"), std::string::npos) << why;
-  const Verdict gouged = verdictOn(runOf(jobOf("end_primary"), along(kX, 20 * kMicrometre)));
+  const Verdict gouged = verdictOn(runOf(planned("end_primary"), along(kX, 20 * kMicrometre)));
   EXPECT_EQ(gouged.verdict, "failed");
   EXPECT_EQ(gouged.because, std::vector<std::string>{"gouge"});
 }

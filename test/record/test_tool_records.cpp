@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ class ToolRecordsTest : public ::testing::Test {
  protected:
   /// Keeps a record of an operation whose axes were on the path, with the strokes of some teeth. @return its path.
   std::string keep(int operation, bool continues = false, int first_tooth = 0, int end_tooth = 4) {
-    const ValidJob job = withLaws(ValidJob(job_.ofOperation(operation)));
+    const ValidJob& job = planned(operation);
     std::vector<RunStroke> ground;
     Json strokes = Json::array();
     for (int tooth = first_tooth; tooth < end_tooth; ++tooth) {
@@ -69,13 +70,21 @@ class ToolRecordsTest : public ::testing::Test {
     return job;
   }
 
-  const GrindJob job_ = threeOperations();
+  /// One of them, computed once.
+  static const ValidJob& planned(int operation) {
+    static std::map<int, ValidJob> jobs;
+    if (jobs.count(operation) == 0)
+      jobs.emplace(operation, withLaws(ValidJob(threeOperations().ofOperation(operation))));
+    return jobs.at(operation);
+  }
+
   const test_support::TempFolder folder_;
   int count_ = 0;
 };
 
 TEST_F(ToolRecordsTest, AreThoseOfAllOperationsWhicheverIsNamedAndNotOfAnotherToolOfTheJob) {
-  for (const std::string& path : Files{keep(0), keep(1), keep(2)}) {
+  keep(0);
+  for (const std::string& path : Files{keep(1), keep(2)}) {
     const ToolRecords tool(path);
     EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1"}, {"2"}, {"3"}}));
     EXPECT_EQ(&tool.last(), &tool.operations()[2]);
@@ -94,7 +103,7 @@ TEST_F(ToolRecordsTest, ThatContinueARunAreOneWithIt) {
   const ToolRecords tool(rest);
   EXPECT_EQ(filesOf(tool), (std::vector<Files>{{"1", "2"}, {}, {}}));
   const std::vector<ToothPass> missing = tool.last().missing();
-  EXPECT_EQ(missing.size(), ValidJob(job_).depths().size());
+  EXPECT_EQ(missing.size(), planned(0).depths().size());
   for (const ToothPass& place : missing) EXPECT_EQ(place.tooth, 3);
 }
 
@@ -111,7 +120,7 @@ TEST_F(ToolRecordsTest, AreMeasuredOnWhatWasGroundBefore) {
   const ToolRecords tool(keep(2));
   const RunStrokes strokes = tool.strokes(tool.last());
   EXPECT_FALSE(strokes.isOnPlanned());
-  const ValidJob asked = withLaws(ValidJob(job_.ofOperation(2)));
+  const ValidJob& asked = planned(2);
   const GroundTool ground = measure("", strokes, {0, 0.011}),
                    planned = measure(asked, "", groundCutterOf(asked), {0, 0.011});
   for (std::size_t i = 0; i < 2; ++i) {

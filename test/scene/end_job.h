@@ -5,13 +5,18 @@
 #include "flute_grinder/tool/z_law.h"
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 namespace grinder::test_support {
 
-/// The shipped end mill's job of an operation on the end.
-inline ValidJob endJob(const std::string& operation) {
-  return withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation)));
+/// The shipped end mill's job of an operation on the end, computed once.
+inline const ValidJob& endJob(const std::string& operation) {
+  static std::map<std::string, ValidJob> jobs;
+  if (jobs.count(operation) == 0) {
+    jobs.emplace(operation, withLaws(ValidJob(readJobFile("jobs/end_mill_d10_t4.yaml", operation))));
+  }
+  return jobs.at(operation);
 }
 
 /// The same on two teeth without reliefs, whose sections cost a tenth.

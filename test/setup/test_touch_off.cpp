@@ -72,7 +72,7 @@ double gapToBlank(const GrindJob& job, double blank_diameter, double y, double z
   const GrindProcess& p = job.process();
   const double centre_y = job.cutter.end_diameter / 2 + p.wheel_diameter / 2 + y, centre_z = p.setup_height + z;
   double gap = std::numeric_limits<double>::infinity();
-  constexpr int kPlaces = 2000, kTurns = 10;
+  constexpr int kPlaces = 2000, kTurns = 2;
   for (int i = 0; i <= kPlaces; ++i) {
     const double w = p.wheel_width * (static_cast<double>(i) / kPlaces - 0.5);
     for (int k = -kTurns; k <= kTurns; ++k) {

@@ -4,31 +4,35 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace grinder::test_support {
 
-using Corner = std::array<double, 3>;
-
-/// How many edges are not passed once in each direction.
+/// How many edges are not passed as often in one direction as in the other.
 inline std::size_t openEdges(const CutterSolid& solid) {
-  std::map<std::pair<Corner, Corner>, int> passed;
-  const auto corner = [&](std::uint32_t i) {
-    return Corner{solid.vertices[i].x(), solid.vertices[i].y(), solid.vertices[i].z()};
-  };
+  std::map<std::array<double, 3>, std::size_t> places;  // of the vertices, several of which may be at one
+  std::vector<std::size_t> place;
+  for (const Eigen::Vector3d& v : solid.vertices) {
+    place.push_back(places.try_emplace({v.x(), v.y(), v.z()}, places.size()).first->second);
+  }
+  std::vector<std::pair<std::size_t, std::size_t>> up, down, open;
   for (const SolidTriangle& t : solid.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const Corner a = corner(t.vertices[i]), b = corner(t.vertices[(i + 1) % 3]);
+      const std::size_t a = place[t.vertices[i]], b = place[t.vertices[(i + 1) % 3]];
       EXPECT_NE(a, b);
-      passed[a < b ? std::pair(a, b) : std::pair(b, a)] += a < b ? 1 : -1;
+      a < b ? up.emplace_back(a, b) : down.emplace_back(b, a);
     }
   }
-  std::size_t open = 0;
-  for (const auto& [edge, times] : passed) open += times != 0;
-  return open;
+  std::sort(up.begin(), up.end());
+  std::sort(down.begin(), down.end());
+  std::set_symmetric_difference(up.begin(), up.end(), down.begin(), down.end(), std::back_inserter(open));
+  return open.size();
 }
 
 }  // namespace grinder::test_support

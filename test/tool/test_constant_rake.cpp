@@ -8,7 +8,6 @@
 #include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/setup/job_setup.h"
 #include "flute_grinder/tool/ground_job.h"
-#include "flute_grinder/tool/run_strokes.h"
 #include "flute_grinder/tool/z_law.h"
 #include "motion/examples.h"
 
@@ -90,7 +89,7 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
   std::mt19937 dice(7);
   const auto draw = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(dice); };
   int solved = 0, bent = 0, shifted = 0;
-  for (int i = 0; i < 40 && solved < 7; ++i) {
+  for (int i = 0; i < 40 && solved < 4; ++i) {
     const bool left = i % 2 == 1;
     Shop s{draw(4, 14), draw(-1, 11), draw(12, 35), draw(4, 15), draw(10, 30), 0, draw(60, 125), draw(1, 3)};
     s.depth = s.diameter * draw(0.08, 0.17);
@@ -118,9 +117,9 @@ TEST(ConstantRake, OnRandomConesTheRakeIsTheSameOverTheWholeFlute) {
       EXPECT_NEAR(bench.rake(part * job->cutter.flute_length) / kDegree, s.rake, 0.005) << part;
     }
   }
-  EXPECT_EQ(solved, 7);
-  EXPECT_GE(bent, 4);
-  EXPECT_GE(shifted, 4);
+  EXPECT_EQ(solved, 4);
+  EXPECT_GE(bent, 2);
+  EXPECT_GE(shifted, 2);
 }
 
 TEST(ConstantRake, OfAWornWheelTeethShareACorrectionWithTheirSpiralAngle) {
@@ -188,24 +187,6 @@ TEST(ConstantRake, ItGivesUpWhenToldToAndWithoutCorrectionsNoCutterIsComputed) {
   }
   EXPECT_EQ(looks, 5);
   EXPECT_THROW(groundCutterOf(ValidJob(job)), std::invalid_argument);
-}
-
-// From the job to the streamed setpoints and back to the cutter.
-TEST(ConstantRake, ThePlannedSetpointsGrindTheCutter) {
-  const ValidJob job = withLaws(ValidJob(steepJob()));
-  RunStrokes strokes(job);
-  Axes actual = test_support::roomyMachine().park;
-  const JobPlan plan =
-      planJob(job, test_support::roomyMachine(), test_support::roomyMachine().park, [&](const Setpoint& p) {
-        strokes.add(p, actual);
-        actual = p.position;
-      });
-  strokes.finish();
-  ASSERT_TRUE(plan.good()) << text(plan.reasons);
-  for (const RunStroke& stroke : strokes.strokes()) {
-    for (const PathDeviation& d : stroke.deviations) EXPECT_LT(std::abs(d.z), 1e-12);
-  }
-  EXPECT_LT(rakeError(strokes.cutter(), *job), 0.006);  // sampled from setpoints
 }
 
 }  // namespace test_constant_rake

@@ -360,6 +360,7 @@ TEST(ReliefSection, OfTwoReliefsIsWhatBothLeave) {
   for (const double second : {20.0, 5.0}) {
     SCOPED_TRACE(second);
     GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "secondary");
+    job.tooth_angles = {0};
     if (second < 10) {
       job.cutter.second_clearance = second * kDegree;
       job.process().setup_height = job.operations[2].setup_height = -4.30473 * kMillimetre;

@@ -289,35 +289,6 @@ RunStrokes runOf(const ValidJob& relief, std::optional<GroundCutter> before, con
 
 ReliefSection reliefAt(const GroundCutter& cutter, double x) { return cutter.section(x).teeth.front().relief.value(); }
 
-TEST(RunStrokes, AWholeToolOfExactRunsIsThePlan) {
-  const ValidJob primary = reliefOf("primary"), secondary = reliefOf("secondary");
-  const GroundCutter flute = runOf(reliefOf("flute"), std::nullopt, kExact).cutter();
-  const GroundCutter first = runOf(primary, flute, kExact).cutter();
-  const GroundCutter whole = runOf(secondary, first, kExact).cutter(), planned = groundCutterOf(secondary);
-  for (const double x : {0.0, 8e-3, 16e-3}) {
-    const ReliefSection ground = reliefAt(whole, x), asked = reliefAt(planned, x);
-    EXPECT_NEAR(ground.clearance.value(), asked.clearance.value(), 1e-4);
-    EXPECT_NEAR(ground.land.value(), asked.land.value(), 1e-6);
-    EXPECT_NEAR(ground.edge_radius, asked.edge_radius, 1e-7);
-  }
-  EXPECT_TRUE(gougesOf(runOf(secondary, first, kExact), 2e-6).empty());
-}
-
-// The flute was ground with A ahead, so that its edge is not where the relief follows it.
-TEST(RunStrokes, AReliefIsMeasuredOnTheFluteAsGround) {
-  constexpr double kAhead = 2e-3;
-  const ValidJob primary = reliefOf("primary");
-  const Error ahead = [](const Setpoint&) { return along(kA, kAhead); };
-  for (const bool known : {true, false}) {
-    const std::optional<GroundCutter> flute = runOf(reliefOf("flute"), std::nullopt, ahead).cutter();
-    const GroundCutter cutter = runOf(primary, known ? flute : std::nullopt, kExact).cutter();
-    // The land falls from where the edge should be: straight over so short a way.
-    const double radius = cutter.section(8e-3).radius;
-    const double taken = known ? radius * kAhead * std::tan(primary->cutter.clearance) : 0;
-    EXPECT_NEAR(radius - reliefAt(cutter, 8e-3).edge_radius, taken, 0.05e-6) << known;
-  }
-}
-
 // Neither of the last two passes covers the other: each was deeper on one half.
 TEST(RunStrokes, AReliefOfSeveralStrokesIsWhatTheyLeaveTogether) {
   constexpr double kDeeper = 4e-6, kHigher = 4e-6;

@@ -348,7 +348,7 @@ QString JobBox::unfinishedName(const QString& rest) const {
   if (unfinished_file_ == file_) return operation + rest;
   const QString all = (operation.isEmpty() ? "" : ", " + operation) + rest;
   const int room = pages_->width() - kTick - fontMetrics().horizontalAdvance("Continue " + all);
-  return fontMetrics().elidedText(QFileInfo(unfinished_file_).fileName(), Qt::ElideMiddle, room) + all;
+  return nameFor(fontMetrics(), QFileInfo(unfinished_file_).fileName(), room) + all;
 }
 
 /// Finds the file of an unfinished job other than the chosen one, beside the chosen file or in the package.

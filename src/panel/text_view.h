@@ -35,10 +35,16 @@ inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
   view.setPlainText(text);
 }
 
-/// Shows a name, shortened in its middle to the room that the label has beside `rest`.
+/// A file's name for a room [px]: without `.yaml` where the whole has none, and only then shortened in its middle.
+inline QString nameFor(const QFontMetrics& metrics, const QString& name, int room) {
+  const bool fits = metrics.horizontalAdvance(name) <= room;
+  return metrics.elidedText(fits ? name : QString(name).remove(".yaml"), Qt::ElideMiddle, room);
+}
+
+/// Shows a file's name in the room that the label has beside `rest`.
 inline void showName(QLabel& label, const QString& name, const QString& rest = "") {
   const QFontMetrics metrics = label.fontMetrics();
-  label.setText(metrics.elidedText(name, Qt::ElideMiddle, label.width() - metrics.horizontalAdvance(rest)) + rest);
+  label.setText(nameFor(metrics, name, label.width() - metrics.horizontalAdvance(rest)) + rest);
 }
 
 }  // namespace grinder

@@ -235,11 +235,13 @@ void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
   const auto neck_end = shankOf(job->cutter);
   const double from = neck_end ? extent.to : extent.shank_to, shank = neck_end.value_or(from);
   const double end = std::max(kEnd, shank), radius = job->cutter.shank_diameter / 2;
-  const double first = neck_end ? cutter.radius(from) : radius;
-  // It begins a little inside the ground part, whose facets are not its own: through the cracks one would see dots.
-  std::vector<OutlinePoint> outline{{from - kOverlap * first, 0}, {from - kOverlap * first, (1 - kOverlap) * first}};
-  if (neck_end) outline.insert(outline.end(), {{from, first}, {shank, cutter.radius(shank)}});
-  outline.insert(outline.end(), {{shank, radius}, {end, radius}, {end, 0}});
+  // It begins a little inside the ground part, whose facets are not its own, and has no face there: either would show
+  // as a line of dots.
+  const double before = from - kOverlap * radius;
+  std::vector<OutlinePoint> outline;
+  if (neck_end) outline = {{before, cutter.radius(before)}, {shank, cutter.radius(shank)}, {shank, radius}};
+  if (!neck_end) outline = {{before, radius}};
+  outline.insert(outline.end(), {{end, radius}, {end, 0}});
   appendShadedSolid(array, ns, outline, colourOf(SurfaceKind::kShank));
 }
 

@@ -311,12 +311,16 @@ TEST_F(OnStage, NothingMovesAtAStart) {
   WAIT_FOR(place.fontMetrics().horizontalAdvance(place.text()) <= place.width());
 }
 
-TEST_F(Staged, ALongNameIsShortenedToItsRoom) {
+TEST_F(Staged, ALongNameIsShortenedToItsRoomButNoShippedOne) {
+  for (const char* shipped : {"roughing_d10_t4", "end_mill_d10_t4", "unequal_d12_t4"}) {
+    Panel panel("cell/stage", kPackage + "/jobs/" + shipped + ".yaml");
+    WAIT_FOR(panel.label("job_file").find(shipped) == 0);
+  }
   const QTemporaryDir folder;
   const QString path = changedJob(kPaper, folder.filePath("four_teeth_of_the_night_shift_with_a_long_name.yaml"), {});
   Panel panel("cell/stage", path);
   auto& name = panel.the<QLabel>("job_file");
-  WAIT_FOR(name.text().startsWith("fo") && name.text().endsWith("ml") &&
+  WAIT_FOR(name.text().startsWith("fo") && name.text().endsWith("me") &&
            name.fontMetrics().horizontalAdvance(name.text()) <= name.width());
   EXPECT_EQ(name.toolTip(), path);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Takes the pictures of rviz and its panel in docs/images, from a simulated grinder: source scripts/environment, then
-SCREEN=1280x800 test/rviz/on_screen docs/take_pictures.py"""
+"""Takes the pictures of rviz and its panel in docs/images, from a simulated grinder. After `source scripts/environment` and
+`export port`, it is run by `test/rviz/on_screen docs/take_pictures.py`."""
 
 import json
 import os

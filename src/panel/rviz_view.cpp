@@ -93,6 +93,8 @@ std::optional<bool> RvizView::isCutOpen() const {
 
 void RvizView::setCutOpen(bool open) {
   if (auto* shown = cutOut()) shown->setValue(!open);
+  // rviz has thrown away what it hid.
+  if (!open) askForMarkers();
   resume();
 }
 

@@ -13,7 +13,7 @@
 namespace grinder {
 
 /// Controls the direction and the frame rate of rviz's view, and what it shows of the cutter. After rviz's *Reset* it
-/// has the grinder's markers sent again, which come once.
+/// has all markers sent again, which come once.
 class RvizView : public QObject {
   Q_OBJECT
 
@@ -31,7 +31,7 @@ class RvizView : public QObject {
   /// otherwise: without a graphics card each frame costs processor time. To be called often.
   void keepPace(bool moves);
 
-  /// Whether the cutter is shown cut open; nothing while none is shown.
+  /// Whether the cutter is shown cut open; nothing until one was shown.
   std::optional<bool> isCutOpen() const;
   void setCutOpen(bool open);
 

@@ -35,13 +35,15 @@ inline void showText(QPlainTextEdit& view, const QString& text, bool good) {
   view.setPlainText(text);
 }
 
-/// A file's name for a room [px]: without `.yaml` where the whole has none, and only then shortened in its middle.
+/// A name in a room [px]: without `.yaml` if it does not fit, then shortened in its middle.
 inline QString nameFor(const QFontMetrics& metrics, const QString& name, int room) {
   const bool fits = metrics.horizontalAdvance(name) <= room;
-  return metrics.elidedText(fits ? name : QString(name).remove(".yaml"), Qt::ElideMiddle, room);
+  const QString suffix = ".yaml";
+  const QString shown = !fits && name.endsWith(suffix) ? name.chopped(suffix.size()) : name;
+  return metrics.elidedText(shown, Qt::ElideMiddle, room);
 }
 
-/// Shows a file's name in the room that the label has beside `rest`.
+/// Shows a name in the room that the label has beside `rest`.
 inline void showName(QLabel& label, const QString& name, const QString& rest = "") {
   const QFontMetrics metrics = label.fontMetrics();
   label.setText(nameFor(metrics, name, label.width() - metrics.horizontalAdvance(rest)) + rest);

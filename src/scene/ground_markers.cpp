@@ -23,8 +23,8 @@ using visualization_msgs::Marker;
 using visualization_msgs::MarkerArray;
 
 constexpr double kEnd = 0.066;             ///< X of the shank's end within the collet [m]
-constexpr double kMaxTriangles = 12000;    ///< maximum number of triangles, of 120 bytes each, before the cut adds some
-constexpr double kMaxWithEnd = 9000;       ///< the same where the end adds some, too
+constexpr double kMaxTriangles = 9000;     ///< maximum number of triangles, of 120 bytes each, before the cut adds some
+constexpr double kMaxWithEnd = 7500;       ///< the same where the end adds some, too
 constexpr double kLabelHeight = 0.03;      ///< height of letters, as a fraction of the flute's length
 constexpr double kOverlap = 0.02;          ///< of the shank and the ground part, as a fraction of the radius
 constexpr std::size_t kPlaces = 13;        ///< places over the flute's length where rake and clearance are measured
@@ -247,7 +247,8 @@ void appendShank(MarkerArray& array, const ValidJob& job, const char* ns) {
 
 /// Which of the error's colours stands for a deviation, as a fraction of the tolerance; the last beyond it.
 std::size_t levelOf(double deviation) {
-  return static_cast<std::size_t>(std::min(deviation, 1.0) * static_cast<double>(kErrorColours));
+  if (!(deviation <= 1)) return kErrorColours;
+  return std::min(static_cast<std::size_t>(deviation * kErrorColours), kErrorColours - 1);
 }
 
 std_msgs::ColorRGBA colourOfLevel(std::size_t level) {
@@ -293,17 +294,17 @@ std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const
   Part rest{ns, cutterSolid(cutter, extent, resolution, removed)};
   removed.pop_back();
   for (const Plane& plane : cut_out.body) removed.push_back({{{-plane.normal, -plane.offset}}, {}});
-  Part wedge{kCutOut, cutterSolid(cutter, extent, resolution, removed)};
-  drop(wedge.solid, [](const SolidTriangle& face) { return face.kind == SurfaceKind::kCut; });
-  for (CutterSolid* solid : {&rest.solid, &wedge.solid}) {
+  Part inside{kCutOut, cutterSolid(cutter, extent, resolution, removed)};
+  drop(inside.solid, [](const SolidTriangle& face) { return face.kind == SurfaceKind::kCut; });
+  for (CutterSolid* solid : {&rest.solid, &inside.solid}) {
     // Toward the shank: through the cracks one would see dots of it.
-    const double end = std::max(extent.to, extent.shank_to);
+    const double last = std::max(extent.to, extent.shank_to);
     drop(*solid, [&](const SolidTriangle& face) {
       return std::all_of(face.vertices.begin(), face.vertices.end(),
-                         [&](std::uint32_t v) { return solid->vertices[v].x() == end; });
+                         [&](std::uint32_t v) { return solid->vertices[v].x() == last; });
     });
   }
-  return {std::move(rest), std::move(wedge)};
+  return {std::move(rest), std::move(inside)};
 }
 
 /// Corners of triangles in one colour.

@@ -60,7 +60,7 @@ void appendScale(MarkerArray& array, const CutterGeometry& cutter, const std::st
   const auto below_it = [&](const std::string& text) {
     appendText(array, text, length / 2, below += kLineSpacing * letters, letters);
   };
-  const std::size_t tool = std::min(shown.find(" ("), shown.size());
+  const std::size_t tool = std::min(shown.rfind(" ("), shown.size());
   below_it(shown.substr(0, tool));
   below_it(format("flutes %g mm long", length / units::kMillimetre) + shown.substr(tool));
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSamePlace = 1e-8;  ///< corners within the same cell of this size are the same [m]
 constexpr double kCosEdge = 0.77;    ///< cosine of the angle from which two facets meet at an edge
-constexpr double kSliver = 1e-3;     ///< area, as a fraction of the largest beside it, below which a normal is nothing
+constexpr double kSliver = 1e-3;  ///< area, as a fraction of the largest beside it, below which a normal means nothing
 
 struct Light {
   Eigen::Vector3d toward;

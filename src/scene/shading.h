@@ -13,10 +13,10 @@ namespace grinder {
 /// The unit normals at the corners of triangles: of a smooth surface where they meet at less than 40 degrees, and of
 /// each by itself at an edge.
 /// @param corners corners of the triangles, by threes, counterclockwise as seen from outside; coincident ones within
-///        some nanometres [m].
+///        10 nm [m].
 std::vector<Eigen::Vector3d> smoothNormals(const std::vector<Eigen::Vector3d>& corners);
 
-/// How a surface of this colour looks by lights that turn with the tool.
+/// How a surface of this colour looks lit by lamps that turn with the tool.
 /// @param normal unit normal in the cutter's frame.
 std_msgs::ColorRGBA lit(const std_msgs::ColorRGBA& colour, const Eigen::Vector3d& normal);
 

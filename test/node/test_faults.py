@@ -17,6 +17,7 @@ STEEP = gc.paper(cone_angle=20 * DEG, rake_angle=40 * DEG, clearance=1 * MM, fee
 FAULTS = {
     ('drive_fault', X): (GrindResult.HARDWARE_FAULT, r'^the drive reports a fault: injected'),
     ('stale_feedback', X): (GrindResult.LINK_LOST, r'^no fresh positions from the drive for 0\.\d+ s, allowed 0\.002 s'),
+    ('nan_feedback', Y): (GrindResult.HARDWARE_FAULT, r'^axis Y position from the drive is -?nan'),
     ('stuck_axis', X): (GrindResult.PATH_TOLERANCE_VIOLATED,
                                r'^axis X following error 1\.?\d* mm is beyond its limit 1 mm'),
 }

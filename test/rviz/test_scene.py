@@ -206,14 +206,19 @@ class TestScene(unittest.TestCase):
         rviz = self.rviz
         rviz.plan(JOB)
         rviz.look('work', CAMERA)
+        rviz.operate('tab View')
+        gc.poll(lambda: rviz.buttons()['cut_open'][0], 'the cutter')
         rviz.operate('click reset_of_rviz')
         rviz.take_picture('after_reset', WHEEL, PLANNED, READY_STATE)
+        gc.poll(lambda: rviz.buttons()['cut_open'][0], 'the cutter after the reset')
 
     def test_5_the_cutter_is_whole_until_it_is_cut_open(self):
         rviz = self.rviz
+        grinder().make_ready_at_park()  # where the section faces the view
         rviz.plan(JOB)
         rviz.look('work', [4.2, 0.9, 0.08, 0.01, 0, 0])
         rviz.operate('tab View')
+        gc.poll(lambda: rviz.buttons()['cut_open'][0], 'the cutter')
 
         def section():
             red, green, blue = numpy.moveaxis(rviz.take_picture('cut_open', PLANNED, READY_STATE), 2, 0)
@@ -221,7 +226,9 @@ class TestScene(unittest.TestCase):
 
         self.assertEqual(section(), 0)
         rviz.operate('click cut_open')
-        gc.poll(lambda: section() > 50, 'the section')
+        gc.poll(lambda: section() > 1000, 'the section')
+        rviz.operate('click cut_open')
+        gc.poll(lambda: section() == 0, 'the whole cutter')
 
 
 if __name__ == '__main__':

@@ -56,21 +56,34 @@ MarkerArray markersSoFar(const ValidJob& job, const Reached& reached) {
   return groundMarkers(groundSoFar(job, reached), job, "ground", reached);
 }
 
+/// Whether these are faces of the cut, pale yellow.
+bool isCut(const Marker& m) { return m.color.r > 0.9 && m.color.g > 0.85 && m.color.b > 0.6; }
+
 void expectFit(const GrindJob& job) {
   const MarkerArray array = plannedMarkers(job);
   EXPECT_LT(ros::serialization::serializationLength(array), kMaxBytes);
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
-  const std::vector<Marker> solid = solidOf(array, "planned");
-  EXPECT_GT(solid.size(), 3u) << textsOf(array);
   EXPECT_EQ(textsOf(array).find_first_not_of('\n'), std::string::npos) << textsOf(array);
-  for (const Marker& m : solid) {
-    EXPECT_EQ(m.header.frame_id, "cutter");
-    EXPECT_LE(m.points.size(), 16384u);
-    EXPECT_EQ(m.points.size() % 3, 0u);
+  for (const std::string ns : {"planned", kCutOut}) {
+    const std::vector<Marker> solid = solidOf(array, ns);
+    EXPECT_GT(solid.size(), 3u) << textsOf(array);
+    for (const Marker& m : solid) {
+      EXPECT_EQ(m.header.frame_id, "cutter");
+      EXPECT_LE(m.points.size(), 16384u);
+      EXPECT_EQ(m.points.size() % 3, 0u);
+      EXPECT_EQ(m.colors.size(), isCut(m) ? 0 : m.points.size());
+      for (const std_msgs::ColorRGBA& c : m.colors) {
+        // A shade of its colour.
+        ASSERT_NEAR(c.r * m.color.g, c.g * m.color.r, 1e-5);
+        ASSERT_NEAR(c.g * m.color.b, c.b * m.color.g, 1e-5);
+        ASSERT_GT(c.g, 0.3 * m.color.g);
+      }
+    }
   }
 }
 
 TEST(GroundMarkers, OfManyTeethAndOfASteepSpiralFitAMessage) {
+  for (const char* heavy : {"left_hand_d8_t3", "paper"}) expectFit(jobOf(heavy));
   GrindJob many = jobOf("finishing_d20_t8");
   many.tooth_angles.clear();
   for (int i = 0; i < kMaxTeeth; ++i) many.tooth_angles.push_back(2 * units::kPi * i / kMaxTeeth);
@@ -254,7 +267,7 @@ TEST(GroundMarkers, AreWholeAndCutOpenWithoutAWedge) {
   const auto angles = [&](const std::string& ns, bool faces_of_cut) {
     std::set<long> found;
     for (const Marker& m : solidOf(array, ns)) {
-      if ((m.color.r > 1.2 * m.color.b) != faces_of_cut) continue;
+      if (isCut(m) != faces_of_cut) continue;
       for (const geometry_msgs::Point& p : m.points) {
         if (std::hypot(p.y, p.z) > kMillimetre) found.insert(std::lround(std::atan2(p.z, p.y) / kDegree));
       }

@@ -140,7 +140,7 @@ TEST(PathMarkers, MeasuredFlutesHaveTheColoursOfTheirErrors) {
   ASSERT_EQ(strip.colors.size(), strip.points.size());
   double last = 0;
   for (std::size_t i = 0; i < strip.points.size(); ++i) {
-    // Ever lighter, from blue by green to yellow at the tolerance, and red beyond it.
+    // Ever lighter, from blue through green to yellow at the tolerance, and red beyond it.
     const double fraction = 2 * strip.points[i].x / length;
     const std_msgs::ColorRGBA& c = strip.colors[i];
     const double light = 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace grinder {
 namespace test_scale {
@@ -14,12 +15,14 @@ using units::kMillimetre;
 using visualization_msgs::Marker;
 
 TEST(Scale, HasAFewRoundNumbersWhateverTheLength) {
-  for (double length = 0.3; length < 200; length *= 1.03) {
+  std::vector<double> lengths{0.5, 1, 2, 5, 10, 20, 50, 100};
+  for (double length = 0.3; length < 200; length *= 1.03) lengths.push_back(length);
+  for (const double length : lengths) {
     CutterGeometry cutter;
     cutter.end_diameter = length / 2 * kMillimetre;
     cutter.flute_length = length * kMillimetre;
     visualization_msgs::MarkerArray array;
-    appendScale(array, cutter, "Planned: a job (D 10 mm)");
+    appendScale(array, cutter, "Planned: a job (2).yaml (D 10 mm)");
     std::vector<double> numbers;
     std::string texts;
     for (const Marker& m : array.markers) {
@@ -38,7 +41,7 @@ TEST(Scale, HasAFewRoundNumbersWhateverTheLength) {
     EXPECT_LE(numbers.back(), length * (1 + 1e-9));
     const double step = numbers[1], digit = step / std::pow(10, std::floor(std::log10(step * 1.000001)));
     EXPECT_TRUE(std::abs(digit - 1) < 1e-5 || std::abs(digit - 2) < 1e-5 || std::abs(digit - 5) < 1e-5) << step;
-    EXPECT_NE(texts.find("Planned: a job\nflutes "), std::string::npos) << texts;
+    EXPECT_NE(texts.find("Planned: a job (2).yaml\nflutes "), std::string::npos) << texts;
     EXPECT_NE(texts.find(" mm long (D 10 mm)"), std::string::npos) << texts;
   }
 }

@@ -264,6 +264,46 @@ TEST(GroundCutter, TheCoreIsThatOfBruteForce) {
   EXPECT_EQ(checked, cases);
 }
 
+TEST(GroundCutter, NoLongerStrokeMovesTheEndsOfACompleteArc) {
+  std::mt19937 random(31);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int complete = 0, incomplete = 0;
+  for (int i = 0; i < 1000; ++i) {
+    auto k = randomCase(random, i);
+    if (!k) continue;
+    k->c.from = k->x / kMillimetre - uniform(0, 25);
+    k->c.to = k->x / kMillimetre + uniform(0, 25);
+    Case longer = k->c;
+    longer.from -= 100;
+    longer.to += 100;
+    // About its apex a cone turns without end.
+    const double apex = -k->c.diameter / 2 / std::tan(k->c.cone * kDegree);
+    if (apex < 0) longer.from = std::max(longer.from, 0.95 * apex);
+    if (apex > 0) longer.to = std::min(longer.to, 0.95 * apex);
+    const double r = k->outer - uniform(0, 0.8) * std::min(k->c.depth * kMillimetre, 0.9 * k->outer);
+    // Nor may it go where it would spoil the flute.
+    if (const auto spoils = longer.sweep(k->wheel).overcutStart(k->x, r)) {
+      if (apex < 0) longer.from = std::max(longer.from, *spoils / kMillimetre);
+      if (apex > 0) longer.to = std::min(longer.to, *spoils / kMillimetre);
+    }
+    if (!(longer.from < k->c.from && longer.to > k->c.to)) continue;
+    const WheelSweep sweep = k->c.sweep(k->wheel);
+    const auto arc = sweep.arc(k->x, r), most = longer.sweep(k->wheel).arc(k->x, r);
+    if (!arc) continue;
+    ASSERT_TRUE(most.has_value()) << "case " << i;
+    const double moved = std::max(std::abs(most->high - arc->high), std::abs(most->low - arc->low));
+    if (sweep.isComplete(k->x, r, arc->low, arc->low_x, false) &&
+        sweep.isComplete(k->x, r, arc->high, arc->high_x, true)) {
+      ++complete;
+      EXPECT_LT(moved, 1e-7) << "case " << i;
+    } else if (moved > 1e-7) {
+      ++incomplete;
+    }
+  }
+  EXPECT_GT(complete, 75);
+  EXPECT_GT(incomplete, 75);
+}
+
 TEST(WheelSweep, DeeperByWhatIsAskedItReachesTheRadius) {
   for (const double cone : {-1.0, 0.0, 8.0}) {
     Case c;

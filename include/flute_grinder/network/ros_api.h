@@ -22,7 +22,7 @@ std::optional<XmlRpc::XmlRpcValue> callRosApi(const std::string& host, unsigned 
 /// @param name resolved name.
 /// @param stop as for callRosApi().
 /// @return nothing if it is not set.
-/// @throw std::runtime_error if the master does not answer.
+/// @throw std::runtime_error if the master does not answer, or `stop` was set.
 std::optional<XmlRpc::XmlRpcValue> readParameter(const std::string& name, const std::atomic<bool>& stop);
 
 }  // namespace grinder

@@ -29,7 +29,7 @@ GroundCutter groundSoFar(const ValidJob& job, const Reached& reached);
 /// been, rake faces and primary reliefs are coloured by their difference from the asked rake and clearance. On the end,
 /// strokes count once they have ended. Before the first stroke of the flutes, the whole blank. Below 3 MB.
 /// @param reached progress of the job; nothing for a finished job.
-/// @param ns namespace of the markers but those of kCutOut.
+/// @param ns namespace of the markers except those in kCutOut.
 /// @return markers; the first deletes the earlier ones. For a cutter that cannot be shown, e.g. with its core cut
 ///        through, only a label with the reason.
 visualization_msgs::MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const char* ns,

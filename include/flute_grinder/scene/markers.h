@@ -12,7 +12,7 @@ namespace grinder {
 /// The maximum number of points in one marker: rviz crashes on a line strip of more than 16,384.
 constexpr std::size_t kMaxMarkerPoints = 16000;
 
-/// The namespace of the surface of a wedge of the ground cutter: without it the cutter is cut open.
+/// The namespace of the surface of a wedge of the ground cutter; hidden, the cutter is cut open.
 constexpr const char* kCutOut = "cut_out";
 
 geometry_msgs::Point point(double x, double y, double z);
@@ -20,8 +20,8 @@ geometry_msgs::Point point(double x, double y, double z);
 /// Red, green, blue and opacity, 0 to 1 each.
 std_msgs::ColorRGBA colour(double r, double g, double b, double a = 1);
 
-/// The colour of an error: from blue at 0 through green to yellow at 1, by the scale viridis, which those who are
-/// colour-blind can read, too; red beyond 1.
+/// The colour of an error: from blue at 0 through green to yellow at 1, on the viridis scale, which colour-blind people
+/// can read too; red beyond 1.
 /// @param fraction error as a fraction of its tolerance.
 std_msgs::ColorRGBA errorColour(double fraction);
 

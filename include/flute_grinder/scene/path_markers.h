@@ -29,7 +29,7 @@ class EndPasses {
 
 /// The ground edges of all teeth, or the lines of the deepest strokes on the end (EndLine), as line strips in the frame
 /// `cutter`, so that they turn with A: a planned edge is grey, the one being ground bright, and a finished one coloured
-/// point by point by the error measured in its last pass, red at the job's tolerance.
+/// point by point by the error measured in its last pass, red beyond the job's tolerance.
 class ToolPath {
  public:
   /// @param edges edges of the teeth, none of an operation on the end; an empty edge and its measurements are not
@@ -113,7 +113,7 @@ class ExecutedPath {
 };
 
 /// Deviations of one stroke from the theoretical helix as arrows normal to it on the cutter's surface, scaled up and
-/// coloured by size, red at the job's tolerance. Thinned out as setpoints are added. Straight strokes have none.
+/// coloured by size, red beyond the job's tolerance. Thinned out as setpoints are added. Straight strokes have none.
 class PathErrorMarkers {
  public:
   /// @param edges edges of the teeth.

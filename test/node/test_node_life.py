@@ -186,7 +186,7 @@ class TestMemory(gc.OwnNode):
         before = self.page_faults()
         g.make_ready(0.2)
         run = g.send(self.TOOL).wait_in_stroke(1 * MM)
-        self.assertLess(self.memory('VmHWM'), 100e6)
+        self.assertLess(self.memory('VmHWM'), 110e6)
         run.cancel()
         run.wait_complete()
         g.wait_state(GrinderState.READY)

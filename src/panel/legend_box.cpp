@@ -74,7 +74,7 @@ LegendBox::LegendBox(QWidget* parent)
   max_->setToolTip("Of the path, measured normal to the helix on the cutter's surface");
   layout->addWidget(max_, 5, 0, 1, 3);
   auto* lines = namedLabel("line_colours");
-  lines->setText("Red: beyond the tolerance. Flutes: grey planned, magenta being ground. Cyan: the wheel's path.");
+  lines->setText("Red: out of tolerance. Flutes: grey planned, magenta now. Cyan: wheel's path.");
   lines->setWordWrap(true);
   layout->addWidget(lines, 6, 0, 1, 3);
   show(std::nullopt);

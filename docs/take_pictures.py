@@ -2,98 +2,70 @@
 """Takes the pictures of rviz and its panel in docs/images, from a simulated grinder. After `source scripts/environment` and
 `export port`, it is run by `test/rviz/on_screen docs/take_pictures.py`."""
 
+import contextlib
+import functools
 import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
-import time
 
 import rospy
 from PIL import ImageGrab
-from std_srvs.srv import Trigger
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-IMAGES = ROOT / 'docs/images'
-BINARIES = ROOT / 'build/devel/lib/flute_grinder'
-PATIENCE = 300  # [s]
+sys.path.insert(0, str(ROOT / 'test/rviz'))
+
+from test_scene import Rviz, gc  # noqa: E402
+
 QUESTIONS = ['discard', 'ignore-offsets', 'confirm-swivel', 'confirm-wheel']
-
-
-def poll(condition, what):
-    due = time.monotonic() + PATIENCE
-    while not condition():
-        if time.monotonic() > due:
-            raise TimeoutError('timed out waiting for ' + what)
-        time.sleep(0.1)
-
-
-def grind(*arguments):
-    return subprocess.run([BINARIES / 'grind', *arguments], check=True, stdout=subprocess.PIPE).stdout.decode()
+LONGEST = 300  # [s] until a job is where its picture is taken
+grind = functools.partial(gc.grind, check=True)
 
 
 def status():
-    return json.loads(grind('status', '--json'))
+    return json.loads(grind('status', '--json').stdout)
 
 
-class Rviz:
-    """rviz with a job file in its panel, until the end of a `with`."""
+@contextlib.contextmanager
+def launched(*command):
+    """A process, until the end of a `with`."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.wait()
 
-    def __init__(self, job):
-        self._config = tempfile.NamedTemporaryFile('w', suffix='.rviz')
-        self._config.write((ROOT / 'rviz/grinder.rviz').read_text().replace('Job: ""', 'Job: %s' % (ROOT / job)))
-        self._config.flush()
-        self._process = subprocess.Popen([BINARIES / 'rviz_with_report', '-d', self._config.name, '--disable-anti-aliasing',
-                                          '__name:=rviz'], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self._services = {name: rospy.ServiceProxy('/rviz/' + name, Trigger) for name in ('report', 'operate', 'look')}
 
-    def __enter__(self):
-        self._services['report'].wait_for_service(PATIENCE)
-        poll(lambda: self.report('frames') and int(self.report('frames')[0]) > 10, 'frames of rviz')
-        return self
+@contextlib.contextmanager
+def rviz_with(job):
+    """rviz with a job file in its panel."""
+    with tempfile.NamedTemporaryFile('w', suffix='.rviz') as config:
+        config.write((ROOT / 'rviz/grinder.rviz').read_text().replace('Job: ""', 'Job: %s' % (ROOT / job)))
+        config.flush()
+        with launched(gc.program('rviz_with_report'), '-d', config.name, '--disable-anti-aliasing', '__name:=rviz'):
+            yield Rviz()
+            grind('cancel')
 
-    def __exit__(self, *_):
-        self._process.terminate()
-        self._process.wait()
-        self._config.close()
 
-    def report(self, key):
-        lines = self._services['report']().message.splitlines()
-        return [line[len(key) + 1:] for line in lines if line.startswith(key + ' ')]
+def start(rviz):
+    """Plans and starts the panel's job, and answers what is asked."""
+    def can_click(name):
+        return rviz.buttons().get(name, [0])[0]
 
-    def can_click(self, name):
-        return any(words[:2] == [name, '1'] for words in map(str.split, self.report('button')))
+    gc.poll(lambda: can_click('plan'), 'the job')
+    rviz.operate('click plan')
+    gc.poll(lambda: can_click('start'), 'the plan')
 
-    def operate(self, operation):
-        rospy.set_param('/rviz/operation', operation)
-        self._services['operate']()
-        time.sleep(0.5)
+    def runs():
+        for button in rviz.buttons().keys() & set(QUESTIONS) or ['start']:
+            if can_click(button):
+                rviz.operate('click ' + button)
+        return status()['state'] == 'running'
 
-    def click(self, name):
-        poll(lambda: self.can_click(name), 'the button ' + name)
-        self.operate('click ' + name)
-
-    def start(self):
-        """Plans and starts the panel's job, and answers what is asked."""
-        self.click('plan')
-        poll(lambda: self.can_click('start'), 'the plan')
-
-        def runs():
-            seen = {words.split()[0] for words in self.report('button')}
-            for button in seen.intersection(QUESTIONS) or ['start']:
-                if self.can_click(button):
-                    self.operate('click ' + button)
-            return status()['state'] == 'running'
-        poll(runs, 'the start')
-
-    def take(self, name, part):
-        """Keeps a picture of the window, of the view in it, or of the panel."""
-        time.sleep(3)  # until the ground cutter is drawn
-        x, y, width, height = map(int, self.report('view')[0].split())
-        _, _, right, bottom = map(int, self.report('window')[0].split())
-        box = {'window': (0, 0, right, bottom), 'view': (x, y, x + width, y + height),
-               'panel': (x + width + 25, y + 20, right, bottom - 30)}[part]
-        ImageGrab.grab(xdisplay=os.environ['DISPLAY']).crop(box).save(IMAGES / (name + '.png'), optimize=True)
+    gc.poll(runs, 'the start')
 
 
 def hold_in(tooth, number, x):
@@ -101,52 +73,49 @@ def hold_in(tooth, number, x):
     def is_there():
         now = status()
         return (now['tooth'], now['pass']) == (tooth, number) and now['wheel_in_work'] and now['work']['x_mm'] > x
-    poll(is_there, 'tooth %d, pass %d' % (tooth, number))
+
+    gc.poll(is_there, 'tooth %d, pass %d' % (tooth, number), timeout=LONGEST)
     grind('hold')
 
 
+def take(rviz, name, part):
+    """Keeps a picture of the window, of the view in it, or of the panel."""
+    rviz.wait_frames(30)  # until the cutter is as it is ground: it is shown once in some seconds
+    x, y, width, height = rviz.numbers('view')
+    _, _, right, bottom = rviz.numbers('window')
+    box = {'window': (0, 0, right, bottom), 'view': (x, y, x + width, y + height),
+           'panel': (x + width + 25, y + 20, right, bottom - 30)}[part]
+    ImageGrab.grab(xdisplay=os.environ['DISPLAY']).crop(box).save(ROOT / 'docs/images' / (name + '.png'), optimize=True)
+
+
 def take_all():
-    with Rviz('jobs/paper.yaml') as rviz:
-        rviz.start()
+    with rviz_with('jobs/paper.yaml') as rviz:
+        start(rviz)
         hold_in(1, 1, 26)
-        rviz.take('one_tooth', 'window')
-        rviz.take('panel', 'panel')
+        take(rviz, 'one_tooth', 'window')
+        take(rviz, 'panel', 'panel')
         rviz.operate('tab Jog')
-        rviz.take('panel_jog', 'panel')
-        grind('cancel')
-    with Rviz('jobs/unequal_d12_t4.yaml') as rviz:
-        rviz.start()
+        take(rviz, 'panel_jog', 'panel')
+    with rviz_with('jobs/unequal_d12_t4.yaml') as rviz:
+        start(rviz)
         hold_in(4, 1, 5)
         rviz.operate('tab Section')
-        rviz.take('panel_section', 'panel')
+        take(rviz, 'panel_section', 'panel')
         rviz.operate('tab View')
-        rviz.take('rviz', 'window')
-        grind('cancel')
-    mill = 'jobs/end_mill_d10_t4.yaml'
-    answers = [word for question in QUESTIONS for word in ('--answer', question)]
-    with Rviz(mill) as rviz:
-        run = subprocess.Popen([BINARIES / 'grind', 'run', ROOT / mill, '--operation', 'secondary', *answers],
-                               stdout=subprocess.DEVNULL)
+        take(rviz, 'rviz', 'window')
+    mill, answers = 'jobs/end_mill_d10_t4.yaml', [word for question in QUESTIONS for word in ('--answer', question)]
+    with rviz_with(mill) as rviz, launched(gc.program('grind'), 'run', str(ROOT / mill), '--operation', 'secondary', *answers):
         hold_in(4, 5, 10)
-        rviz.take('mill', 'view')
-        grind('cancel')
-        run.wait()
+        take(rviz, 'mill', 'view')
 
 
 def main():
-    folder = tempfile.TemporaryDirectory()
-    launch = subprocess.Popen(['roslaunch', '-p', os.environ['port'], 'flute_grinder', 'grinder.launch',
-                               'journal:=%s/journal' % folder.name], stdout=subprocess.DEVNULL)
-    try:
-        poll(lambda: subprocess.run([BINARIES / 'grind', 'status'], stdout=subprocess.DEVNULL,
-                                    stderr=subprocess.DEVNULL).returncode == 0, 'the grinder')
+    with tempfile.TemporaryDirectory() as folder, launched('roslaunch', '-p', os.environ['port'], 'flute_grinder', 'grinder.launch',
+                                                           'journal:=%s/journal' % folder):
+        gc.poll(lambda: gc.grind('status').returncode == 0, 'the grinder')
         rospy.init_node('pictures')
         grind('enable')
         take_all()
-    finally:
-        launch.terminate()
-        launch.wait()
-        folder.cleanup()
 
 
 if __name__ == '__main__':

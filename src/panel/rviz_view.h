@@ -45,7 +45,7 @@ class RvizView : public QObject {
   void resume();
   void askForMarkers();
   std::vector<rviz::Display*> markers() const;
-  /// What shows or hides kCutOut; null while no cutter is shown.
+  /// What shows or hides kCutOut; null until a cutter was shown.
   rviz::Property* cutOut() const;
 
   rviz::VisualizationManager& manager_;

@@ -16,6 +16,8 @@ constexpr double kSamePlace = 1e-8;  ///< corners within the same cell of this s
 constexpr double kCosEdge = 0.77;    ///< cosine of the angle from which two facets meet at an edge
 constexpr double kSliver = 1e-3;  ///< area, as a fraction of the largest beside it, below which a normal means nothing
 
+constexpr double kAmbient = 0.36;  ///< light that comes from everywhere
+
 struct Light {
   Eigen::Vector3d toward;
   double strength;
@@ -30,8 +32,6 @@ const std::array<Light, 3>& lights() {
   }();
   return all;
 }
-
-constexpr double kAmbient = 0.36;
 
 using Cell = std::array<std::int64_t, 3>;
 

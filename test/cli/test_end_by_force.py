@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Holds the setpoints of the flutes, gashes, end teeth and chamfers of shipped end mills of both hands against what the wheels
-leave that follow them: from the file of `grind plan --csv`, the wheels
-and the set-up of the job file. On rays parallel to the axis, each position of a wheel takes away a range of X, of a cup with its recess two."""
+leave that follow them: from the file of `grind plan --csv`, the wheels and the set-up of the job file. On rays parallel to the
+axis, each position of a wheel takes away a range of X, of a cup with its recess two."""
 
 import math
 import pathlib

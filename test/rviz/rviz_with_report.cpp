@@ -79,8 +79,8 @@ void writeWhatIsSeen(std::ostream& text) {
   }
 }
 
-/// A button by its name, rviz's view, or what rviz gives no name: its reset, the panel's close
-/// box, and the arrow that folds it.
+/// A button by its name, rviz's view, or what rviz gives no name: its reset, the panel's close box, and the arrow that
+/// folds it.
 QWidget* widgetNamed(const QString& name) {
   if (name == "view") return window()->getManager()->getRenderPanel();
   for (auto* button : window()->findChildren<QToolButton*>()) {

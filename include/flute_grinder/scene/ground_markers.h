@@ -25,9 +25,9 @@ struct Reached {
 /// @throw like groundCutterOf().
 GroundCutter groundSoFar(const ValidJob& job, const Reached& reached);
 
-/// The ground cutter with neck and shank, in the frame `cutter`. Where the last pass has
-/// been, rake faces and primary reliefs are coloured by their difference from the asked rake and clearance. On the end,
-/// strokes count once they have ended. Before the first stroke of the flutes, the whole blank. Below 3 MB.
+/// The ground cutter with neck and shank, in the frame `cutter`. Where the last pass has been, rake faces and primary
+/// reliefs are coloured by their difference from the asked rake and clearance. On the end, strokes count once they have
+/// ended. Before the first stroke of the flutes, the whole blank. Below 3 MB.
 /// @param reached progress of the job; nothing for a finished job.
 /// @param ns namespace of the markers except those in kCutOut.
 /// @return markers; the first deletes the earlier ones. For a cutter that cannot be shown, e.g. with its core cut

@@ -47,7 +47,7 @@ def rviz_with(job):
         config.flush()
         with launched(gc.program('rviz_with_report'), '-d', config.name, '--disable-anti-aliasing', '__name:=rviz'):
             yield Rviz()
-            grind('cancel')
+            gc.grind('cancel')  # unless it has ended with its command
 
 
 def start(rviz):

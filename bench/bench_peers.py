@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The strokes that flute_grinder grinds, and what LinuxCNC makes of the same ones, on this computer. `scripts/bench_peers` runs it."""
+"""The strokes that flute_grinder grinds, and what LinuxCNC and others make of the same ones, on this computer. `scripts/bench_peers` runs it."""
 
 import argparse
 import io
@@ -22,6 +22,7 @@ import bench_rest
 import figures
 import linuxcnc_peer
 import peers
+import trajectory_peers
 from bench_all import gc
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
@@ -108,6 +109,19 @@ def measure_linuxcnc(cutters, feeds, of_axes):
                       (1e3 * run['motion'], 100 * run['processor'], run['memory'] / 1e6))
 
 
+def measure_trajectories(cutters, feeds, of_axes, name, program):
+    """Yields the table's rows of a peer that follows states of the path."""
+    for cutter_name, cutter in cutters.items():
+        for feed in feeds:
+            timed = trajectory_peers.timed(cutter, feed / 6e4, of_axes[:, 3], of_axes[:, 4])
+            for spacing in sorted({cutter.spacing(), 1e-5}, reverse=True):
+                states = timed.states(spacing)
+                rows, used = trajectory_peers.run(program, states, of_axes)
+                found = peers.judge(cutter, rows, of_axes[:, 3], of_axes[:, 4], states[:, 1])
+                yield row(cutter_name, feed, name, cutter.points(spacing)[1], found, trajectory_peers.goal_size(states),
+                          (None, 100 * used / peers.PERIOD, None))
+
+
 def origin(load):
     """Where the table is from, in a line."""
     version = subprocess.run(['dpkg-query', '-W', 'linuxcnc-uspace'], check=True, stdout=subprocess.PIPE,
@@ -120,11 +134,18 @@ def origin(load):
 def main():
     parser = argparse.ArgumentParser(prog='scripts/bench_peers', description=__doc__)
     parser.add_argument('--docs', action='store_true', help='write the table into docs/comparison.md')
+    parser.add_argument('--ruckig', metavar='DIR', type=pathlib.Path, help='also measure Ruckig, compiled from its sources in DIR')
+    parser.add_argument('--ros-controllers', metavar='DIR', type=pathlib.Path,
+                        help="also measure ros_control's joint trajectory controller, compiled from the sources of ros_controllers in DIR")
     arguments = parser.parse_args()
     of_axes = numpy.array(limits())
     try:
         head = origin(os.getloadavg()[0])
+        more = [by(folder) for by, folder in ((trajectory_peers.of_ros_controllers, arguments.ros_controllers),
+                                              (trajectory_peers.of_ruckig, arguments.ruckig)) if folder]
         found = [*measure_own(CUTTERS, FEEDS, of_axes), *measure_linuxcnc(CUTTERS, FEEDS, of_axes)]
+        for peer in more:
+            found += measure_trajectories(CUTTERS, FEEDS, of_axes, *peer)
     except (RuntimeError, subprocess.CalledProcessError) as error:
         sys.exit(str(error))
     table = [HEADER] + [found_row for name in CUTTERS for feed in FEEDS

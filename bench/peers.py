@@ -30,6 +30,14 @@ class Cutter:
         y = x * math.tan(self.cone)
         return numpy.column_stack((x, y, y * math.sin(self.rake), self.angle(x)))
 
+    def slopes(self, x):
+        """First and second derivatives of the rows by X."""
+        rise = math.tan(self.cone)
+        slope = self.k / (1 + self.b * x)
+        one, none = numpy.ones_like(x), numpy.zeros_like(x)
+        return (numpy.column_stack((one, rise * one, rise * math.sin(self.rake) * one, slope)),
+                numpy.column_stack((none, none, none, -self.b / (1 + self.b * x) * slope)))
+
     def edge(self):
         """Length of the edge for one of X."""
         return math.sqrt(1 + math.tan(self.cone)**2 + math.tan(self.spiral)**2)

@@ -21,6 +21,12 @@ std::string format(const char* pattern, ...) {
   return text;
 }
 
+std::string fixed(double value, int decimals) {
+  std::string text = format("%.*f", decimals, value);
+  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
 double parseNumber(const char* text, char** end) {
   const CLocale with_points;
   return std::strtod(text, end);

@@ -39,7 +39,8 @@ constexpr std::array<ShopUnit, kUnitCount> kShopUnits{{
 const ShopUnit& shopUnitOf(Unit unit) { return kShopUnits[static_cast<std::size_t>(unit)]; }
 
 std::string number(const Quantity& quantity, int digits) {
-  return format("%.*g", digits, quantity.si / shopScale(quantity.unit));
+  // A zero loses its sign.
+  return format("%.*g", digits, quantity.si / shopScale(quantity.unit) + 0.0);
 }
 
 }  // namespace

@@ -84,8 +84,9 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
   std::printf("axis  %12s  %12s  %12s\n", "offset", "machine", "work");
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    std::printf("%c     %12.4f  %12.4f  %12.4f %-4s", axisLetter(axis), toShop(axis, offsets.values[i]),
-                toShop(axis, state.position[i]), toShop(axis, state.work_position[i]), axis == kA ? "deg" : "mm");
+    const auto column = [&](double si) { return format("  %12s", fixed(toShop(axis, si), 4).c_str()); };
+    std::printf("%c   %s%s%s %-4s", axisLetter(axis), column(offsets.values[i]).c_str(),
+                column(state.position[i]).c_str(), column(state.work_position[i]).c_str(), axis == kA ? "deg" : "mm");
     const std::string basis = escaped(basisText(axis, all.axes[i]));
     if (offsets.set_at[i].isZero()) {
       std::printf("  %s\n", basis.c_str());

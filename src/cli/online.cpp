@@ -93,8 +93,11 @@ bool isNew() {
 void printLine(const char* name, const std::string& text) { std::printf("%-15s %s\n", name, escaped(text).c_str()); }
 
 void printPosition(const char* name, const boost::array<double, kAxisCount>& axes) {
-  std::printf("%-15s X %.3f, Y %.3f, Z %.3f mm, A %.3f deg\n", name, axes[kX] / units::kMillimetre,
-              axes[kY] / units::kMillimetre, axes[kZ] / units::kMillimetre, axes[kA] / units::kDegree);
+  const auto shown = [&](int axis) {
+    return fixed(axes[static_cast<std::size_t>(axis)] / shopScale(unitOf(axis, 0)), 3);
+  };
+  std::printf("%-15s X %s, Y %s, Z %s mm, A %s deg\n", name, shown(kX).c_str(), shown(kY).c_str(), shown(kZ).c_str(),
+              shown(kA).c_str());
 }
 
 std::string swivelText(const flute_grinder::GrinderState& state) {
@@ -343,7 +346,7 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   if (state.state == flute_grinder::GrinderState::FAULT) return fail(state.fault);
   const double there = settledPosition(client, axis);
   if (!std::isfinite(there)) return fail(kLinkLost);
-  std::printf("%c %.4f %s\n", axisLetter(axis), there / unit, rotary ? "deg" : "mm");
+  std::printf("%c %s %s\n", axisLetter(axis), fixed(there / unit, 4).c_str(), rotary ? "deg" : "mm");
   return std::abs(there - end) <= kJogTolerance ? 0 : fail("the jog was stopped before its end");
 }
 

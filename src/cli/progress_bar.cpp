@@ -1,5 +1,6 @@
 #include "cli/progress_bar.h"
 
+#include "cli/working.h"
 #include "flute_grinder/base/escaped.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
@@ -10,7 +11,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -21,12 +21,6 @@ namespace {
 constexpr std::size_t kMinBar = 12, kMaxBar = 32;  ///< width of the bar with its brackets
 constexpr std::size_t kAnyWidth = 1000;            ///< width of a line in a file
 constexpr const char* kSeparator = "  ";
-constexpr const char* kClearLine = "\r\x1b[K";
-
-bool isTerminal() {
-  const char* type = std::getenv("TERM");
-  return isatty(STDERR_FILENO) != 0 && type && *type && std::strcmp(type, "dumb") != 0;
-}
 
 /// Usable columns: a character in the last one would wrap the cursor to a new line.
 std::size_t terminalWidth() {

@@ -4,6 +4,7 @@
 #include "cli/json_output.h"
 #include "cli/recorded_run.h"
 #include "cli/tool_output.h"
+#include "cli/working.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/report/findings.h"
 #include "flute_grinder/tool/pass_removal.h"
@@ -63,11 +64,6 @@ std::string reasonWhyNot(const Action& action) {
   }
 }
 
-/// Prints what the user waits for: a report takes some ten seconds.
-void say(const char* what) {
-  if (::isatty(STDERR_FILENO) != 0) std::fprintf(stderr, "%s ...\n", what);
-}
-
 /// Measures the tool of a run.
 void measureTool(const RunStrokes& strokes, const std::string& place, ReportContext& context) {
   context.tool.emplace(measure(context.file + place, strokes, evenSections(*strokes.job(), kJudgedSections)));
@@ -94,7 +90,7 @@ void addRows(const std::string& path, const BagRun& run, const std::optional<Val
 
 /// The contents of a report on a job in a bag, with the points of its pictures if `draws`.
 Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& context) {
-  say("reading the bag");
+  const Working working("reading " + context.file + " and computing the ground tool");
   const BagRun run(path, job);
   std::optional<ValidJob> asked;
   if (run.job()) {
@@ -102,7 +98,6 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
   } else {
     context.no_tool = "the bag does not have the goal of " + run.place();
   }
-  say("computing the ground tool");
   RunFindings findings(run, asked, draws);
   addRows(path, run, asked, findings, context);
   Json document = findings.json(context);
@@ -112,9 +107,8 @@ Json documentOfBag(const std::string& path, int job, bool draws, ReportContext& 
 }
 
 Json documentOfRecord(const std::string& path, ReportContext& context) {
-  say("reading the records of the tool");
+  const Working working("reading the records of the tool and computing it");
   const ToolRecords tool(path);
-  say("computing the ground tool");
   context.no_tool = reasonWhyNot([&] { measureTool(tool.strokes(tool.last()), "", context); });
   return findingsOfTool(tool, context);
 }
@@ -132,7 +126,7 @@ Json documentOf(const std::string& path, const ReportOptions& options, bool draw
 int drawBy(std::vector<std::string> words, const std::string& document) {
   // Through a file, because a pipe could block.
   const auto input = temporaryFile(document);
-  say("drawing");
+  const Working working("drawing");
   words.insert(words.begin(), PYTHON_EXECUTABLE);
   const std::vector<char*> argv = pointersTo(words);
   posix_spawn_file_actions_t actions;

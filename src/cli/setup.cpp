@@ -2,6 +2,7 @@
 
 #include "cli/json_output.h"
 #include "cli/machine_file.h"
+#include "cli/working.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/check/planned_job.h"
 #include "flute_grinder/setup/setup_sheet.h"
@@ -80,6 +81,11 @@ std::string otherRefusals(const GrindJob& job, const MachineFiles& files) {
   return said;
 }
 
+auto solve(const JobToSetUp& asked, const Range& swivel) {
+  const Working working("looking for the set-up");
+  return solveJobSetup(asked.job, swivel, asked.wanted);
+}
+
 }  // namespace
 
 int runSetup(const SetupOptions& options) {
@@ -88,7 +94,7 @@ int runSetup(const SetupOptions& options) {
   const MachineFiles files = readMachineFiles({options.parameters}, options.urdf);
   const LoopConfig& config = files.config.loop;
   const Range swivel = config.machine.swivel;
-  const auto result = solveJobSetup(asked.job, swivel, asked.wanted);
+  const auto result = solve(asked, swivel);
   if (const auto* refusal = std::get_if<std::string>(&result)) {
     std::fprintf(stderr, "%s\n", refusal->c_str());
     return 1;

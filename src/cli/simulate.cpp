@@ -5,6 +5,7 @@
 #include "cli/recorded_run.h"
 #include "cli/report.h"
 #include "cli/tool_output.h"
+#include "cli/working.h"
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
@@ -58,6 +59,7 @@ std::vector<double> sectionsOf(const SimulateOptions& options, const GrindJob& j
 
 /// Writes the cutter as a solid, with the part of the shank into which the flutes run out and one diameter more.
 void writeStlFile(const GroundTool& tool, OutputFile& file) {
+  const Working working("computing the solid");
   const GrindJob& job = *tool.job;
   const SolidExtent extent{tool.end.blank_x, job.cutter.flute_length, job.cutter.shank_diameter,
                            groundTo(job) + job.cutter.shank_diameter};
@@ -103,6 +105,7 @@ Source sourceOf(const std::string& node, const SimulateOptions& options) {
 
 /// Measures the tool of a source. @throw std::invalid_argument if it cannot be ground, or does not belong to this job.
 GroundTool simulate(const Source& source, const std::vector<double>& at) {
+  const Working working("computing the ground tool");
   if (source.records) return measure(source.name, source.records->strokes(source.records->last()), at);
   const ValidJob job = withLaws(source.job);
   if (!source.bag) return measure(job, source.name, groundCutterOf(job), at);

@@ -5,6 +5,7 @@
 #include "cli/offsets.h"
 #include "cli/online.h"
 #include "cli/waiting.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/control/machine_config.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -35,7 +36,8 @@ void printZero(const Eigen::Vector3d& metres, bool json) {
   if (json) {
     print(Json{{"x_mm", zero.x()}, {"y_mm", zero.y()}, {"z_mm", zero.z()}});
   } else {
-    std::printf("%-20s X %.4f  Y %.4f  Z %.4f mm\n", "work zero", zero.x(), zero.y(), zero.z());
+    std::printf("%-20s X %s  Y %s  Z %s mm\n", "work zero", fixed(zero.x(), 4).c_str(), fixed(zero.y(), 4).c_str(),
+                fixed(zero.z(), 4).c_str());
   }
 }
 

@@ -72,9 +72,12 @@ RequestReply Answer::reply() const {
     case Refusal::kJogSpeed:
       text << "speed of " << axisName(axis) << " = " << speed(value) << "; allowed: above 0, up to " << speed(limit);
       break;
-    case Refusal::kAtLimit: text << axisName(axis) << " is at " << position(limit) << ", the end of its travel"; break;
+    case Refusal::kAtLimit:
+      text << axisName(axis) << " is at machine position " << position(limit) << ", the end of its travel";
+      break;
     case Refusal::kOutside:
-      text << axisName(axis) << " is at " << position(value) << ", outside its limit " << position(limit);
+      text << axisName(axis) << " is at machine position " << position(value) << ", outside its limit "
+           << position(limit);
       break;
     case Refusal::kJogging: text << "an axis is being jogged; wait until it rests"; break;
     case Refusal::kJobOver: text << "the job has reached the end of its path; resume it first"; break;

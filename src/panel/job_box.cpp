@@ -3,6 +3,7 @@
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/job/tool_text.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "flute_grinder/messages/continue_job.h"
 #include "flute_grinder/messages/conversions.h"
@@ -142,6 +143,7 @@ void JobBox::readAnew() {
   continue_->setChecked(false);
   discardPlan();
   if (!file_.isEmpty()) read();
+  if (job_) discardPlan();
 }
 
 std::string JobBox::operation() const {
@@ -198,6 +200,7 @@ QString JobBox::withoutPlan() const {
   QString text = file_.isEmpty()           ? "Open a job file first."
                  : operation_->isMissing() ? "Choose the operation first."
                                            : "Not planned yet.";
+  if (job_) text += "\n" + QString::fromStdString(toolText(job_->cutter, job_->tooth_angles.size())) + ".";
   if (!journal_error_.empty()) text += "\nThere is no journal: " + QString::fromStdString(journal_error_) + ".";
   if (!isUnfinished(progress_) || job_runs_) return text;
   return text +

@@ -1,5 +1,6 @@
 #include "panel/number_box.h"
 
+#include "flute_grinder/base/format.h"
 #include "panel/text_view.h"
 
 #include <QHelpEvent>
@@ -58,8 +59,7 @@ double NumberBox::valueFromText(const QString& text) const { return number(text)
 
 QString NumberBox::textFromValue(double value) const {
   static const QRegularExpression zeros("\\.?0*$");
-  const QString text = QString::number(value, 'f', decimals()).remove(zeros);
-  return text == "-0" ? "0" : text;
+  return QString::fromStdString(fixed(value, decimals())).remove(zeros);
 }
 
 void NumberBox::fixup(QString& /*text*/) const {}

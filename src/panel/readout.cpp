@@ -1,5 +1,6 @@
 #include "panel/readout.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
@@ -45,7 +46,8 @@ constexpr int kFewestDecimals = 3, kMaxDecimals = 4;
 /// A distance to go in mm or deg, short enough for four in a line. @param to_go [m], A [rad].
 QString toGoText(int axis, double to_go) {
   const double shown = to_go / (axis == kA ? kDegree : kMillimetre);
-  return QString("%1 %2").arg(axisLetter(axis)).arg(shown, 0, 'f', std::abs(shown) < 99.9995 ? kFewestDecimals : 1);
+  const int decimals = std::abs(shown) < 99.9995 ? kFewestDecimals : 1;
+  return QString("%1 %2").arg(axisLetter(axis)).arg(QString::fromStdString(fixed(shown, decimals)));
 }
 
 /// A feed in mm/min with three digits, so that the feed of a small tool shows too. @param feed [m/s].
@@ -241,7 +243,7 @@ void PositionBox::show(const GrinderView& view) {
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const char* unit = axis == kA ? "deg" : "mm";
     const auto shown = [&](double si) {
-      return std::isfinite(si) ? QString::number(si / (axis == kA ? kDegree : kMillimetre), 'f', decimals_)
+      return std::isfinite(si) ? QString::fromStdString(fixed(si / (axis == kA ? kDegree : kMillimetre), decimals_))
                                : QString("-");
     };
     QLabel& label = *values_[static_cast<std::size_t>(axis)];

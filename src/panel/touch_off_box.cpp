@@ -1,5 +1,6 @@
 #include "panel/touch_off_box.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/quantity.h"
 #include "flute_grinder/machine/offset_fit.h"
 #include "flute_grinder/messages/offset_basis.h"
@@ -142,7 +143,7 @@ QString TouchOffBox::offsetText(const GrinderView& view) const {
   if (!std::isfinite(value)) return QString("Work offset of %1 is unknown: %2").arg(axis_->currentText(), error);
   QString text = QString("Work offset of %1: %2 %3, ")
                      .arg(axis_->currentText())
-                     .arg(value / scaleOf(axis()), 0, 'f', kDecimals)
+                     .arg(QString::fromStdString(fixed(value / scaleOf(axis()), kDecimals)))
                      .arg(unitName(axis()));
   const ros::Time& at = view.offsets->set_at[i];
   if (at.isZero()) return text + "never set";

@@ -291,7 +291,26 @@ class TestGoal(CommandLine):
 
 
 class TestOutput(CommandLine):
-    """What is written and printed: into files, onto a disk that is full, and into a pipe that nobody reads."""
+    """What is written and printed: into files, onto a terminal, onto a disk that is full, and into a pipe that nobody reads."""
+
+    def shown(self, kind, *arguments):
+        """What a command draws on a terminal of this kind."""
+        reader, writer = pty.openpty()
+        self.addCleanup(os.close, reader)
+        done = subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, TERM=kind), stdout=subprocess.DEVNULL,
+                              stderr=writer, timeout=gc.PATIENCE)
+        os.write(writer, b'.')
+        os.close(writer)
+        self.assertEqual(done.returncode, 0)
+        return os.read(reader, 10000).decode()[:-1]
+
+    def test_terminal_shows_what_takes_long_and_then_nothing_of_it(self):
+        simulate = 'simulate', PAPER_JOB, '--stl', self.path('tool.stl')
+        shown = self.shown('xterm', *simulate)
+        for what in ('computing the ground tool ...', 'computing the solid ...'):
+            self.assertIn('\r\x1b[K' + what, shown)
+        self.assertTrue(shown.endswith('\r\x1b[K'), shown)
+        self.assertEqual(self.shown('dumb', *simulate), '')
 
     def test_no_file_that_a_command_reads_is_written(self):
         job, table = self.job_with_wheel(), self.path('table.csv')

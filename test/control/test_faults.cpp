@@ -329,8 +329,8 @@ TEST(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAreAndEndsTheJobWithoutPower
   using L = AxisLimits;
   using Q = LimitedQuantity;
   const LimitCase rows[]{
-      {&L::max_position, kX, 0.01, Q::kPosition, "axis X position 10.", "limit 10 mm", "(stroke,"},
-      {&L::min_position, kY, 0.02125, Q::kPosition, "axis Y position 21.", "limit 21.25 mm", "(approach,"},
+      {&L::max_position, kX, 0.01, Q::kPosition, "axis X machine position 10.", "limit 10 mm", "(stroke,"},
+      {&L::min_position, kY, 0.02125, Q::kPosition, "axis Y machine position 21.", "limit 21.25 mm", "(approach,"},
       {&L::max_velocity, kX, 0.05, Q::kVelocity, "axis X velocity 50.", "limit 50 mm/s", "(position,"},
       {&L::max_acceleration, kX, 0.21, Q::kAcceleration, "axis X acceleration 2", "limit 210 mm/s^2", "(position,"},
       {&L::max_jerk, kY, 3, Q::kJerk, "axis Y jerk", "limit 3000 mm/s^3", "(approach,"}};

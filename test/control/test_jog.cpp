@@ -281,7 +281,8 @@ TEST(Jog, FromOutsideTheLimitsIsRefused) {
   Rig<FakeDrive> rig;
   rig.drive.position[kZ] = -0.051;
   rig.enable();
-  EXPECT_EQ(rig.jog(step(kX, 0.001)).text, "jog refused: axis Z is at -51 mm, outside its limit -50 mm");
+  EXPECT_EQ(rig.jog(step(kX, 0.001)).text,
+            "jog refused: axis Z is at machine position -51 mm, outside its limit -50 mm");
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
@@ -342,7 +343,8 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
   RigIn rig(S::kRetracted);
   const double clear = rig.loop->status().wheel.clear_y;
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
-  EXPECT_EQ(rig.jog(on(kY, -0.01)).text, "jog refused: axis Y is at 8.23708 mm, the end of its travel");
+  EXPECT_EQ(rig.jog(on(kY, -0.01)).text,
+            "jog refused: axis Y is at machine position 8.23708 mm, the end of its travel");
   EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to 8.23608 mm");
   release(rig);
   ASSERT_TRUE(rig.jog(step(kY, 0.01)).accepted);

@@ -51,4 +51,4 @@ class TestClient(CommandLine):
         self.assertTrue([line for line in shown if re.fullmatch(r'running, tooth [12], pass 1: \d+ %', line)], done.stdout)
         done = self.run_client(gc.job_file(self.path('long.yaml'), flute_length_mm=400))
         self.assertEqual(done.returncode, 1, done.stderr)
-        self.assertIn('axis X position 401 mm is 101 mm beyond its limit', done.stdout.splitlines()[-1])
+        self.assertIn('axis X machine position 401 mm is 101 mm beyond its limit', done.stdout.splitlines()[-1])

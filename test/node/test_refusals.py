@@ -22,7 +22,7 @@ CASES = [
      [r'cutter\.rake_angle_deg = 8 deg: tooth 1 is ground with -?[\d.]+ deg at X = [\d.]+ mm; allowed: within 0\.5 deg']),
     ('first_tooth', {}, {'first_tooth': 1, 'dry_run': True}, 'INVALID_GOAL', [r'first_tooth = 1.*allowed: 0 to 0']),
     ('flute_beyond_the_end_of_x', {'cutter.flute_length': 400 * MM}, {}, 'LIMIT_VIOLATED',
-     [r'axis X position 401 mm is 101 mm beyond its limit 300 mm \(stroke, tooth 1, pass 1, X = 401 mm\)']),
+     [r'axis X machine position 401 mm is 101 mm beyond its limit 300 mm \(stroke, tooth 1, pass 1, X = 401 mm\)']),
     ('clearance_above_the_park_position', {'process.clearance': 60 * MM}, {}, 'INVALID_GOAL',
      [r'park position axis Y = 50 mm; allowed for this job: at least 62\.7']),
 ]

@@ -434,7 +434,7 @@ TEST_F(OnStage, WhatAPlanSaysIsShown) {
   WAIT_FOR(report() == good);
   panel.picture("planned_with_passes");
   const std::vector<std::string> reasons{
-      "axis X position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
+      "axis X machine position 301 mm is 1 mm beyond its limit 300 mm (stroke, tooth 1, pass 2, X = 301 mm)",
       "process.feed_mm_min = 60000 mm/min; allowed: 0.1 to 10000 mm/min"};
   stage.change([&] {
     stage.planned.plan.valid = 0;
@@ -504,7 +504,9 @@ TEST_F(OnStage, WhereTheSwivelStandsIsAlwaysSeen) {
 
 TEST_F(OnStage, AnotherJobThanTheOneThatWasLeftIsStartedOnlyWhereThatIsDiscarded) {
   publish([&] { stage.state.journal_error = "journal /j: its checksum is wrong", stage.state.journal_damaged = 1; });
-  EXPECT_EQ(panel.text("plan_report"), "Not planned yet.\nThere is no journal: journal /j: its checksum is wrong.");
+  EXPECT_EQ(panel.text("plan_report"),
+            "Not planned yet.\nD 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth.\nThere is no journal: journal "
+            "/j: its checksum is wrong.");
   const QTemporaryDir folder;
   stage.leave(changedJob(kPaper, folder.filePath("published.yaml"), {{"spark_out: 0", "spark_out: 1"}}));
   publish([&] { stage.state.journal_error = "", stage.state.journal_damaged = 0; });
@@ -535,7 +537,10 @@ TEST_F(OnStage, AJobThatWasLeftIsNamedItsFileTakenByAClickAndContinuedWhereItWas
   EXPECT_EQ(panel.label("job_file"), "paper.yaml");
   WAIT_FOR(go_on.text() == "Continue at tooth 2, pass 3");
   EXPECT_TRUE(go_on.isChecked());
-  EXPECT_EQ(panel.text("plan_report").find("Not planned yet.\nNot finished: paper.yaml"), 0U);
+  EXPECT_EQ(
+      panel.text("plan_report")
+          .find("Not planned yet.\nD 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 1 tooth.\nNot finished: paper.yaml"),
+      0U);
   panel.plan();
   panel.click("start");
   WAIT_FOR(goals().size() == 1);

@@ -333,7 +333,7 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
     EXPECT_LT(std::abs((ros::Time::now() - jog.header.stamp).toSec()), 60);
   }
   EXPECT_EQ(panel.text("messages"), "");
-  stage.refuseJog("jog refused: axis Y is at -20 mm, the end of its travel");
+  stage.refuseJog("jog refused: axis Y is at machine position -20 mm, the end of its travel");
   WAIT_FOR(panel.says("messages", "Jog refused: axis Y is at -20 mm"));
   QTest::mouseRelease(&panel.the<QPushButton>("jog_y_minus"), Qt::LeftButton);
   expectStopped();

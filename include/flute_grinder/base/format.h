@@ -8,6 +8,9 @@ namespace grinder {
 /// Text as by std::printf, of any length, with a decimal point in any locale.
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
+/// A number with some decimals; one that rounds to zero has no sign.
+std::string fixed(double value, int decimals);
+
 /// The number at the start of a text, as by std::strtod, with a decimal point in any locale.
 /// @param end end of the number; the start of the text if there is no number.
 double parseNumber(const char* text, char** end = nullptr);

@@ -87,7 +87,7 @@ inline constexpr ReasonRow kReasonKinds[]{
     {{ReasonKind::kTooLong, "too_long"}},
     {{ReasonKind::kGivenUp, "given_up"}, "given up while it was planned"},
     {{ReasonKind::kOther, "other"}, "{detail}"},
-    {{ReasonKind::kPosition, "position"}, "{axis} position {excess}"},
+    {{ReasonKind::kPosition, "position"}, "{axis} machine position {excess}"},
     {{ReasonKind::kVelocity, "velocity"}, "{axis} velocity {excess}"},
     {{ReasonKind::kAcceleration, "acceleration"}, "{axis} acceleration {excess}"},
     {{ReasonKind::kJerk, "jerk"}, "{axis} jerk {excess}"},

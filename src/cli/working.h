@@ -1,0 +1,27 @@
+#pragma once
+
+#include <future>
+#include <string>
+#include <thread>
+
+namespace grinder {
+
+/// Whether stderr is a terminal on which a line can be drawn again.
+bool isTerminal();
+
+/// Goes to the beginning of a terminal's line and clears it.
+constexpr const char* kClearLine = "\r\x1b[K";
+
+/// Says on stderr what the user waits for, and after a second for how long already; the line goes when the work is
+/// done. Says nothing in a file, a pipe or on a dumb terminal.
+class Working {
+ public:
+  explicit Working(std::string what);
+  ~Working();
+
+ private:
+  std::promise<void> done_;
+  std::thread shows_;
+};
+
+}  // namespace grinder

@@ -277,21 +277,6 @@ TEST(PassDepths, AreThoseByHand) {
   }
 }
 
-TEST(ValidJob, RefusesAnInvalidJobWithAllReasons) {
-  GrindJob job = paperJob();
-  job.cutter.end_diameter = -1;
-  job.process().feed = std::numeric_limits<double>::quiet_NaN();
-  try {
-    const ValidJob valid(job);
-    FAIL();
-  } catch (const InvalidJob& invalid) {
-    ASSERT_EQ(invalid.reasons().size(), 2u);
-    EXPECT_EQ(invalid.reasons()[0].field, "cutter.end_diameter");
-    EXPECT_EQ(invalid.reasons()[1].field, "process.feed");
-    EXPECT_STREQ(invalid.what(), text(invalid.reasons()).c_str());
-  }
-}
-
 TEST(ValidJob, HasThePlaceDepthAndWearOfEveryPassInOrder) {
   GrindJob job = paperJob();
   job.tooth_angles = {0, 1, 3};

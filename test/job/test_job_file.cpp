@@ -206,26 +206,6 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
   }
 }
 
-TEST(JobFile, ReportsAllOfSeveralErrors) {
-  const std::string cut = kGoodJob.substr(0, kGoodJob.find("interpolation:"));
-  const struct {
-    std::string text;
-    std::vector<const char*> messages;  ///< as for hasLine()
-  } rows[]{
-      {with("depth_mm: 1.5", "depth_mm: deep", with("pass_major", "any")) + "extra: 1\n",
-       {"job.yaml:18 ... process.depth_mm ... deep", "job.yaml:24 ... process.order ... any", "job.yaml:39 ... extra"}},
-      {with("depth_mm: 1.5", "depth_mm: 51", with("feed_mm_min: 200", "feed_mm_min: 0")),
-       {"job.yaml:18 ... process.depth_mm ... 51 mm", "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"}},
-      {cut + "interpolation: exact\n",
-       {"job.yaml:35 ... interpolation", "interpolation.tolerance_um ... missing",
-        "interpolation.rotary_scale_mm_per_rad ... missing", "interpolation.even_step ... missing"}}};
-  for (const auto& row : rows) {
-    const std::string error = errorOf(row.text);
-    EXPECT_EQ(linesOf(error), static_cast<std::ptrdiff_t>(row.messages.size())) << error;
-    for (const char* message : row.messages) EXPECT_TRUE(hasLine(error, message)) << message << "\ngot: " << error;
-  }
-}
-
 TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
   const struct {
     std::string text;

@@ -162,13 +162,6 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
   }
 }
 
-TEST_F(WheelOfAJob, CanBeFound) {
-  const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
-  write("wheels/wheel.yaml", kWheel);
-  EXPECT_EQ(openJobFile(named).wheel_path, folder_ + "/jobs/../wheels/wheel.yaml");
-  EXPECT_EQ(openJobFile("test/jobs/paper.yaml").wheel_path, "");
-}
-
 TEST_F(WheelOfAJob, StandsAloneInTheJob) {
   write("wheels/wheel.yaml", kWheel);
   for (const char* key : {"diameter_mm: 100", "width_mm: 8", "profile: straight", "wear_mm: 0", "angle_deg: 20",

@@ -260,6 +260,29 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
   }
 }
 
+/// X reaches its full feed by a parabola of the rate, whose jerk is a quarter of what X or A may have.
+TEST(FeedSchedule, BlendsIntoTheFullFeedWithAQuarterOfTheJerk) {
+  constexpr double kJerk = 20;
+  for (const int axis : {kX, kA}) {
+    SCOPED_TRACE(axis);
+    Machine machine = boundless();
+    machine.limits.max_velocity[kA] = 5;
+    const FeedSchedule free(ConicalCutter(thinCutter()), plainStroke(), machine);
+    const double end = free.feedLimits().back().to_x;
+    const double turn = std::abs(static_cast<double>(ReferenceCurve(thinCutter()).slope(end)));
+    machine.limits.max_jerk[axis] = kJerk * (axis == kA ? turn : 1);
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+    ASSERT_EQ(causesOf(schedule.feedLimits()), "axis A velocity");
+    double full = 0;
+    for (double step = schedule.length() / 2; step > 1e-15; step /= 2) {
+      if (schedule.x(full + step) < schedule.feedLimits().back().to_x) full += step;
+    }
+    const double before = 1e-6, v = schedule.limits().velocity;
+    const double jerk = 2 * (1 - schedule.rate(full - before)) / (before * before) * v * v * v;
+    EXPECT_NEAR(jerk, kJerk / 4, 0.01 * kJerk);
+  }
+}
+
 TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
   // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
   // and as much as X where the radius is v tan S / 5 rad/s.

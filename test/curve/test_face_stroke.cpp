@@ -213,19 +213,26 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
       const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? kGap : 0};
       const FaceStroke stroke = endStroke(end, normal, through, wheel, kGap, 1 * kMillimetre);
       tool.grind(stroke, tooth * pitch, right ? 60 : 1);
-      if (!passes) continue;
-      // Of the face, whose plane meets the axis at the edge's end.
       const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
-      const Vector3d face = centre - wheel.width / 2 * upperFaceNormal(stroke.swivel);
+      const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
+      // Of the face, whose plane meets the axis at the edge's end.
       const double off = (Vector3d(radius * std::tan(dish), 0, 0) - face).norm();
-      EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
-      if (!right) continue;  // of a cup, the corner may be nearer to the rim
-      // The beginning of the short edge, or what is under it on the plane, is the gap outside the rim.
-      const Vector3d spindle = upperFaceNormal(stroke.swivel);
-      Vector3d begin = turned({(radius - from) * std::tan(dish), from, 0}, flankPose(normal, cut).tooth + pitch, cut);
-      const double beside = (begin - face).cross(spindle).norm();
-      begin[0] -= (begin - face).dot(spindle) / spindle[0];
-      EXPECT_NEAR(std::min(beside, (begin - face).cross(spindle).norm()), wheel.radius + kGap, 1e-9);
+      if (passes) {
+        EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
+      }
+      // The next edge, and what is under it on the plane, are outside a rim, or within a cup's.
+      double nearest = right ? 1 : 0;
+      for (int k = 0; k <= 500; ++k) {
+        const double begin = passes ? from : 0, r = begin + (radius - begin) * k / 500;
+        const double turn = flankPose(normal, cut).tooth + hand * pitch;
+        Vector3d place = turned({(radius - r) * std::tan(dish), r, 0}, turn, cut);
+        for (int under = 0; under < 2; ++under) {
+          const double beside = (place - face).cross(spindle).norm();
+          nearest = right ? std::min(nearest, beside) : std::max(nearest, beside);
+          place[0] -= (place - face).dot(spindle) / spindle[0];
+        }
+      }
+      EXPECT_NEAR(nearest, right ? wheel.radius + kGap : wheel.inner_radius - kGap, 1e-7);
     }
     const double behind = hand * 1e-6, slope = std::tan(dish);
     for (int tooth = 0; tooth < teeth; ++tooth) {

@@ -25,14 +25,6 @@ std::vector<Setpoint> all(AxisMove& move) {
   return setpoints;
 }
 
-TEST(AxisMove, RefusesAMachineWithoutLimitsOfAnAxis) {
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    Machine machine = plainMachine();
-    machine.limits.max_jerk[axis] = 0;
-    EXPECT_THROW(AxisMove{machine}, std::invalid_argument) << axis;
-  }
-}
-
 class AxisMoveAlong : public ::testing::TestWithParam<std::tuple<int, int>> {};
 
 TEST_P(AxisMoveAlong, GoesStraightExactlyToItsEnd) {

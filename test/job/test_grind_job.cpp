@@ -152,48 +152,35 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
       {[](GrindJob& j) { j.process().z_law = static_cast<ZLaw>(2); }, "process.z_law = 2; allowed: 0 to 1"},
       {[](GrindJob& j) { j.interpolation.even_step = static_cast<EvenStepRule>(3); },
        "interpolation.even_step = 3; allowed: 0 to 2"},
-      {[](GrindJob& j) {
-         points(j, {{0, 50}});
-       },
-       "process.wheel.points_mm = 1; allowed: 2 to 100"},
-      {[](GrindJob& j) { points(j, std::vector<std::pair<double, double>>(101)); },
-       "process.wheel.points_mm = 101; allowed: 2 to 100"},
-      {[](GrindJob& j) {
-         points(j, {{-4, 50}, {4, 0.0499}});
-       },
-       "process.wheel.points_mm = 0.0499 mm; allowed: 0.05 to 250 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-4, 50}, {0, kNan}, {4, 50}});
-       },
-       "process.wheel.points_mm = nan mm; allowed: 0.05 to 250 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-3.9995, 50}, {4.0005, 50}});
-       },
-       "process.wheel.points_mm = -3.9995 mm; allowed: the middle of the width at 0, so -4.0005 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-4.0005, 50}, {3.9995, 50}});
-       },
-       "process.wheel.points_mm = -4.0005 mm; allowed: the middle of the width at 0, so -3.9995 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-4, 50.0005}, {4, 49}});
-       },
-       "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 100.001 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-4, 49}, {4, 49.9995}});
-       },
-       "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 99.999 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-4.0005, 50}, {4.0005, 50}});
-       },
-       "process.wheel.width_mm = 8 mm; allowed: that of its points, 8.001 mm"},
-      {[](GrindJob& j) {
-         points(j, {{-3.9995, 50}, {3.9995, 50}});
-       },
-       "process.wheel.width_mm = 8 mm; allowed: that of its points, 7.999 mm"},
   };
   for (const auto& row : rows) {
     GrindJob job = paperJob();
     row.change(job);
+    EXPECT_EQ(text(validate(job)), row.reason);
+  }
+}
+
+TEST(GrindJob, NamesWhatIsWrongWithThePointsOfAWheel) {
+  const struct {
+    std::vector<std::pair<double, double>> mm;
+    const char* reason;
+  } rows[]{
+      {{{0, 50}}, "process.wheel.points_mm = 1; allowed: 2 to 100"},
+      {std::vector<std::pair<double, double>>(101), "process.wheel.points_mm = 101; allowed: 2 to 100"},
+      {{{-4, 50}, {4, 0.0499}}, "process.wheel.points_mm = 0.0499 mm; allowed: 0.05 to 250 mm"},
+      {{{-4, 50}, {0, kNan}, {4, 50}}, "process.wheel.points_mm = nan mm; allowed: 0.05 to 250 mm"},
+      {{{-3.9995, 50}, {4.0005, 50}},
+       "process.wheel.points_mm = -3.9995 mm; allowed: the middle of the width at 0, so -4.0005 mm"},
+      {{{-4.0005, 50}, {3.9995, 50}},
+       "process.wheel.points_mm = -4.0005 mm; allowed: the middle of the width at 0, so -3.9995 mm"},
+      {{{-4, 50.0005}, {4, 49}}, "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 100.001 mm"},
+      {{{-4, 49}, {4, 49.9995}}, "process.wheel.diameter_mm = 100 mm; allowed: that of its points, 99.999 mm"},
+      {{{-4.0005, 50}, {4.0005, 50}}, "process.wheel.width_mm = 8 mm; allowed: that of its points, 8.001 mm"},
+      {{{-3.9995, 50}, {3.9995, 50}}, "process.wheel.width_mm = 8 mm; allowed: that of its points, 7.999 mm"},
+  };
+  for (const auto& row : rows) {
+    GrindJob job = paperJob();
+    points(job, row.mm);
     EXPECT_EQ(text(validate(job)), row.reason);
   }
 }

@@ -154,24 +154,6 @@ TEST(SCurveProfile, BeginsWithGoodArgumentsOnly) {
   EXPECT_EQ(law.position(), 5);
 }
 
-TEST(SCurveProfile, ARefusedTargetChangesNothing) {
-  for (const double bad : {kNan, -1e-9, 2.0000001, kInf, -kInf}) {
-    SCOPED_TRACE(bad);
-    SCurveProfile law({2, 1, 1}, 10, 2);
-    SCurveProfile untouched({2, 1, 1}, 10, 2);
-    for (int i = 0; i < 90; ++i) {
-      EXPECT_FALSE(law.setTarget(bad));
-      law.advance(0.1);
-      untouched.advance(0.1);
-      ASSERT_EQ(law.position(), untouched.position());
-      ASSERT_EQ(law.speed(), untouched.speed());
-      ASSERT_EQ(law.target(), 2);
-      ASSERT_EQ(law.timeLeft(), untouched.timeLeft());
-    }
-    EXPECT_TRUE(law.finished());
-  }
-}
-
 /// One motion for each of the double-S law's four cases: velocity, and acceleration, reached or not.
 RC_GTEST_PROP(SCurveProfileProperty, TakesTheDoubleSTimeInEachOfTheFourCases, ()) {
   const double a = *logUniform(0.01, 10);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 // That a jog keeps the limits at any speeds, and slowed down at any moment, the rides show.

@@ -44,24 +44,6 @@ RC_GTEST_PROP(ConicalCutterProperty, FollowsThePapersEquations, ()) {
   RC_ASSERT(std::abs(cutter.zPerY() - z_per_y) <= 4 * kEps * std::abs(z_per_y));
 }
 
-RC_GTEST_PROP(ConicalCutterProperty, EdgePerTravelIsTheLengthOfTheCurveInSpace, ()) {
-  const Cone g = *test_support::cone();
-  const ConicalCutter cutter(g);
-  // The edge at X: R(X) (cos A, sin A) about the axis; its length over a short piece of the axis, by Simpson-free
-  // chords.
-  const test_support::ReferenceCurve curve(g);
-  const Real x = *uniform(0, g.flute_length);
-  const Real h = g.flute_length * Real(1e-6) * std::min<Real>(1, curve.u(x));
-  const auto radius = [&](Real at) { return Real(g.end_diameter) / 2 + at * std::tan(Real(g.cone_angle)); };
-  const Real turn = curve.delta(x - h, 2 * h);
-  const Real r0 = radius(x - h);
-  const Real r1 = radius(x + h);
-  // The chord, split along, radially and around; sin(turn / 2) of the law of cosines does not cancel.
-  const Real around = 2 * std::sqrt(r0 * r1) * std::sin(turn / 2);
-  const Real chord = std::sqrt(4 * h * h + (r1 - r0) * (r1 - r0) + around * around);
-  RC_ASSERT(std::abs(cutter.edgePerTravel() - chord / (2 * h)) <= Real(1e-6));
-}
-
 RC_GTEST_PROP(ConicalCutterProperty, HelixStandsToTheGeneratrixAtItsAngle, ()) {
   const Cone g = *test_support::cone();
   const Real angle = std::atan(std::tan(Real(g.spiral_angle)) * std::cos(Real(g.cone_angle)));

@@ -50,47 +50,6 @@ TEST(FaceStroke, LaysAnyFlankOnTheLowerFace) {
   }
 }
 
-TEST(FaceStroke, LaysAnyEndToothOnTheWheel) {
-  auto between = test_support::numbers(7);
-  for (int i = 0; i < 10000; ++i) {
-    const double clearance = between(0.1, 45) * kDegree, dish = between(0, 10) * kDegree;
-    const double rake = between(-20, 30) * kDegree;
-    const OnTooth edge(-std::tan(dish), 1, 0);
-    const OnTooth flank = endNormal(clearance, dish), face = gashNormal(rake, dish);
-    EXPECT_NEAR(flank.dot(edge), 0, 1e-12);
-    EXPECT_NEAR(flank.dot(OnTooth(std::tan(clearance), 0, 1)), 0, 1e-12);
-    EXPECT_LT(flank[0], 0);
-    EXPECT_NEAR(face.dot(edge), 0, 1e-12);
-    EXPECT_NEAR(face.dot(OnTooth(1, 0, std::tan(rake))), 0, 1e-12);
-    EXPECT_LT(face[2], 0);
-    for (const CutDirection cut : kHands) {
-      const FacePose end = flankPose(flank, cut), gash = gashPose(face, cut);
-      EXPECT_NEAR((turned(flank, end.tooth, cut) - upperFaceNormal(end.swivel)).norm(), 0, 1e-12);
-      const double hand = cut == CutDirection::kRightHand ? 1 : -1;
-      EXPECT_NEAR((turned(face, gash.tooth, cut) + hand * upperFaceNormal(gash.swivel)).norm(), 0, 1e-12);
-    }
-  }
-}
-
-TEST(FaceStroke, HasTheSetUpsOfTheTrade) {
-  struct Row {
-    OnTooth normal;
-    double swivel, tooth;
-  };
-  const auto end = [](double clearance, double dish) { return endNormal(clearance * kDegree, dish * kDegree); };
-  for (const auto& [normal, swivel, tooth] :
-       {Row{end(8, 2), 81.76, -13.95}, Row{end(18, 2), 71.90, -6.13}, Row{end(6, 0), 84.00, 0},
-        Row{flankNormal(45 * kDegree, 10 * kDegree), 44.14, 76.00},
-        Row{flankNormal(59 * kDegree, 12 * kDegree), 30.25, 76.07}}) {
-    const FacePose right = flankPose(normal, CutDirection::kRightHand);
-    const FacePose left = flankPose(normal, CutDirection::kLeftHand);
-    EXPECT_NEAR(right.swivel / kDegree, swivel, 0.005);
-    EXPECT_NEAR(right.tooth / kDegree, tooth, 0.005);
-    EXPECT_EQ(left.swivel, right.swivel);
-    EXPECT_NEAR(left.tooth / kDegree, 180 - tooth, 0.005);
-  }
-}
-
 /// A tool of which strokes take away what the wheel covers anywhere on their way: nothing but the axes' figures and the
 /// wheel's.
 class BruteForce {
@@ -168,7 +127,8 @@ MeasuredEnd measured(const End& end) {
   const double radius = end.diameter / 2 * kMillimetre;
   const EndTooth tooth{radius, 2 * kPi / end.teeth, end.cut};
   const OnTooth normal = endNormal(end.clearance * kDegree, end.dish * kDegree);
-  const OnTooth through(0, radius, 0);
+  // Any place of the plane gives the same stroke.
+  const OnTooth through = OnTooth(0, radius, 0) + normal.cross(OnTooth(0.1, 0.7, -0.4)) * radius;
   const double clear = 1 * kMillimetre;
   const FaceStroke stroke = endStroke(tooth, normal, through, wheel, kGap, clear);
   BruteForce tool(wheel, radius, true);
@@ -190,7 +150,10 @@ MeasuredEnd measured(const End& end) {
   // It begins clear of the blank, and the stock that is left is normal to the flank.
   BruteForce begin(wheel, radius, true);
   begin.grind({stroke.swivel, stroke.from, stroke.from, stroke.per_stock}, 0, 1);
-  for (double angle = 0; angle < 6.28; angle += 0.1) EXPECT_LE(begin.top(radius, angle), -clear);
+  double highest = -1;
+  for (double angle = 0; angle < 6.28; angle += 0.1) highest = std::max(highest, begin.top(radius, angle));
+  EXPECT_LE(highest, -clear);
+  EXPECT_GE(highest, right ? -1 : -clear - 2 * radius / std::tan(stroke.swivel)) << "no farther than a cup needs";
   EXPECT_NEAR(stroke.per_stock[kX] * std::sin(stroke.swivel), -1, 1e-12);
   return found;
 }
@@ -250,19 +213,26 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
       const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? kGap : 0};
       const FaceStroke stroke = endStroke(end, normal, through, wheel, kGap, 1 * kMillimetre);
       tool.grind(stroke, tooth * pitch, right ? 60 : 1);
-      if (!passes) continue;
-      // Of the face, whose plane meets the axis at the edge's end.
       const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
-      const Vector3d face = centre - wheel.width / 2 * upperFaceNormal(stroke.swivel);
+      const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
+      // Of the face, whose plane meets the axis at the edge's end.
       const double off = (Vector3d(radius * std::tan(dish), 0, 0) - face).norm();
-      EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
-      if (!right) continue;  // of a cup, the corner may be nearer to the rim
-      // The beginning of the short edge, or what is under it on the plane, is the gap outside the rim.
-      const Vector3d spindle = upperFaceNormal(stroke.swivel);
-      Vector3d begin = turned({(radius - from) * std::tan(dish), from, 0}, flankPose(normal, cut).tooth + pitch, cut);
-      const double beside = (begin - face).cross(spindle).norm();
-      begin[0] -= (begin - face).dot(spindle) / spindle[0];
-      EXPECT_NEAR(std::min(beside, (begin - face).cross(spindle).norm()), wheel.radius + kGap, 1e-9);
+      if (passes) {
+        EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
+      }
+      // The next edge, and what is under it on the plane, are outside a rim, or within a cup's.
+      double nearest = right ? 1 : 0;
+      for (int k = 0; k <= 500; ++k) {
+        const double begin = passes ? from : 0, r = begin + (radius - begin) * k / 500;
+        const double turn = flankPose(normal, cut).tooth + hand * pitch;
+        Vector3d place = turned({(radius - r) * std::tan(dish), r, 0}, turn, cut);
+        for (int under = 0; under < 2; ++under) {
+          const double beside = (place - face).cross(spindle).norm();
+          nearest = right ? std::min(nearest, beside) : std::max(nearest, beside);
+          place[0] -= (place - face).dot(spindle) / spindle[0];
+        }
+      }
+      EXPECT_NEAR(nearest, right ? wheel.radius + kGap : wheel.inner_radius - kGap, 1e-7);
     }
     const double behind = hand * 1e-6, slope = std::tan(dish);
     for (int tooth = 0; tooth < teeth; ++tooth) {
@@ -274,7 +244,46 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
   }
 }
 
-/// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
+/// The face lies in the chamfer's plane, its rim a gap below all that a blank has of it, and no lower.
+TEST(FaceStroke, ChamfersAnyCornerAsDeepAsItNeeds) {
+  auto between = test_support::numbers(7);
+  for (int i = 0; i < 50; ++i) {
+    const CutDirection cut = kHands[i % 2];
+    const double hand = i % 2 == 0 ? 1 : -1, radius = between(3, 8) * kMillimetre;
+    const double angle = between(30, 60) * kDegree, dish = between(0, 3) * kDegree;
+    const double tan_rake = std::tan(between(10, 40) * kDegree), tan_hook = std::tan(between(0, 15) * kDegree);
+    const OnTooth normal = chamferNormal(angle, between(5, 20) * kDegree, dish, hand * tan_rake, tan_hook);
+    // The edge, from that of the hollow end to the periphery: back along the axis from X = 0, and forward by the hook.
+    const double width = between(0.1, 0.4) * kMillimetre, length = width / std::tan(angle) + width * std::tan(dish);
+    const OnTooth edge(width / std::tan(angle), width, length * hand * tan_rake - width * tan_hook);
+    EXPECT_NEAR(normal.dot(edge.normalized()), 0, 1e-12);
+    const double behind = length * hand * tan_rake / radius;
+    const OnTooth through(length, radius * std::cos(behind), radius * std::sin(behind));
+    FaceWheel wheel;
+    wheel.nominal_radius = 50 * kMillimetre;
+    wheel.radius = 49.8 * kMillimetre;
+    wheel.width = 6 * kMillimetre;
+    wheel.height = 2 * kMillimetre;
+    wheel.face_wear = 0.1 * kMillimetre;
+    const EndTooth tooth{radius, kPi / 2, cut};
+    const FaceStroke stroke = chamferStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre);
+    const double turn = flankPose(normal, cut).tooth;
+    const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], wheel.height + stroke.to[kZ]);
+    const Vector3d spindle = upperFaceNormal(stroke.swivel), place = turned(through, turn, cut);
+    EXPECT_NEAR((place - centre).dot(spindle), wheel.face_wear - wheel.width / 2, 1e-12);
+    EXPECT_NEAR((place - centre).cross(spindle)[1], 0, 1e-12) << "across from the corner";
+    EXPECT_NEAR(radius + stroke.from[kY] + wheel.nominal_radius - wheel.radius, radius + 1 * kMillimetre, 1e-12);
+    // Around the end, from the corner on, as far as the plane is within the blank.
+    double lowest = place[1];
+    for (double at = 0; at < kPi; at += 1e-4) {
+      const OnTooth on_rim(0, radius * std::cos(at), radius * std::sin(at));
+      if (normal.dot(on_rim - through) < 0) break;
+      lowest = std::min(lowest, turned(on_rim, turn, cut)[1]);
+    }
+    EXPECT_NEAR(lowest - (centre[1] - wheel.radius), kGap, 2e-4 * radius);
+  }
+}
+
 /// At a stroke's beginning, a wheel larger by less than `clear` touches nothing of the blank, and one by more does.
 void expectClear(const FaceStroke& stroke, const FaceWheel& wheel, const EndTooth& tooth, double clear) {
   for (const double part : {0.97, 1.1}) {
@@ -293,6 +302,7 @@ void expectClear(const FaceStroke& stroke, const FaceWheel& wheel, const EndToot
   }
 }
 
+/// In the plane of the rake face, all beyond the bottom is removed in front of the face, and nothing behind it.
 TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
   auto between = test_support::numbers(7);
   for (int i = 0; i < 20; ++i) {

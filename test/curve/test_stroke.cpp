@@ -40,7 +40,7 @@ struct Case {
     const double thin = std::min(g.end_diameter / 2, g.end_diameter / 2 + g.flute_length * std::tan(g.cone_angle));
     const double apex = thin / std::max(1e-3, std::abs(std::tan(g.cone_angle)));
     const double speed = std::min(g.flute_length * *uniform(0.5, 5), apex / 9e-3);
-    Case c{g, 0, g.flute_length, {speed * edgePerTravel(g), kAcceleration, kJerk}};
+    Case c{g, g.flute_length * *uniform(0, 0.3), g.flute_length, {speed * edgePerTravel(g), kAcceleration, kJerk}};
     c.feed.rule = *rc::gen::element(EvenStepRule::kPublished, EvenStepRule::kThirdOrder, EvenStepRule::kExact);
     if (*rc::gen::arbitrary<bool>()) std::swap(c.from, c.to);
     return c;
@@ -55,13 +55,13 @@ RC_GTEST_PROP(StrokeProperty, IsWhatItsPartsGive, ()) {
   const ConicalCutter cutter(c.cone);
   OddEvenInterpolator interpolator(LogCurve(cutter), c.feed.rotary_scale, c.feed.rule, c.from);
   const double speed = c.feed.feed / cutter.edgePerTravel();
-  SCurveProfile law({speed, kAcceleration, kJerk}, c.cone.flute_length, speed);
+  SCurveProfile law({speed, kAcceleration, kJerk}, std::abs(c.to - c.from), speed);
   RC_ASSERT(stroke.finished());
   RC_ASSERT(points.front().x == c.from && points.size() % 2 == 1);
   for (std::size_t i = 1; i < points.size(); i += 2) {
     RC_ASSERT(!law.finished());
     law.advance(2 * c.feed.period);
-    const double x = c.from < c.to ? law.position() : c.cone.flute_length - law.position();
+    const double x = c.from + (c.from < c.to ? 1 : -1) * law.position();
     const OddEvenPair pair = interpolator.advance(x - interpolator.position().x);
     RC_ASSERT(points[i].x == pair.odd.x && points[i].a == pair.odd.a);
     RC_ASSERT(points[i + 1].x == pair.even.x && points[i + 1].a == pair.even.a);

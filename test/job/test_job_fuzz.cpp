@@ -69,40 +69,6 @@ double hostileOrAny(Dice& dice, double min, double max) {
   return values[static_cast<std::size_t>(dice.below(static_cast<int>(values.size())))];
 }
 
-std::vector<double> anyTeeth(Dice& dice) {
-  static const std::vector<std::vector<double>> hostile{{},
-                                                        {0, kNaN, 1},
-                                                        {kNaN},
-                                                        {0, 2, 1},
-                                                        {0, 1, 1},
-                                                        {0, units::kTurn},
-                                                        {0, std::nextafter(units::kTurn, 0)},
-                                                        {-0.0, kTiny},
-                                                        std::vector<double>(100000, 0.5)};
-  const auto which = static_cast<std::size_t>(dice.below(12));
-  if (which < hostile.size()) return hostile[which];
-  if (which > hostile.size()) return {0, dice.within(0, 7)};
-  std::vector<double> most;
-  for (int i = 0; i < kMaxTeeth + dice.below(2); ++i) most.push_back(i * 0.09);
-  return most;
-}
-
-/// Choices, counts and teeth that are out of range now and then.
-void spoilChoices(Dice& dice, GrindJob& job) {
-  const auto whole = [&] { return dice.of({-1, 0, 1, 2, 3, 255, std::numeric_limits<int>::min()}); };
-  if (dice.once(8))
-    job.process().spark_out = dice.of({-1, kMaxSparkOut, kMaxSparkOut + 1, std::numeric_limits<int>::max()});
-  if (dice.once(8)) job.process().order = static_cast<GrindOrder>(whole());
-  if (dice.once(8)) job.process().direction = static_cast<StrokeDirection>(whole());
-  if (dice.once(16)) job.process().z_law = static_cast<ZLaw>(whole());
-  if (dice.once(4)) job.interpolation.even_step = static_cast<EvenStepRule>(whole());
-  if (dice.once(16)) job.cutter.cut = static_cast<CutDirection>(whole());
-  if (dice.once(16)) job.process().wheel_profile = static_cast<WheelShape>(whole());
-  if (dice.once(16)) job.process().wheel_points = {{-4e-3, 50e-3}, {dice.within(-5e-3, 5e-3), 50e-3}};
-  if (dice.once(16)) job.spiral_angles = {job.cutter.spiral_angle, dice.within(-2, 2)};
-  if (dice.once(8)) job.tooth_angles = anyTeeth(dice);
-}
-
 /// A number of a job, and its range in SI.
 struct Number {
   double& (*of)(GrindJob&);
@@ -115,18 +81,6 @@ std::vector<Number> numbers() {
     if (f.isOf(OperationKind::kFlute)) all.push_back({of, f.low().si, f.high().si});
   });
   return all;
-}
-
-/// A job with one or some of its numbers spoiled.
-GrindJob spoiledJob(Dice& dice) {
-  GrindJob job = paperJob();
-  const std::vector<Number> all = numbers();
-  for (int i = 0; i <= dice.below(4); ++i) {
-    const Number& n = all[static_cast<std::size_t>(dice.below(static_cast<int>(all.size())))];
-    n.of(job) = hostileOrAny(dice, n.min, n.max);
-  }
-  spoilChoices(dice, job);
-  return job;
 }
 
 /// A job of which every number is within its range, and which is allowed more often than not: small, and drawn to where
@@ -288,13 +242,6 @@ TEST(JobFuzz, EveryHostileValueOfEveryFieldIsAnswered) {
     }
   }
   EXPECT_GT(tally.refused, 100);
-}
-
-TEST(JobFuzz, SpoiledJobsAreAnswered) {
-  Dice dice(2);
-  Tally tally;
-  for (int i = 0; i < 7000 && !HasFailure(); ++i) tally.judge(anyCase(dice, spoiledJob(dice)));
-  EXPECT_GT(tally.refused, 2000);
 }
 
 TEST(JobFuzz, AllowedJobsOfAllKindsAreAnswered) {

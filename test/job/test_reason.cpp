@@ -252,14 +252,6 @@ TEST(Reason, OfAViolationInTheLoopHasItsPlace) {
             "axis A velocity -180 deg/s is 90 deg/s beyond its limit 90 deg/s (index, tooth 3, pass 5, X = 30 mm)");
 }
 
-TEST(Reason, ManyStandSideBySide) {
-  Reason stop, other;
-  stop.kind = Kind::kEmergencyStop;
-  other.kind = Kind::kOther;
-  other.detail = "busy";
-  EXPECT_EQ(text(std::vector<Reason>{stop, other}), "emergency stop; busy");
-}
-
 TEST(Reason, CutsNothingOff) {
   const std::string name(100000, 'n');
   EXPECT_EQ(format("<%s>", name.c_str()), "<" + name + ">");

@@ -2,6 +2,7 @@
 
 #include "flute_grinder/job/job_fields.h"
 
+#include "job/good_job.h"
 #include "random_cases.h"
 #include "refusal.h"
 #include "temp_folder.h"
@@ -22,6 +23,7 @@ namespace grinder {
 namespace test_wheel_file {
 
 using test_support::refusalOf;
+using test_support::with;
 
 // Line numbers in the rows below are those of this text.
 const char* const kWheel =
@@ -38,31 +40,16 @@ const char* const kWheel =
     "  width_mm: 7.9\n"               // 11
     "  by: anna@grinder-2\n";         // 12
 
-std::string with(const char* text, const std::string& piece, const std::string& replacement) {
-  std::string changed = text;
-  const auto at = changed.find(piece);
-  EXPECT_NE(at, std::string::npos) << piece;
-  return changed.replace(at, piece.size(), replacement);
-}
-
 std::string errorOf(const std::string& text) {
   return refusalOf([&] { parseWheel(text, "wheel.yaml"); });
 }
 
-/// A job whose wheel's keys are these lines.
+/// A job whose wheel's keys are these lines, from line 27 on.
 std::string jobText(const std::string& wheel) {
-  return "cutter: {end_diameter_mm: 6, cone_angle_deg: -1, spiral_angle_deg: -45, rake_angle_deg: 12,\n"  // 1
-         "  flute_length_mm: 25, teeth: 4, cut: left_hand, rake_tolerance_deg: 0.25, shank_diameter_mm: 10,"
-         "  chordal_rake_tolerance_deg: 5, spiral_tolerance_deg: 0.5, core_diameter_mm: 3.5, core_diameter_end_mm: 3,"
-         "  core_tolerance_mm: 0.05}\n"                                                       // 2
-         "process:\n"                                                                         // 3
-         "  feed_mm_min: 200\n  depth_mm: 1.5\n  infeed_mm: 0.5\n  finish_infeed_mm: 0.05\n"  // 4-7
-         "  spark_out: 1\n  clearance_mm: 5\n  overtravel_mm: [1, 2]\n  order: pass_major\n"  // 8-11
-         "  direction: to_end\n"                                                              // 12
-         "  wheel:\n" +                                                                       // 13
-         wheel +                                                                              // 14-
-         "  setup: {swivel_deg: -46, height_mm: 1.25}\n"
-         "interpolation: {even_step: exact, tolerance_um: 2, rotary_scale_mm_per_rad: 1}\n";
+  return with(
+      "    diameter_mm: 100\n    width_mm: 8\n    wear_mm: 0.3\n    profile: angled\n    angle_deg: 20\n"
+      "    side: lower\n    corner_radius_mm: [0.1, 0.2]\n",
+      wheel);
 }
 
 /// A folder with a folder for jobs and one for wheels.
@@ -120,10 +107,10 @@ TEST(WheelFile, HasWhatMayBeLeftOut) {
   EXPECT_FALSE(unmeasured.measured);
   EXPECT_EQ(unmeasured.process.wheel_wear, 0);
   EXPECT_DOUBLE_EQ(unmeasured.process.wheel_width, 0.008);
-  EXPECT_DOUBLE_EQ(parseWheel(with(kWheel, "  width_mm: 7.9\n", ""), "f").process.wheel_width, 0.008);
-  EXPECT_EQ(parseWheel(with(kWheel, "  by: anna@grinder-2\n", ""), "f").by, "");
-  EXPECT_EQ(parseWheel(with(kWheel, "2026-11-20", "2026-11-20T08:15:30Z"), "f").date, "2026-11-20T08:15:30Z");
-  const WheelFile on_flange = parseWheel(with(kWheel, "side: lower\n", "side: lower\nflange_mm: -2.5\n"), "f");
+  EXPECT_DOUBLE_EQ(parseWheel(with("  width_mm: 7.9\n", "", kWheel), "f").process.wheel_width, 0.008);
+  EXPECT_EQ(parseWheel(with("  by: anna@grinder-2\n", "", kWheel), "f").by, "");
+  EXPECT_EQ(parseWheel(with("2026-11-20", "2026-11-20T08:15:30Z", kWheel), "f").date, "2026-11-20T08:15:30Z");
+  const WheelFile on_flange = parseWheel(with("side: lower\n", "side: lower\nflange_mm: -2.5\n", kWheel), "f");
   ASSERT_TRUE(on_flange.flange);
   EXPECT_DOUBLE_EQ(*on_flange.flange, -0.0025);
 }
@@ -175,13 +162,6 @@ TEST_F(WheelOfAJob, HasTheBitsOfTheSameWearInTheJob) {
   }
 }
 
-TEST_F(WheelOfAJob, CanBeFound) {
-  const std::string named = write("jobs/named.yaml", jobText("    file: ../wheels/wheel.yaml\n"));
-  write("wheels/wheel.yaml", kWheel);
-  EXPECT_EQ(openJobFile(named).wheel_path, folder_ + "/jobs/../wheels/wheel.yaml");
-  EXPECT_EQ(openJobFile("test/jobs/paper.yaml").wheel_path, "");
-}
-
 TEST_F(WheelOfAJob, StandsAloneInTheJob) {
   write("wheels/wheel.yaml", kWheel);
   for (const char* key : {"diameter_mm: 100", "width_mm: 8", "profile: straight", "wear_mm: 0", "angle_deg: 20",
@@ -190,7 +170,7 @@ TEST_F(WheelOfAJob, StandsAloneInTheJob) {
     const std::string path = write("jobs/job.yaml", jobText(std::string("    file: ../wheels/wheel.yaml\n    ") + key +
                                                             "\n    wear_per_pass_mm: 0\n"));
     const std::string name = std::string(key).substr(0, std::string(key).find(':'));
-    EXPECT_EQ(jobErrorOf(path), path + ":15: process.wheel." + name +
+    EXPECT_EQ(jobErrorOf(path), path + ":28: process.wheel." + name +
                                     " stands beside process.wheel.file; allowed beside it: "
                                     "process.wheel.wear_per_pass_mm");
   }
@@ -200,15 +180,15 @@ TEST_F(WheelOfAJob, IsRefusedAtTheJobsLine) {
   write("wheels/wheel.yaml", kWheel);
   const std::pair<const char*, std::string> rows[]{
       {"    file: ../wheels/none.yaml\n",
-       ":14: process.wheel.file = ../wheels/none.yaml: " + folder_ +
+       ":27: process.wheel.file = ../wheels/none.yaml: " + folder_ +
            "/jobs/../wheels/none.yaml: cannot be read: No such file or directory; allowed: a path from the job file's "
            "folder, " +
            folder_ + "/jobs"},
-      {"    file: [1, 2]\n", ":14: process.wheel.file is a list; allowed: the path of a wheel file"},
+      {"    file: [1, 2]\n", ":27: process.wheel.file is a list; allowed: the path of a wheel file"},
       {"    ../wheels/wheel.yaml\n",
-       ":13: process.wheel = ../wheels/wheel.yaml; allowed: keys of a wheel below it, as file: PATH for a wheel file"},
+       ":26: process.wheel = ../wheels/wheel.yaml; allowed: keys of a wheel below it, as file: PATH for a wheel file"},
       {"    file: ../wheels/wheel.yaml\n    wear_per_pass_mm: 2\n",
-       ":15: process.wheel.wear_per_pass_mm = 2 mm; allowed: 0 to 1 mm"}};
+       ":28: process.wheel.wear_per_pass_mm = 2 mm; allowed: 0 to 1 mm"}};
   for (const auto& [wheel, message] : rows) {
     const std::string path = write("jobs/job.yaml", jobText(wheel));
     EXPECT_EQ(jobErrorOf(path), path + message);
@@ -216,13 +196,12 @@ TEST_F(WheelOfAJob, IsRefusedAtTheJobsLine) {
 }
 
 TEST_F(WheelOfAJob, ReportsItsMistakesBesideThoseOfTheJob) {
-  write("wheels/wheel.yaml", with(kWheel, "diameter_mm: 100", "diameter_mm: large"));
-  std::string text = jobText("    file: ../wheels/wheel.yaml\n");
-  text.replace(text.find("spark_out: 1"), 12, "spark_out: x");
-  const std::string path = write("jobs/job.yaml", text);
+  write("wheels/wheel.yaml", with("diameter_mm: 100", "diameter_mm: large", kWheel));
+  const std::string path =
+      write("jobs/job.yaml", with("spark_out: 1", "spark_out: x", jobText("    file: ../wheels/wheel.yaml\n")));
   EXPECT_EQ(jobErrorOf(path),
             folder_ + "/jobs/../wheels/wheel.yaml:3: diameter_mm = large is not a number; allowed: 1 to 500 mm\n" +
-                path + ":8: process.spark_out = x is not a whole number; allowed: 0 to 100");
+                path + ":21: process.spark_out = x is not a whole number; allowed: 0 to 100");
 }
 
 TEST(WheelFile, OfEveryShippedOneCanBeRead) {
@@ -261,7 +240,7 @@ TEST(WheelFile, ReportsAMistakeWithFileLineKeyAndWhatIsAllowed) {
       {"diameter_mm: 99.4", "diameter_mm: 5.6",
        "11: measured.width_mm = 7.9 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"}};
   for (const auto& row : rows) {
-    EXPECT_EQ(errorOf(with(kWheel, row.piece, row.replacement)), std::string("wheel.yaml:") + row.message);
+    EXPECT_EQ(errorOf(with(row.piece, row.replacement, kWheel)), std::string("wheel.yaml:") + row.message);
   }
 }
 
@@ -270,7 +249,7 @@ TEST(WheelFile, OfPointsKeepsTheirWidth) {
       "profile: points\ndiameter_mm: 100\nwidth_mm: 8\npoints_mm: [[-4, 49], [0, 50], [4, 48.5]]\n"
       "measured: {date: 2026-11-20, diameter_mm: 99, width_mm: 7}\n";
   EXPECT_EQ(errorOf(text), "wheel.yaml:5: measured.width_mm = 7 mm; allowed: that of its points, 8 mm");
-  EXPECT_EQ(errorOf(with(text.c_str(), "width_mm: 7}", "width_mm: 8}")), "");
+  EXPECT_EQ(errorOf(with("width_mm: 7}", "width_mm: 8}", text)), "");
 }
 
 }  // namespace test_wheel_file

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 // That a jog keeps the limits at any speeds, and slowed down at any moment, the rides show.
@@ -23,14 +22,6 @@ std::vector<Setpoint> all(AxisMove& move) {
   Setpoint p;
   while (move.next(p)) setpoints.push_back(p);
   return setpoints;
-}
-
-TEST(AxisMove, RefusesAMachineWithoutLimitsOfAnAxis) {
-  for (int axis = 0; axis < kAxisCount; ++axis) {
-    Machine machine = plainMachine();
-    machine.limits.max_jerk[axis] = 0;
-    EXPECT_THROW(AxisMove{machine}, std::invalid_argument) << axis;
-  }
 }
 
 class AxisMoveAlong : public ::testing::TestWithParam<std::tuple<int, int>> {};

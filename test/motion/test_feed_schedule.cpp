@@ -151,22 +151,6 @@ RC_GTEST_PROP(FeedScheduleProperty, AFeedThatNoAxisHindersIsNotCutAtAll, ()) {
   for (int i = 0; i <= 20; ++i) RC_ASSERT(schedule.rate(schedule.length() * i / 20) == 1);
 }
 
-RC_GTEST_PROP(FeedScheduleProperty, AsksForSomethingAndNeverForMoreThanTheFeedAndAFifth, ()) {
-  const Case c = Case::draw();
-  const FeedSchedule schedule = c.schedule();
-  const MotionLimits limits = schedule.limits();
-  for (const double limit : {limits.velocity, limits.acceleration, limits.jerk}) {
-    RC_ASSERT(limit > 0);
-    RC_ASSERT(std::isfinite(limit));
-  }
-  const double asked = c.stroke.surface_feed / test_support::edgePerTravel(c.cutter);
-  RC_ASSERT(schedule.feedSpeed() <= asked * (1 + 4 * kEps));
-  RC_ASSERT(limits.velocity >= schedule.feedSpeed());
-  RC_ASSERT(limits.velocity <= 1.2 * asked * (1 + 8 * kEps));
-  // There is no room for more where something holds the feed back.
-  if (!schedule.feedLimits().empty()) RC_ASSERT(limits.velocity == schedule.feedSpeed());
-}
-
 RC_GTEST_PROP(FeedScheduleProperty, ReportsWhereAHoldsTheFeedBack, ()) {
   Case c = Case::draw();
   c.machine.limits.max_velocity[kA] *= *test_support::logUniform(0.01, 1);
@@ -260,6 +244,29 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
   }
 }
 
+/// X reaches its full feed by a parabola of the rate, whose jerk is a quarter of what X or A may have.
+TEST(FeedSchedule, BlendsIntoTheFullFeedWithAQuarterOfTheJerk) {
+  constexpr double kJerk = 20;
+  for (const int axis : {kX, kA}) {
+    SCOPED_TRACE(axis);
+    Machine machine = boundless();
+    machine.limits.max_velocity[kA] = 5;
+    const FeedSchedule free(ConicalCutter(thinCutter()), plainStroke(), machine);
+    const double end = free.feedLimits().back().to_x;
+    const double turn = std::abs(static_cast<double>(ReferenceCurve(thinCutter()).slope(end)));
+    machine.limits.max_jerk[axis] = kJerk * (axis == kA ? turn : 1);
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+    ASSERT_EQ(causesOf(schedule.feedLimits()), "axis A velocity");
+    double full = 0;
+    for (double step = schedule.length() / 2; step > 1e-15; step /= 2) {
+      if (schedule.x(full + step) < schedule.feedLimits().back().to_x) full += step;
+    }
+    const double before = 1e-6, v = schedule.limits().velocity;
+    const double jerk = 2 * (1 - schedule.rate(full - before)) / (before * before) * v * v * v;
+    EXPECT_NEAR(jerk, kJerk / 4, 0.01 * kJerk);
+  }
+}
+
 TEST(FeedSchedule, ReportsEveryCauseWithItsRange) {
   // X allows half of what is asked for, all along; A allows 5 rad/s, and so v = 5 rad/s R / tan S: 2.5 mm/s at the tip,
   // and as much as X where the radius is v tan S / 5 rad/s.
@@ -345,6 +352,12 @@ TEST(FeedSchedule, NamesWhatLimitsTheFeed) {
     (machine.limits.*row.limits)[row.axis] = row.limit;
     EXPECT_EQ(causesOf(FeedSchedule(ConicalCutter(thinCutter()), plainStroke(), machine).feedLimits()), row.cause);
   }
+  // On a core taper Y goes with X by tan 12 deg + 0.5.
+  FeedSchedule::Stroke tapered = plainStroke();
+  tapered.taper = 0.5;
+  Machine machine = boundless();
+  machine.limits.max_velocity[kY] = 0.6 * x_speed;
+  EXPECT_EQ(causesOf(FeedSchedule(ConicalCutter(thinCutter()), tapered, machine).feedLimits()), "axis Y velocity");
   FeedSchedule::Stroke tight = plainStroke();
   tight.tolerance = 1e-9;
   EXPECT_EQ(causesOf(FeedSchedule(ConicalCutter(thinCutter()), tight, boundless()).feedLimits()),

@@ -165,6 +165,19 @@ TEST(GrindProgram, RefusesAMachineOrAStartThatNoJobMayRunOn) {
         test_support::refusalOf<std::invalid_argument>([&] { GrindProgram(ValidJob(paperJob()), machine, start); });
     EXPECT_TRUE(contains(error, row.part)) << row.part << ", got: " << error;
   }
+  Machine fastest = plainMachine();
+  fastest.period = 1e-6;
+  RunStart run{fastest.park};
+  const auto refusal = [&] {
+    return test_support::refusalOf<std::invalid_argument>([&] { GrindProgram(ValidJob(paperJob()), fastest, run); });
+  };
+  run.offset[kZ] = 1000;
+  EXPECT_EQ(refusal(), "");
+  run.offset[kZ] = 1000.1;
+  EXPECT_TRUE(contains(refusal(), "work offsets"));
+  // Of the clearance of 31 mm tan 5 deg + 5 mm with the offset.
+  run.offset << 0, 0.045, 0, 0;
+  EXPECT_TRUE(contains(refusal(), "park position axis Y = 50 mm; allowed for this job: at least 52.71")) << refusal();
 }
 
 RC_GTEST_PROP(GrindProgramProperty, LiftsOnlyWhereItStartsBelowThePark, ()) {

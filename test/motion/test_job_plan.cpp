@@ -254,23 +254,6 @@ TEST(JobPlan, LetsTheRoundingPassOfAShift) {
   }
 }
 
-TEST(JobPlan, ADepthThatIsTheSameAtBothEndsChangesNoBit) {
-  const GrindJob plain = paperJob();
-  GrindJob reported = plain;
-  reported.process().depth_end = reported.process().depth;
-  reported.spiral_angles = {reported.cutter.spiral_angle};
-  const Machine machine = plainMachine();
-  std::vector<Setpoint> expected;
-  planJob(ValidJob(plain), machine, machine.park, [&](const Setpoint& p) { expected.push_back(p); });
-  std::size_t i = 0;
-  const JobPlan plan = planJob(ValidJob(reported), machine, machine.park, [&](const Setpoint& p) {
-    ASSERT_LT(i, expected.size());
-    ASSERT_TRUE((p.position == expected[i++].position).all());
-  });
-  EXPECT_TRUE(plan.good());
-  EXPECT_EQ(i, expected.size());
-}
-
 RC_GTEST_PROP(JobPlanProperty, ExactIsNeverRefusedForTheTolerance, ()) {
   Work work = *test_support::work(2000);
   work.job.interpolation.even_step = EvenStepRule::kExact;

@@ -91,29 +91,6 @@ TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
   }
 }
 
-TEST(JobPlan, ReportsToleranceAndLimitsTogether) {
-  GrindJob job = steepJob();
-  job.process().feed = 0.1;
-  job.interpolation.tolerance = 0.2e-6;
-  Machine machine = strongMachine();
-  machine.limits.max_position[kX] = 0.015;
-  std::uint64_t off = 0;
-  std::vector<Setpoint> visited;
-  const Deviation deviation(job);
-  const JobPlan plan = planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) {
-    visited.push_back(p);
-    if (p.step != StepKind::kNone && deviation.of(p) > 0.2e-6) ++off;
-  });
-  EXPECT_FALSE(plan.good());
-  expectReasons(plan, visited, kX, 0.015);
-  ASSERT_GT(off, 1u);
-  const Reason& tolerance = plan.reasons.back();
-  EXPECT_EQ(tolerance.kind, ReasonKind::kTolerance) << textOf(plan);
-  EXPECT_EQ(tolerance.count, off);
-  EXPECT_EQ(tolerance.value, plan.statistics.max_deviation);
-  EXPECT_EQ(plan.reasons.size(), 1 + reasonsWith(plan, "axis X").size());
-}
-
 TEST(JobPlan, ReportsWhereTheToleranceIsExceededMost) {
   GrindJob job = steepJob();
   job.process().feed = 0.1;

@@ -33,37 +33,6 @@ RC_GTEST_PROP(SetpointStreamProperty, CyclesCountFromZeroInPairsOddAndEvenByTurn
   }
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, MovesEndWhereTheProgramSays, ()) {
-  const Work work = *toothedWork(kCycles / 3);
-  const GrindProgram program = work.program();
-  const auto setpoints = all(work);
-  const ReferenceCurve curve(work.job.cutter, work.job.process().setup_x_shift);
-  const bool exact = work.job.interpolation.even_step == EvenStepRule::kExact;
-  for (std::size_t i = 1; i < setpoints.size(); ++i) {
-    const Setpoint& p = setpoints[i];
-    const Move& move = program.moves().at(p.move_index);
-    RC_ASSERT(p.move == move.kind);
-    RC_ASSERT(p.tooth == move.tooth);
-    RC_ASSERT(p.pass == move.pass);
-    const bool ends = i + 1 == setpoints.size() || setpoints[i + 1].move_index != p.move_index;
-    RC_ASSERT(p.move_fraction >= 0);
-    RC_ASSERT(p.move_fraction <= 1);
-    if (!ends) continue;
-    RC_ASSERT(p.move_fraction == 1);
-    if (p.move == MoveKind::kStroke) {
-      RC_ASSERT(std::abs(p.position[kX] - move.to[kX]) <= 1e-12);
-      RC_ASSERT(std::abs(p.position[kY] - move.to[kY]) <= 1e-12);
-      RC_ASSERT(std::abs(p.position[kZ] - move.to[kZ]) <= 1e-12);
-      if (exact) {
-        RC_ASSERT(std::abs(p.position[kA] - move.to[kA]) <= 1e-12 * (1 + static_cast<double>(std::abs(curve.k))));
-      }
-    } else {
-      RC_ASSERT((p.position == move.to).all());
-    }
-  }
-  RC_ASSERT((setpoints.back().position == work.machine.park).all());
-}
-
 RC_GTEST_PROP(SetpointStreamProperty, KeepsAllLimitsOfAllAxesAndReportsTheMeanVelocityOfTheCycle, ()) {
   const Work work = *test_support::work(kCycles);
   const auto setpoints = all(work);
@@ -133,17 +102,6 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
-}
-
-TEST(SetpointStream, BeginsWithItsFirstToothAndPass) {
-  GrindJob job = paperJob();
-  job.tooth_angles = {0, 2};
-  job.process().spark_out = 1;
-  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), {plainMachine().park, {1, 1}}));
-  Setpoint p;
-  ASSERT_TRUE(stream.next(p));
-  EXPECT_EQ(p.tooth, 1);
-  EXPECT_EQ(p.pass, 1);
 }
 
 }  // namespace test_setpoint_stream

@@ -79,6 +79,19 @@ TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
         planJob(job, plainMachine(), plainMachine().park, [&](const Setpoint& p) { setpoints.push_back(p); });
     ASSERT_TRUE(plan.good()) << text(plan.reasons);
     EXPECT_EQ(beyondLimits(setpoints, plainMachine()), "");
+    Axes at = plainMachine().park;
+    std::size_t begun = 0;
+    for (const Move& move : plan.program->moves()) {
+      const Axes way = move.to - at;
+      at = move.to;
+      const bool index = move.kind == MoveKind::kIndex, position = move.kind == MoveKind::kPosition;
+      const bool approach = move.kind == MoveKind::kApproach;
+      begun += index || position || approach ? 1 : 0;
+      EXPECT_TRUE(way[kY] == 0 || !(index || position)) << "above the work";
+      EXPECT_TRUE(way[kA] == 0 || index || move.kind == MoveKind::kReturn);
+      EXPECT_TRUE((way[kX] == 0 && way[kZ] == 0) || !(index || approach));
+    }
+    EXPECT_EQ(begun, 3 * job.passes().size());
     std::vector<double> planes(job.depths().size(), 0);
     for (std::size_t i = 1; i < setpoints.size(); ++i) {
       const Setpoint &p = setpoints[i], &before = setpoints[i - 1];

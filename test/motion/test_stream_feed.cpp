@@ -43,46 +43,6 @@ RC_GTEST_PROP(SetpointStreamProperty, AtFeedEveryPairGoesAtTheFeedAsOverridden, 
   RC_ASSERT(beyondLimits(setpoints, work.machine) == "");
 }
 
-RC_GTEST_PROP(SetpointStreamProperty, AtFeedTheTwoStepsDifferByTheTurnOfThePathOnly, ()) {
-  const Work work = *test_support::work(kCycles);
-  const double step = work.program().schedule().feedSpeed() * work.machine.period;
-  const auto setpoints = all(work);
-  const double rounding = 2 * roundingOf(setpoints)[kX];
-  const ReferenceCurve curve(work.job.cutter, work.job.process().setup_x_shift);
-  for (const SeenPair& s : pairsOf(setpoints)) {
-    if (!s.odd.at_feed) continue;
-    // 2 |kappa| dl tan theta = 2 sin^2 theta |b| dX / u
-    const Real u = curve.u(s.start.position[kX]);
-    const Real slope = work.job.interpolation.rotary_scale * curve.k / u;
-    const Real growth = std::abs(curve.b) * step / u;
-    const Real bound = 2 * slope * slope / (1 + slope * slope) * growth * (1 + 4 * growth) + 1e-6L;
-    RC_ASSERT(std::abs(std::abs(s.odd.position[kX] - s.start.position[kX]) / step - 1) <= bound + rounding / step);
-    RC_ASSERT(std::abs(std::abs(s.even.position[kX] - s.odd.position[kX]) / step - 1) <= bound + rounding / step);
-  }
-}
-
-TEST(SetpointStream, TakesHardlyLongerThanTheQuickestStrokeThereIs) {
-  Work work{paperJob(), plainMachine(), plainMachine().park};
-  work.machine.limits.max_velocity << 0.2, 0.2, 0.2, 20;
-  work.machine.limits.max_acceleration << 0.5, 0.5, 0.5, 62.83;
-  work.machine.limits.max_jerk << 10, 10, 10, 1257;
-  for (const int feed : {600, 1800}) {
-    SCOPED_TRACE(feed);
-    work.job.process().feed = feed * units::kMillimetrePerMinute;
-    // The quickest way from rest to rest over 32 mm that X's limits allow: full acceleration is reached at both feeds
-    // or not by v j against a^2. The other axes' limits can only make it slower.
-    const double v = work.job.process().feed / edgePerTravel(work.job.cutter), a = 0.5, j = 10;
-    const double ramp = v * j >= a * a ? v / a + a / j : 2 * std::sqrt(v / j);
-    ASSERT_LT(ramp * v, 32e-3);
-    const double quickest = 32e-3 / v + ramp;
-    std::size_t cycles = 0;
-    for (const Setpoint& p : all(work)) cycles += p.step != StepKind::kNone ? 1 : 0;
-    const double duration = static_cast<double>(cycles) * work.machine.period;
-    EXPECT_GE(duration, quickest * (1 - 1e-9));
-    EXPECT_LE(duration, quickest * 1.01);
-  }
-}
-
 /// Of the paper's job where nothing cuts the feed, in X. [m/s]
 double paperSpeed() { return 0.01 / edgePerTravel(paperJob().cutter); }
 

@@ -53,8 +53,8 @@ TEST(JobPlan, RefusesEveryAxisBeyondItsLimitsWithTheWorstOfEveryMove) {
   EXPECT_EQ(plan.fault, PlanFault::kLimit);
   // One for each kind of move, of all teeth: stroke, and retract, index, position and return from its end.
   EXPECT_EQ(reasonsWith(plan, "axis X").size(), 5u) << textOf(plan);
-  EXPECT_TRUE(
-      contains(textOf(plan), "axis X machine position 31 mm is 1 mm beyond its limit 30 mm (stroke, tooth 1, pass 1, X = "))
+  EXPECT_TRUE(contains(textOf(plan),
+                       "axis X machine position 31 mm is 1 mm beyond its limit 30 mm (stroke, tooth 1, pass 1, X = "))
       << textOf(plan);
   expectReasons(plan, visited, kX, 0.030);
   expectReasons(plan, visited, kY, 0.04);

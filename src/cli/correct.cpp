@@ -27,7 +27,7 @@ Turns mostOf(const CorrectOptions& options) {
 }
 
 double scaleOf(const FigureAt& at) { return shopScale(rowOf(at.figure).unit); }
-const char* unitNameOf(const FigureAt& at) { return rowOf(at.figure).unit == Unit::kRadian ? "deg" : "mm"; }
+const char* unitNameOf(const FigureAt& at) { return shopUnit(rowOf(at.figure).unit); }
 double turned(const Turns& turns, SetupTurn turn) { return turns[indexOf(turn)] / shopScale(rowOf(turn).unit); }
 
 Json toJson(const Turns& turns) {

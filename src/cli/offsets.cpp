@@ -53,7 +53,7 @@ Json toJson(const std::string& node, const flute_grinder::WorkOffsets& offsets,
   Json axes = Json::object();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    const std::string unit = axis == kA ? "_deg" : "_mm";
+    const std::string unit = std::string("_") + shopUnit(unitOf(axis, 0));
     const auto time = [](const ros::Time& at) {
       return at.isZero() ? Json(nullptr) : Json(timeText(at.toSec(), true));
     };
@@ -86,7 +86,7 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
     const auto i = static_cast<std::size_t>(axis);
     const auto column = [&](double si) { return format("  %12s", fixed(toShop(axis, si), 4).c_str()); };
     std::printf("%c   %s%s%s %-4s", axisLetter(axis), column(offsets.values[i]).c_str(),
-                column(state.position[i]).c_str(), column(state.work_position[i]).c_str(), axis == kA ? "deg" : "mm");
+                column(state.position[i]).c_str(), column(state.work_position[i]).c_str(), shopUnit(unitOf(axis, 0)));
     const std::string basis = escaped(basisText(axis, all.axes[i]));
     if (offsets.set_at[i].isZero()) {
       std::printf("  %s\n", basis.c_str());

@@ -34,8 +34,8 @@ const ros::WallDuration kAgain(0.05);  ///< time between messages that this prog
 
 /// A figure in mm to 0.1 um or in deg to 0.0001, the resolution of a probe.
 std::string shown(double si, bool angle) {
-  const double scale = shopScale(angle ? Unit::kRadian : Unit::kMetre);
-  return fixed(si / scale, 4) + (angle ? " deg" : " mm");
+  const Unit unit = angle ? Unit::kRadian : Unit::kMetre;
+  return fixed(si / shopScale(unit), 4) + " " + shopUnit(unit);
 }
 
 /// @throw std::invalid_argument for contradictory arguments. @throw FileError

@@ -25,7 +25,7 @@ constexpr std::size_t kMostNumbers = 10;  ///< most numbers of tools in a messag
 
 bool isOfEnd(ToolFigure figure) { return rowOf(figure).of == StrokeForm::kStraight; }
 bool isAngle(ToolFigure figure) { return rowOf(figure).unit == Unit::kRadian; }
-const char* valueKey(ToolFigure figure) { return isAngle(figure) ? "value_deg" : "value_mm"; }
+std::string valueKey(ToolFigure figure) { return std::string("value_") + shopUnit(rowOf(figure).unit); }
 std::string nameOf(ToolFigure figure) { return figure == ToolFigure::kCoreDiameter ? kCore : toString(figure); }
 
 /// Whether rake and core are the same along the flute.

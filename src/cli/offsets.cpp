@@ -144,10 +144,10 @@ int sayReclamped(const std::string& node) {
   return status != 0 ? status : succeed("a tool was clamped; where its teeth are is not known");
 }
 
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
-                  const std::vector<std::string>& answers) {
-  auto request = offsetRequest(axis, value, basis, answers);
-  return callAnswering<flute_grinder::SetOffset>(nh, "set_offset", request) ? 0 : 1;
+int setWorkOffsets(ros::NodeHandle& nh, const OffsetValues& values, const OffsetBasis& basis,
+                   const std::vector<std::string>& answers) {
+  auto request = offsetsRequest(values, basis, answers);
+  return callAnswering<flute_grinder::SetOffsets>(nh, "set_offsets", request) ? 0 : 1;
 }
 
 std::string offsetRefusal(const std::string& argument) {
@@ -162,10 +162,13 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   for (const std::string& argument : options.set) requireJob(axisOf(argument), options.job, "--set " + argument);
   const OffsetBasis basis = basisFor(options, OffsetMethod::kByHand);
   ros::NodeHandle nh(node);
+  OffsetValues values;
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
-    const double value = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
-    if (const int status = setWorkOffset(nh, axis, value, basis, options.answers)) return status;
+    values[axis] = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
+  }
+  if (!values.empty()) {
+    if (const int status = setWorkOffsets(nh, values, basis, options.answers)) return status;
   }
   return show(nh, options.json);
 }

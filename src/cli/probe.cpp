@@ -89,7 +89,7 @@ int settleOffset(ros::NodeHandle& nh, int axis, flute_grinder::ProbeGoal goal,
   int status = result.message.empty() ? 0 : fail(result.message);
   // Not by another cycle: what was probed counts.
   if (addAnswers(result.needs, goal.answers)) {
-    status = setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
+    status = setWorkOffsets(nh, {{axis, result.offset}}, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
   }
   if (status == 0 && goal.set_offset)
     std::printf("%-15s %c %s\n", "work offset", axisLetter(axis), shown(result.offset, axis == kA).c_str());

@@ -272,21 +272,20 @@ Turns CorrectionDialog::present() const {
 
 void CorrectionDialog::ask(const Turns& offset, const QString& text, const std::optional<Turns>& back_to) {
   Comparison figures{{"now", "then", "change"}, {}};
-  std::vector<flute_grinder::SetOffset::Request> requests;
   for (const CorrectedAxis& one : kCorrectedAxes) {
     const double now = present()[indexOf(one.turn)], then = offset[indexOf(one.turn)];
     const auto cell = [](double value) { return shown(value, Unit::kMetre) + " mm"; };
     figures.rows.push_back({QString(axisLetter(one.axis)), cell(now), cell(then), cell(then - now)});
-    // The figures are shown here: the answer to a large change is given with them.
-    requests.push_back(offsetRequest(one.axis, then, done_.basis, {toString(NeedAnswer::kSetOffset)}));
   }
+  // The figures are shown here: the answer to a large change is given with them.
+  const auto request = offsetsRequest(offsetsOf(offset), done_.basis, {toString(NeedAnswer::kSetOffset)});
   const std::string by_hand = back_to ? byHandText(done_.correction) : "";
   const QString also = by_hand.empty() ? "" : QString::fromStdString(" Then " + by_hand + ".");
   question_->ask(
       text + also, figures,
-      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, requests, back_to] {
+      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, request, back_to] {
           back_to_ = back_to;
-          Q_EMIT wanted(requests);
+          Q_EMIT wanted(request);
         }}});
   showQuestion(true);
 }

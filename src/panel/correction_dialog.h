@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/SetOffsets.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/record/correction.h"
 #include "panel/question.h"
@@ -42,7 +42,7 @@ class CorrectionDialog : public QDialog {
   void showAnswer(const std::string& refusal);
 
  Q_SIGNALS:
-  void wanted(const std::vector<flute_grinder::SetOffset::Request>& requests);
+  void wanted(const flute_grinder::SetOffsets::Request& request);
 
  private:
   /// The result of the thread.

@@ -13,7 +13,9 @@
 #include <QTimer>
 
 #include <atomic>
+#include <cstdint>
 #include <future>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -49,7 +51,8 @@ class CorrectionDialog : public QDialog {
   struct Done {
     std::optional<SetupFindings> found{};  ///< nothing if nothing is known, with the reason in `text`
     Correction correction{};
-    ToolNumber tool{};  ///< the last tool
+    ToolNumber tool{};  ///< tool of which figures are entered
+    bool kept = false;  ///< whether what was entered is in its record
     OffsetBasis basis{};
     QString text{};
     bool good = false;
@@ -63,10 +66,12 @@ class CorrectionDialog : public QDialog {
 
   void layOut();
   void begin(std::vector<MeasuredFigure> figures);
-  Done work(const std::vector<MeasuredFigure>& figures) const;
+  /// @param tool number of the tool that was measured; 0 for the last.
+  Done work(const std::vector<MeasuredFigure>& figures, std::uint64_t tool) const;
   void poll();
   void take(Done done);
-  void showTable();
+  std::map<std::string, QString> entered() const;
+  void showTable(const std::map<std::string, QString>& entered);
   void keep();
   bool isSet() const;
   Turns present() const;

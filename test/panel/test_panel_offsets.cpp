@@ -203,7 +203,7 @@ class MeasuredTool : public ZeroPoints {
     panel.openTab("Zero");
     WAIT_FOR(panel.enabled("measured"));
     panel.click("measured");
-    WAIT_FOR(panel.widget().findChild<QLineEdit*>("measured_0"));
+    WAIT_FOR(panel.widget().findChild<QLineEdit*>("measured_rake@2"));
   }
   void enter(const char* box, const char* figure) { panel.the<QLineEdit>(box).setText(figure); }
 
@@ -218,7 +218,7 @@ TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
   EXPECT_TRUE(panel.shows("correction", "no tool has been measured"));
   panel.picture("nothing_measured", "correction_dialog");
   // The core in the middle, too thick by 0.05 mm, half the tolerance.
-  enter("measured_4", "9,8");
+  enter("measured_core_diameter@15", "9,8");
   panel.press("keep_measured");
   WAIT_FOR(panel.enabled("apply_correction"));
   const std::vector<MeasuredFigure> kept = measuredOf(readRecord(path().toStdString()));
@@ -267,17 +267,17 @@ TEST_F(MeasuredTool, KeepsWhatWasEnteredOfItWhileTheNextOneIsGround) {
 TEST_F(MeasuredTool, SetsNothingByAWrongEntryOrForZeroPointsFoundAnew) {
   ASSERT_NO_FATAL_FAILURE(open());
   for (const char* wrong : {"98", "9.8 mm", "nan"}) {
-    enter("measured_4", wrong);
+    enter("measured_core_diameter@15", wrong);
     panel.press("keep_measured");
     EXPECT_TRUE(panel.shows("correction", std::string("core = ") + wrong + "; allowed: "));
   }
   EXPECT_TRUE(measuredOf(readRecord(path().toStdString())).empty());
-  enter("measured_4", "8.8");  // a digit
+  enter("measured_core_diameter@15", "8.8");  // a digit
   panel.press("keep_measured");
   WAIT_FOR(panel.shows("correction", "no correction: measure the tool again"));
   EXPECT_TRUE(panel.shows("correction", "tool 7: core_diameter@15 = 8.8 mm; allowed: "));
   EXPECT_FALSE(panel.enabled("apply_correction"));
-  enter("measured_4", "9.8");
+  enter("measured_core_diameter@15", "9.8");
   panel.press("keep_measured");
   WAIT_FOR(panel.enabled("apply_correction"));
   publishZeros(kFoundAt, 0.0015, -0.007, 1);

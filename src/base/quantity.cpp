@@ -21,19 +21,19 @@ using namespace units;
 
 constexpr std::array<ShopUnit, kUnitCount> kShopUnits{{
     {"", 1},
-    {" mm", kMillimetre},
-    {" mm/s", kMillimetre},
-    {" mm/s^2", kMillimetre},
-    {" mm/s^3", kMillimetre},
-    {" deg", kDegree},
-    {" deg/s", kDegree},
-    {" deg/s^2", kDegree},
-    {" deg/s^3", kDegree},
-    {" s", 1},
-    {" mm/min", kMillimetrePerMinute},
-    {" um", kMicrometre},
-    {" mm/rad", kMillimetrePerRadian},
-    {" mm^3/s", kMillimetre3},
+    {"mm", kMillimetre},
+    {"mm/s", kMillimetre},
+    {"mm/s^2", kMillimetre},
+    {"mm/s^3", kMillimetre},
+    {"deg", kDegree},
+    {"deg/s", kDegree},
+    {"deg/s^2", kDegree},
+    {"deg/s^3", kDegree},
+    {"s", 1},
+    {"mm/min", kMillimetrePerMinute},
+    {"um", kMicrometre},
+    {"mm/rad", kMillimetrePerRadian},
+    {"mm^3/s", kMillimetre3},
 }};
 
 const ShopUnit& shopUnitOf(Unit unit) { return kShopUnits[static_cast<std::size_t>(unit)]; }
@@ -46,12 +46,15 @@ std::string number(const Quantity& quantity, int digits) {
 }  // namespace
 
 std::string text(const Quantity& quantity, int digits) {
-  return number(quantity, digits) + shopUnitOf(quantity.unit).symbol;
+  const std::string symbol = shopUnit(quantity.unit);
+  return number(quantity, digits) + (symbol.empty() ? "" : " " + symbol);
 }
 
 std::string text(const Quantity& from, const Quantity& to, int digits) {
   return number(from, digits) + " to " + text(to, digits);
 }
+
+const char* shopUnit(Unit unit) noexcept { return shopUnitOf(unit).symbol; }
 
 double shopScale(Unit unit) noexcept { return shopUnitOf(unit).scale; }
 

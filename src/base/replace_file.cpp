@@ -1,14 +1,19 @@
 #include "flute_grinder/base/replace_file.h"
 
+#include "flute_grinder/base/file_error.h"
+
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 
 namespace grinder {
 
@@ -97,6 +102,28 @@ void FileReplacement::commit() {
   require(::rename(fresh_.c_str(), file_.c_str()) == 0, file_);
   fresh_.clear();
 }
+
+FileLock::FileLock(const std::string& path) {
+  constexpr std::chrono::milliseconds pause(10), patience(10'000);
+  const auto failed = [&](const std::string& why) { return FileError(path + ": cannot be changed: " + why); };
+  for (auto waited = std::chrono::milliseconds(0);; waited += pause) {
+    descriptor_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor_ < 0) throw failed(std::generic_category().message(errno));
+    struct stat own {
+    }, now{};
+    const bool locked = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+    const int error = errno;
+    // Who had it has replaced the file, which is then another one.
+    if (locked && ::fstat(descriptor_, &own) == 0 && ::stat(path.c_str(), &now) == 0 && own.st_ino == now.st_ino)
+      return;
+    ::close(descriptor_);
+    if (!locked && error != EWOULDBLOCK) throw failed(std::generic_category().message(error));
+    if (waited >= patience) throw failed("another program has been changing it for 10 s");
+    if (!locked) std::this_thread::sleep_for(pause);
+  }
+}
+
+FileLock::~FileLock() { ::close(descriptor_); }
 
 void replaceFile(const std::string& path, const std::string& text) {
   FileReplacement fresh(path);

@@ -27,7 +27,7 @@ Turns mostOf(const CorrectOptions& options) {
 }
 
 double scaleOf(const FigureAt& at) { return shopScale(rowOf(at.figure).unit); }
-const char* unitNameOf(const FigureAt& at) { return rowOf(at.figure).unit == Unit::kRadian ? "deg" : "mm"; }
+const char* unitNameOf(const FigureAt& at) { return shopUnit(rowOf(at.figure).unit); }
 double turned(const Turns& turns, SetupTurn turn) { return turns[indexOf(turn)] / shopScale(rowOf(turn).unit); }
 
 Json toJson(const Turns& turns) {
@@ -97,14 +97,8 @@ int apply(const std::string& node, const CorrectOptions& options, const SetupFin
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kCorrection);
   const std::string refused = notCorrectable(found.last, fromMessage(*offsets.newest()), basis);
   if (!refused.empty()) return fail(refused);
-  for (const CorrectedAxis& one : kCorrectedAxes) {
-    const Eigen::Index i = indexOf(one.turn);
-    if (const int status =
-            setWorkOffset(nh, one.axis, found.last.offset[i] + correction.turn[i], basis, options.answers)) {
-      if (one.axis != kCorrectedAxes.front().axis) fail(kHalfSet);
-      return status;
-    }
-  }
+  const OffsetValues values = offsetsOf(found.last.offset + correction.turn);
+  if (const int status = setWorkOffsets(nh, values, basis, options.answers)) return status;
   if (options.json) return 0;
   const std::string by_hand = byHandText(correction);
   return succeed("the work offsets of Y and Z are set" + (by_hand.empty() ? "" : "; before the next tool, " + by_hand));

@@ -7,7 +7,6 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/read_file.h"
-#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
@@ -28,7 +27,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -313,12 +311,9 @@ std::optional<GroundTool> toolOf(const Record& record, const std::string& path) 
 void judgeAgain(const std::string& path, const Tolerances& tolerances) {
   Record record = readRecord(path);
   const std::optional<GroundTool> tool = toolOf(record, path);
-  if (!judgeAgain(record, tool ? &*tool : nullptr, tolerances)) return;
-  try {
-    replaceFile(path, text(record));
-  } catch (const std::system_error& error) {
-    throw FileError(path + ": the new verdict cannot be kept: " + error.code().message());
-  }
+  const auto judge = [&](Record& one) { return judgeAgain(one, tool ? &*tool : nullptr, tolerances); };
+  // A record that stays as it is may be one that cannot be written.
+  if (judge(record)) changeRecord(path, judge);
 }
 
 /// Reads a record. @param tolerances tolerances by which to judge it again; nothing to keep its verdict.

@@ -64,7 +64,7 @@ Json toJson(const CutterFigures& figures) {
   for (const GroundFigure& figure : figures) {
     const ToolFigureRow& row = rowOf(figure.figure);
     const double scale = shopScale(row.unit);
-    const std::string unit = row.unit == Unit::kRadian ? "_deg" : "_mm";
+    const std::string unit = std::string("_") + shopUnit(row.unit);
     Json& json = all[row.name];
     json = {{"ground" + unit, {figure.least.value / scale, figure.largest.value / scale}},
             {"x_mm", {figure.least.x / kMillimetre, figure.largest.x / kMillimetre}},

@@ -53,7 +53,7 @@ Json toJson(const std::string& node, const flute_grinder::WorkOffsets& offsets,
   Json axes = Json::object();
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const auto i = static_cast<std::size_t>(axis);
-    const std::string unit = axis == kA ? "_deg" : "_mm";
+    const std::string unit = std::string("_") + shopUnit(unitOf(axis, 0));
     const auto time = [](const ros::Time& at) {
       return at.isZero() ? Json(nullptr) : Json(timeText(at.toSec(), true));
     };
@@ -86,7 +86,7 @@ void printTable(const std::string& node, const flute_grinder::WorkOffsets& offse
     const auto i = static_cast<std::size_t>(axis);
     const auto column = [&](double si) { return format("  %12s", fixed(toShop(axis, si), 4).c_str()); };
     std::printf("%c   %s%s%s %-4s", axisLetter(axis), column(offsets.values[i]).c_str(),
-                column(state.position[i]).c_str(), column(state.work_position[i]).c_str(), axis == kA ? "deg" : "mm");
+                column(state.position[i]).c_str(), column(state.work_position[i]).c_str(), shopUnit(unitOf(axis, 0)));
     const std::string basis = escaped(basisText(axis, all.axes[i]));
     if (offsets.set_at[i].isZero()) {
       std::printf("  %s\n", basis.c_str());
@@ -144,10 +144,10 @@ int sayReclamped(const std::string& node) {
   return status != 0 ? status : succeed("a tool was clamped; where its teeth are is not known");
 }
 
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
-                  const std::vector<std::string>& answers) {
-  auto request = offsetRequest(axis, value, basis, answers);
-  return callAnswering<flute_grinder::SetOffset>(nh, "set_offset", request) ? 0 : 1;
+int setWorkOffsets(ros::NodeHandle& nh, const OffsetValues& values, const OffsetBasis& basis,
+                   const std::vector<std::string>& answers) {
+  auto request = offsetsRequest(values, basis, answers);
+  return callAnswering<flute_grinder::SetOffsets>(nh, "set_offsets", request) ? 0 : 1;
 }
 
 std::string offsetRefusal(const std::string& argument) {
@@ -162,10 +162,13 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   for (const std::string& argument : options.set) requireJob(axisOf(argument), options.job, "--set " + argument);
   const OffsetBasis basis = basisFor(options, OffsetMethod::kByHand);
   ros::NodeHandle nh(node);
+  OffsetValues values;
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
-    const double value = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
-    if (const int status = setWorkOffset(nh, axis, value, basis, options.answers)) return status;
+    values[axis] = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
+  }
+  if (!values.empty()) {
+    if (const int status = setWorkOffsets(nh, values, basis, options.answers)) return status;
   }
   return show(nh, options.json);
 }

@@ -45,12 +45,12 @@ int confirmWheel(const std::string& node, const ConfirmWheelOptions& options);
 /// Reports that a tool was clamped. @param node name of the grinder's node. @return the exit status.
 int sayReclamped(const std::string& node);
 
-/// Sets a work offset in the name of this command's user, and asks for the answers that it needs.
+/// Sets work offsets, all of them or none, in the name of this command's user, and asks for the answers that they need.
 /// @param nh the grinder's namespace.
-/// @param value [m], A [rad]. @param basis job and wheel for which it is set. @param answers answers given beforehand.
+/// @param basis job and wheel for which they are set. @param answers answers given beforehand.
 /// @return the exit status.
-int setWorkOffset(ros::NodeHandle& nh, int axis, double value, const OffsetBasis& basis,
-                  const std::vector<std::string>& answers);
+int setWorkOffsets(ros::NodeHandle& nh, const OffsetValues& values, const OffsetBasis& basis,
+                   const std::vector<std::string>& answers);
 
 /// Why `grind offsets --set` cannot take an argument; empty if it can.
 std::string offsetRefusal(const std::string& argument);

@@ -324,8 +324,7 @@ double settledPosition(const GrinderClient& client, int axis) {
 }  // namespace
 
 int jog(const std::string& node, int axis, double distance, double feed) {
-  const bool rotary = axis == kA;
-  const double unit = rotary ? units::kDegree : units::kMillimetre;
+  const double unit = shopScale(unitOf(axis, 0));
   ros::NodeHandle nh(node);
   const GrinderClient client(node);
   StopKeys keys(client);
@@ -346,7 +345,7 @@ int jog(const std::string& node, int axis, double distance, double feed) {
   if (state.state == flute_grinder::GrinderState::FAULT) return fail(state.fault);
   const double there = settledPosition(client, axis);
   if (!std::isfinite(there)) return fail(kLinkLost);
-  std::printf("%c %s %s\n", axisLetter(axis), fixed(there / unit, 4).c_str(), rotary ? "deg" : "mm");
+  std::printf("%c %s %s\n", axisLetter(axis), fixed(there / unit, 4).c_str(), shopUnit(unitOf(axis, 0)));
   return std::abs(there - end) <= kJogTolerance ? 0 : fail("the jog was stopped before its end");
 }
 

@@ -34,8 +34,8 @@ const ros::WallDuration kAgain(0.05);  ///< time between messages that this prog
 
 /// A figure in mm to 0.1 um or in deg to 0.0001, the resolution of a probe.
 std::string shown(double si, bool angle) {
-  const double scale = shopScale(angle ? Unit::kRadian : Unit::kMetre);
-  return fixed(si / scale, 4) + (angle ? " deg" : " mm");
+  const Unit unit = angle ? Unit::kRadian : Unit::kMetre;
+  return fixed(si / shopScale(unit), 4) + " " + shopUnit(unit);
 }
 
 /// @throw std::invalid_argument for contradictory arguments. @throw FileError
@@ -89,7 +89,7 @@ int settleOffset(ros::NodeHandle& nh, int axis, flute_grinder::ProbeGoal goal,
   int status = result.message.empty() ? 0 : fail(result.message);
   // Not by another cycle: what was probed counts.
   if (addAnswers(result.needs, goal.answers)) {
-    status = setWorkOffset(nh, axis, result.offset, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
+    status = setWorkOffsets(nh, {{axis, result.offset}}, basisOf(goal.job, OffsetMethod::kProbe), goal.answers);
   }
   if (status == 0 && goal.set_offset)
     std::printf("%-15s %c %s\n", "work offset", axisLetter(axis), shown(result.offset, axis == kA).c_str());

@@ -51,7 +51,7 @@ struct Figure {
 /// A figure from the table of figures.
 Figure askedFigure(ToolFigure figure) {
   const ToolFigureRow& row = rowOf(figure);
-  const std::string unit = row.unit == Unit::kRadian ? "deg" : "mm", words = row.words;
+  const std::string unit = shopUnit(row.unit), words = row.words;
   return {std::string(row.name) + "_" + unit,
           words + ", " + unit,
           words.substr(0, words.find(' ')) + " " + unit,
@@ -295,7 +295,7 @@ Json curves(const GroundTool& tool) {
     const bool is_asked = asked(row.value, first).has_value();
     curves.push_back({{"key", figure.key},
                       {"words", row.words},
-                      {"unit", row.unit == Unit::kRadian ? "deg" : "mm"},
+                      {"unit", shopUnit(row.unit)},
                       {"of_section", figure.of_section},
                       {"tolerance", is_asked ? Json(tolerance(row.value, first) / figure.unit) : Json(nullptr)}});
   }

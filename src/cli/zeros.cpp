@@ -66,9 +66,8 @@ int setZeros(const std::string& node, const ZerosOptions& options) {
   const std::optional<Eigen::Vector3d> zero = zeroOf(options, readMachineGeometry(ParameterReader(nh)));
   if (!zero) return 1;
   const OffsetBasis basis = basisOf(goalFromFile(options.job, options.operation), OffsetMethod::kComputed);
-  for (const int axis : {kX, kY, kZ}) {
-    if (const int status = setWorkOffset(nh, axis, (*zero)[axis], basis, options.answers)) return status;
-  }
+  const OffsetValues values{{kX, zero->x()}, {kY, zero->y()}, {kZ, zero->z()}};
+  if (const int status = setWorkOffsets(nh, values, basis, options.answers)) return status;
   printZero(*zero, options.json);
   return 0;
 }

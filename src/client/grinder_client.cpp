@@ -229,8 +229,8 @@ void GrinderClient::touchOff(const flute_grinder::TouchOff::Request& request, co
   });
 }
 
-void GrinderClient::setOffset(const flute_grinder::SetOffset::Request& request, const OnAnswer& on_answer) {
-  ask<flute_grinder::SetOffset>("set_offset", request, "set-offset", "set-offset: ", on_answer);
+void GrinderClient::setOffsets(const flute_grinder::SetOffsets::Request& request, const OnAnswer& on_answer) {
+  ask<flute_grinder::SetOffsets>("set_offsets", request, "set-offset", "set-offset: ", on_answer);
 }
 
 void GrinderClient::jogStep(const flute_grinder::JogStep::Request& request, const OnAnswer& on_answer) {

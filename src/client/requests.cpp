@@ -8,9 +8,8 @@ namespace grinder {
 namespace {
 
 template <typename Request>
-Request requestFor(int axis, const OffsetBasis& basis, const std::vector<std::string>& answers) {
+Request requestFor(const OffsetBasis& basis, const std::vector<std::string>& answers) {
   Request request;
-  request.axis = static_cast<std::uint8_t>(axis);
   request.basis = toMessage(basis);
   request.answers = answers;
   request.set_by = userAtHost();
@@ -19,16 +18,20 @@ Request requestFor(int axis, const OffsetBasis& basis, const std::vector<std::st
 
 }  // namespace
 
-flute_grinder::SetOffset::Request offsetRequest(int axis, double value, const OffsetBasis& basis,
-                                                const std::vector<std::string>& answers) {
-  auto request = requestFor<flute_grinder::SetOffset::Request>(axis, basis, answers);
-  request.value = value;
+flute_grinder::SetOffsets::Request offsetsRequest(const OffsetValues& values, const OffsetBasis& basis,
+                                                  const std::vector<std::string>& answers) {
+  auto request = requestFor<flute_grinder::SetOffsets::Request>(basis, answers);
+  for (const auto& [axis, value] : values) {
+    request.axes.push_back(static_cast<std::uint8_t>(axis));
+    request.values.push_back(value);
+  }
   return request;
 }
 
 flute_grinder::TouchOff::Request touchOffRequest(int axis, double position, const OffsetBasis& basis,
                                                  const std::vector<std::string>& answers) {
-  auto request = requestFor<flute_grinder::TouchOff::Request>(axis, basis, answers);
+  auto request = requestFor<flute_grinder::TouchOff::Request>(basis, answers);
+  request.axis = static_cast<std::uint8_t>(axis);
   request.position = position;
   return request;
 }

@@ -4,6 +4,7 @@
 #include "flute_grinder/base/units.h"
 
 #include <cmath>
+#include <utility>
 
 namespace grinder {
 
@@ -35,14 +36,19 @@ std::string travelRefusal(const OffsetLimits& limits, int axis, double value) {
          ", the travel of the axis";
 }
 
-std::optional<Need> needOfChange(const OffsetLimits& limits, int axis, const WorkOffset& from, double to) {
-  const double change = std::abs(to - from.value);
-  if (!from.wasSet() || std::isnan(from.value) || change <= limits.change[axis]) return std::nullopt;
-  return Need{NeedKind::kLargeChange,
-              offsetOf(axis) + " would change by " + shown(axis, change) + ", from " + shown(axis, from.value) +
-                  " to " + shown(axis, to) + "; allowed without an answer: " + shown(axis, limits.change[axis]),
-              {{axisName(axis), shown(axis, to), shown(axis, from.value), shown(axis, to - from.value)}},
-              {NeedAnswer::kSetOffset}};
+std::optional<Need> needOfChange(const OffsetLimits& limits, const WorkOffsets& from, const OffsetValues& to) {
+  Need need{NeedKind::kLargeChange, "", {}, {NeedAnswer::kSetOffset}};
+  for (const auto& [axis, value] : to) {
+    const WorkOffset& was = from.axes[static_cast<std::size_t>(axis)];
+    const double change = std::abs(value - was.value);
+    if (!was.wasSet() || std::isnan(was.value) || change <= limits.change[axis]) continue;
+    need.text += (need.text.empty() ? "" : "; ") + offsetOf(axis) + " would change by " + shown(axis, change) +
+                 ", from " + shown(axis, was.value) + " to " + shown(axis, value) +
+                 "; allowed without an answer: " + shown(axis, limits.change[axis]);
+    need.figures.push_back(
+        {axisName(axis), shown(axis, value), shown(axis, was.value), shown(axis, value - was.value)});
+  }
+  return need.figures.empty() ? std::nullopt : std::optional(std::move(need));
 }
 
 }  // namespace grinder

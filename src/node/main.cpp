@@ -61,7 +61,7 @@ void waitForEnd(const grinder::EndSignals& signals) {
 /// The names of the services of the node and its drive.
 std::vector<std::string> services() {
   std::vector<std::string> names{"~set_feed_override", "~confirm_swivel", "~confirm_wheel", "~reclamped",
-                                 "~jog_step",          "~set_offset",     "~touch_off",     "~hardware/inject_fault"};
+                                 "~jog_step",          "~set_offsets",    "~touch_off",     "~hardware/inject_fault"};
   for (const grinder::EventRow& request : grinder::kMachineEvents) {
     if (request.service) names.push_back(std::string("~") + request.service);
   }

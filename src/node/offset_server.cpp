@@ -7,6 +7,7 @@
 #include "flute_grinder/messages/reasons.h"
 #include "node/plain_name.h"
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <tuple>
@@ -46,10 +47,29 @@ std::string basisRefusal(const flute_grinder::OffsetBasis& basis) {
   return "";
 }
 
+/// Why the axes of a request are wrong; empty if they are right.
+std::string axesRefusal(const flute_grinder::TouchOff::Request& request) {
+  return request.axis < kAxisCount ? "" : axisRefusal(request.axis);
+}
+std::string axesRefusal(const flute_grinder::SetOffsets::Request& request) {
+  const std::size_t axes = request.axes.size(), values = request.values.size();
+  if (axes == 0 || axes != values) {
+    return "axes has " + std::to_string(axes) + " entries, values " + std::to_string(values) +
+           "; allowed: a value for each axis, of one axis at least";
+  }
+  std::array<bool, kAxisCount> named{};
+  for (const std::uint8_t axis : request.axes) {
+    if (axis >= kAxisCount) return axisRefusal(axis);
+    if (std::exchange(named[axis], true)) return "axes has " + axisName(axis) + " twice; allowed: each axis once";
+  }
+  return "";
+}
+
 /// Why a request is wrong whatever the state; empty if it is right.
 template <typename Request>
 std::string requestRefusal(const Request& request) {
-  if (request.axis >= kAxisCount) return axisRefusal(request.axis);
+  std::string wrong = axesRefusal(request);
+  if (!wrong.empty()) return wrong;
   if (!isPlainName(request.set_by)) return nameRefusal("set_by", request.set_by);
   const std::string refused = answersRefusal(request.answers);
   return refused.empty() ? basisRefusal(request.basis) : refused;
@@ -106,27 +126,34 @@ OffsetServer::OffsetServer(const ros::NodeHandle& private_nh, const ControlLoop&
   nh.setCallbackQueue(thread_.queue());
   offsets_ = nh.advertise<flute_grinder::WorkOffsets>("offsets", 10, true);
   publish();
-  services_.push_back(nh.advertiseService("set_offset", &OffsetServer::onSet, this));
+  services_.push_back(nh.advertiseService("set_offsets", &OffsetServer::onSet, this));
   services_.push_back(nh.advertiseService("touch_off", &OffsetServer::onTouchOff, this));
   services_.push_back(nh.advertiseService("confirm_wheel", &OffsetServer::onConfirmWheel, this));
   services_.push_back(nh.advertiseService("reclamped", &OffsetServer::onReclamped, this));
   thread_.start();
 }
 
-bool OffsetServer::onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response) {
-  const auto offset_at = [&](double) { return request.value; };
-  set(request, fromMessage(request.basis).method, offset_at, response);
+bool OffsetServer::onSet(flute_grinder::SetOffsets::Request& request, flute_grinder::SetOffsets::Response& response) {
+  const auto offsets_at = [&](const Axes&) {
+    OffsetValues values;
+    for (std::size_t i = 0; i < request.axes.size(); ++i) values[request.axes[i]] = request.values[i];
+    return values;
+  };
+  set(request, fromMessage(request.basis).method, offsets_at, response);
   return true;
 }
 
 bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response) {
-  const auto offset_at = [&](double position) { return response.value = position - request.position; };
-  set(request, OffsetMethod::kTouchOff, offset_at, response);
+  const auto offsets_at = [&](const Axes& position) {
+    response.value = position[request.axis] - request.position;
+    return OffsetValues{{request.axis, response.value}};
+  };
+  set(request, OffsetMethod::kTouchOff, offsets_at, response);
   return true;
 }
 
 template <typename Request, typename Response>
-void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response) {
+void OffsetServer::set(const Request& request, OffsetMethod method, const OffsetsAt& offsets_at, Response& response) {
   std::vector<Need> needs;
   withoutJob(
       [&] {
@@ -136,7 +163,7 @@ void OffsetServer::set(const Request& request, OffsetMethod method, const Offset
         offset.set_by = request.set_by;
         offset.basis = fromMessage(request.basis);
         offset.basis.method = method;
-        return setWithoutJob(request.axis, std::move(offset), offset_at, request.answers, needs);
+        return setWithoutJob(std::move(offset), offsets_at, request.answers, needs);
       },
       response);
   response.needs = toMessage(needs);
@@ -271,8 +298,7 @@ std::string OffsetServer::fit(const OffsetBasis& job, const std::string& by) {
   const std::string refused = refusal(loop_.status());
   if (!refused.empty()) return refused;
   const WorkOffsets now = store_.offsets();
-  std::vector<std::pair<int, WorkOffset>> fitted;
-  std::string done;
+  NewOffsets fitted;
   for (const OffsetMismatch& mismatch : mismatches(now, job)) {
     if (!mismatch.change) continue;
     WorkOffset offset{now.axes[static_cast<std::size_t>(mismatch.axis)].value + *mismatch.change, by,
@@ -280,12 +306,18 @@ std::string OffsetServer::fit(const OffsetBasis& job, const std::string& by) {
     offset.basis.method = OffsetMethod::kComputed;
     const std::string beyond = travelRefusal(limits_, mismatch.axis, offset.value);
     if (!beyond.empty()) return beyond;
-    done += (done.empty() ? "" : "; ") + saidOf(mismatch.axis, offset);
-    fitted.emplace_back(mismatch.axis, std::move(offset));
+    fitted.emplace(mismatch.axis, std::move(offset));
   }
+  return setAll(fitted);
+}
+
+/// Sets offsets, all of them or none. @return why none was set; empty if they were.
+std::string OffsetServer::setAll(const NewOffsets& fresh) {
+  std::string done;
+  for (const auto& [axis, offset] : fresh) done += (done.empty() ? "" : "; ") + saidOf(axis, offset);
   return changed(
-      [&fitted](WorkOffsets& offsets) {
-        for (const auto& [axis, offset] : fitted) setIn(offsets, axis, offset);
+      [&fresh](WorkOffsets& offsets) {
+        for (const auto& [axis, offset] : fresh) setIn(offsets, axis, offset);
       },
       done);
 }
@@ -302,35 +334,44 @@ std::string OffsetServer::setProbed(int axis, double value, const WorkOffsets& b
       return answer->set_value("the work offset of X was changed meanwhile; probe again");
     }
     answer->set_value(setWithoutJob(
-        axis, offset, [=](double) { return value; }, answers, needs));
+        offset,
+        [=](const Axes&) {
+          return OffsetValues{{axis, value}};
+        },
+        answers, needs));
   });
   return answered.get();
 }
 
-/// @param offset the offset, without its value and time. @param needs what must be answered first.
-/// @return why the offset was not set; empty if it was.
-std::string OffsetServer::setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at,
+/// Sets offsets, all of them or none. @param offset an offset without its value and time, the same for all axes.
+/// @param needs what must be answered first. @return why none was set; empty if they were.
+std::string OffsetServer::setWithoutJob(WorkOffset offset, const OffsetsAt& offsets_at,
                                         const std::vector<std::string>& answers, std::vector<Need>& needs) {
   const LoopStatus status = loop_.status();
   std::string refused = refusal(status);
   if (!refused.empty()) return refused;
-  const auto i = static_cast<std::size_t>(axis);
+  const WorkOffsets now = store_.offsets();
   offset.set_at = ros::WallTime::now().toSec();
-  refused = wheelRefusal(store_.offsets(), axis, offset.basis);
-  if (!refused.empty()) return refused;
-  if (offset.basis.method == OffsetMethod::kCorrection) {
-    refused = correctionRefusal(store_.offsets(), axis, offset.basis);
+  const OffsetValues values = offsets_at(Axes(status.position.data()));
+  NewOffsets fresh;
+  for (const auto& [axis, value] : values) {
+    refused = wheelRefusal(now, axis, offset.basis);
     if (!refused.empty()) return refused;
+    if (offset.basis.method == OffsetMethod::kCorrection) {
+      refused = correctionRefusal(now, axis, offset.basis);
+      if (!refused.empty()) return refused;
+    }
+    refused = travelRefusal(limits_, axis, value);
+    if (!refused.empty()) return refused;
+    offset.value = value;
+    fresh.emplace(axis, offset);
   }
-  offset.value = offset_at(status.position[i]);
-  refused = travelRefusal(limits_, axis, offset.value);
-  if (!refused.empty()) return refused;
-  const auto need = needOfChange(limits_, axis, store_.offsets().axes[i], offset.value);
+  const auto need = needOfChange(limits_, now, values);
   if (need && !isAnswered(*need, answers)) {
     needs = {*need};
     return need->text;
   }
-  return changed([&](WorkOffsets& offsets) { setIn(offsets, axis, offset); }, saidOf(axis, offset));
+  return setAll(fresh);
 }
 
 void OffsetServer::publish() {

@@ -3,7 +3,7 @@
 #include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/ProbeGoal.h"
 #include "flute_grinder/Reclamped.h"
-#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/SetOffsets.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/control/control_loop.h"
 #include "flute_grinder/machine/offset_limits.h"
@@ -16,13 +16,14 @@
 
 #include <functional>
 #include <future>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace grinder {
 
-/// Serves `~set_offset`, `~touch_off`, `~confirm_wheel` and `~reclamped`, and publishes the work offsets with the wheel
-/// on the spindle and the tool in the collet on `~offsets`. Runs in its own thread, which waits for the disk.
+/// Serves `~set_offsets`, `~touch_off`, `~confirm_wheel` and `~reclamped`, and publishes the work offsets with the
+/// wheel on the spindle and the tool in the collet on `~offsets`. Runs in its own thread, which waits for the disk.
 class OffsetServer {
  public:
   /// @param loop,gate,store must outlive this object.
@@ -60,10 +61,12 @@ class OffsetServer {
                         std::vector<Need>& needs);
 
  private:
-  /// Computes the offset of an axis from its position [m or rad].
-  using OffsetAt = std::function<double(double position)>;
+  /// Offsets to be set, by their axes, without their mounting and found_at.
+  using NewOffsets = std::map<int, WorkOffset>;
+  /// Computes offsets from the positions of the axes [m], A [rad].
+  using OffsetsAt = std::function<OffsetValues(const Axes& position)>;
 
-  bool onSet(flute_grinder::SetOffset::Request& request, flute_grinder::SetOffset::Response& response);
+  bool onSet(flute_grinder::SetOffsets::Request& request, flute_grinder::SetOffsets::Response& response);
   bool onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response);
   bool onConfirmWheel(flute_grinder::ConfirmWheel::Request& request, flute_grinder::ConfirmWheel::Response& response);
   bool onReclamped(flute_grinder::Reclamped::Request& request, flute_grinder::Reclamped::Response& response);
@@ -73,11 +76,12 @@ class OffsetServer {
   void note(const OffsetStore::Change& change);
   void saveNotes();
   template <typename Request, typename Response>
-  void set(const Request& request, OffsetMethod method, const OffsetAt& offset_at, Response& response);
-  std::string setWithoutJob(int axis, WorkOffset offset, const OffsetAt& offset_at,
-                            const std::vector<std::string>& answers, std::vector<Need>& needs);
+  void set(const Request& request, OffsetMethod method, const OffsetsAt& offsets_at, Response& response);
+  std::string setWithoutJob(WorkOffset offset, const OffsetsAt& offsets_at, const std::vector<std::string>& answers,
+                            std::vector<Need>& needs);
   std::string mount(const OffsetBasis& job, const std::string& by);
   std::string fit(const OffsetBasis& job, const std::string& by);
+  std::string setAll(const NewOffsets& fresh);
   void publish();
 
   const ControlLoop& loop_;

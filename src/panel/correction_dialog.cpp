@@ -36,7 +36,14 @@ constexpr int kCorrectionLines = 6;
 constexpr int kDialogWidth = 80;  ///< width of the dialog, in digits
 constexpr int kFigureDecimals = 4;
 constexpr double kSameOffset = 1e-9;  ///< [m]
-constexpr const char* kHeads[] = {"figure", "asked", "measured", "next tool, unchanged", "next tool, corrected"};
+
+/// A column of the table.
+enum Column { kFigure, kAsked, kMeasured, kUnchanged, kCorrected };
+constexpr std::pair<Column, const char*> kHeads[] = {{kFigure, "figure"},
+                                                     {kAsked, "asked"},
+                                                     {kMeasured, "measured"},
+                                                     {kUnchanged, "next tool, unchanged"},
+                                                     {kCorrected, "next tool, corrected"}};
 
 XmlRpc::XmlRpcValue parameter(const std::string& name, const std::atomic<bool>& stop) {
   auto value = readParameter(name, stop);
@@ -68,7 +75,6 @@ Turns mostTurnsOf(const std::string& grinder, const std::atomic<bool>& stop) {
 }
 
 QString shown(double si, Unit unit) { return QString::number(si / shopScale(unit), 'f', kFigureDecimals); }
-QString unitName(Unit unit) { return unit == Unit::kRadian ? "deg" : "mm"; }
 
 /// @param utc text of utcText().
 QString localTime(const std::string& utc) {
@@ -136,17 +142,23 @@ void CorrectionDialog::layOut() {
 void CorrectionDialog::begin(std::vector<MeasuredFigure> figures) {
   says_->setText("Reading the records ...");
   if (table_ != nullptr) table_->setEnabled(false);
-  working_ = std::async(std::launch::async, [this, figures = std::move(figures)] { return work(figures); });
+  // What has been entered stays that of its tool, whatever has been ground since.
+  const std::uint64_t tool = entered().empty() ? 0 : done_.tool.number;
+  working_ = std::async(std::launch::async, [this, figures = std::move(figures), tool] { return work(figures, tool); });
 }
 
-CorrectionDialog::Done CorrectionDialog::work(const std::vector<MeasuredFigure>& figures) const {
+CorrectionDialog::Done CorrectionDialog::work(const std::vector<MeasuredFigure>& figures, std::uint64_t tool) const {
   Done done;
   try {
     const ValidJob job(readJobFile(file_, operation_));
     done.basis = basisOf(goalFromFile(file_, operation_), OffsetMethod::kCorrection);
     const std::vector<ToolNumber> tools = toolsIn(recordsOf(grinder_, stop_), jobDigest(*job));
-    done.tool = toolOf(tools, 0);
-    if (!figures.empty()) keepMeasured(toolOf(tools, done_.tool.number), figures, userAtHost());
+    done.tool = toolOf(tools, tool);
+    if (!figures.empty()) {
+      keepMeasured(done.tool, figures, userAtHost());
+      done.kept = true;
+      done.tool = toolOf(tools, 0);
+    }
     done.found = findingsOf(withLaws(job), tools, 0);
     const bool known = done.found->isKnown();
     done.correction = done.found->correction(known ? mostTurnsOf(grinder_, stop_) : Turns(Turns::Zero()));
@@ -173,52 +185,75 @@ void CorrectionDialog::take(Done done) {
   if (table_ != nullptr) table_->setEnabled(true);
   // What was shown stays, with what has been typed, if nothing could be read.
   if (!done.found) return;
+  const auto stays = done.kept ? std::map<std::string, QString>() : entered();
   done_ = std::move(done);
-  tool_->setText(QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of its "
-                         "first tooth.")
-                     .arg(done_.tool.number)
-                     .arg(localTime(done_.found->last.ended)));
-  showTable();
+  const MeasuredTool& last = done_.found->last;
+  tool_->setText(done_.tool.number == last.number
+                     ? QString("Tool %1, the last of this job and set-up, ground until %2. Enter what a gauge says of "
+                               "its first tooth.")
+                           .arg(last.number)
+                           .arg(localTime(last.ended))
+                     : QString("Tool %1, of which figures are entered. Tool %2 has been ground since: keep or delete "
+                               "them first.")
+                           .arg(done_.tool.number)
+                           .arg(last.number));
+  showTable(stays);
 }
 
-void CorrectionDialog::showTable() {
+/// What has been typed and not kept, by the texts of the figures.
+std::map<std::string, QString> CorrectionDialog::entered() const {
+  std::map<std::string, QString> all;
+  for (const Row& row : rows_) {
+    const QString typed = row.measured->text().trimmed();
+    if (!typed.isEmpty()) all[text(row.at)] = typed;
+  }
+  return all;
+}
+
+void CorrectionDialog::showTable(const std::map<std::string, QString>& entered) {
   delete table_;
   rows_.clear();
   table_ = new QWidget;
   auto* grid = new QGridLayout(table_);
   grid->setContentsMargins(0, 0, 0, 0);
-  int column = 0;
-  for (const char* head : kHeads) {
+  for (const auto& [column, head] : kHeads) {
     auto* label = new QLabel(head);
     QFont bold = label->font();
     bold.setBold(true);
     label->setFont(bold);
-    grid->addWidget(label, 0, column++);
+    grid->addWidget(label, 0, column);
   }
   const bool known = done_.found->isKnown();
+  const MeasuredTool& last = done_.found->last;
   for (const CorrectedFigure& figure : correctedFigures(done_.found->model, done_.correction)) {
-    const int row = static_cast<int>(rows_.size()) + 1;
+    const int row = grid->rowCount();
+    const std::string at = text(figure.at);
     const Unit unit = rowOf(figure.at.figure).unit;
     auto* entry = new QLineEdit;
-    entry->setObjectName(QString("measured_%1").arg(row - 1));
-    const MeasuredFigure* measured = done_.found->last.find(figure.at);
+    entry->setObjectName(QString::fromStdString("measured_" + at));
+    if (const auto typed = entered.find(at); typed != entered.end()) entry->setText(typed->second);
+    connect(entry, &QLineEdit::textChanged, this, [this] {
+      const bool is_earlier = done_.tool.number != done_.found->last.number;
+      if (is_earlier && this->entered().empty() && !working_.valid()) begin({});
+    });
+    const MeasuredFigure* measured = last.number == done_.tool.number ? last.find(figure.at) : nullptr;
     if (measured != nullptr) entry->setPlaceholderText(shown(measured->value, unit));
-    const auto cell = [&](const QString& name, double value) {
-      auto* label = namedLabel(QString("%1_%2").arg(name).arg(row - 1));
-      if (known) label->setText(shown(value, unit) + " " + unitName(unit));
+    const auto cell = [&](const std::string& name, double value) {
+      auto* label = namedLabel(QString::fromStdString(name + "_" + at));
+      if (known) label->setText(shown(value, unit) + " " + shopUnit(unit));
       if (known && !(std::abs(value - figure.asked) <= figure.tolerance)) {
         label->setStyleSheet(QString("color: %1;").arg(kWrong));
         label->setText(label->text() + ", out");
       }
       return label;
     };
-    grid->addWidget(new QLabel(nameOf(figure.at)), row, 0);
+    grid->addWidget(new QLabel(nameOf(figure.at)), row, kFigure);
     grid->addWidget(
-        new QLabel(QString("%1 ± %2 %3").arg(shown(figure.asked, unit), shown(figure.tolerance, unit), unitName(unit))),
-        row, 1);
-    grid->addWidget(entry, row, 2);
-    grid->addWidget(cell("now", figure.now), row, 3);
-    grid->addWidget(cell("after", figure.after), row, 4);
+        new QLabel(QString("%1 ± %2 %3").arg(shown(figure.asked, unit), shown(figure.tolerance, unit), shopUnit(unit))),
+        row, kAsked);
+    grid->addWidget(entry, row, kMeasured);
+    grid->addWidget(cell("now", figure.now), row, kUnchanged);
+    grid->addWidget(cell("after", figure.after), row, kCorrected);
     rows_.push_back({figure.at, entry});
   }
   qobject_cast<QVBoxLayout*>(layout())->insertWidget(1, table_);
@@ -228,10 +263,9 @@ void CorrectionDialog::keep() {
   std::vector<MeasuredFigure> figures;
   try {
     const GrindJob job = readJobFile(file_, operation_);
-    for (const Row& row : rows_) {
+    for (auto [at, typed] : entered()) {
       // Point and comma are both the decimal sign, as in all boxes for numbers.
-      const QString entered = row.measured->text().trimmed().replace(',', '.');
-      if (!entered.isEmpty()) figures.push_back(measuredFrom(text(row.at) + "=" + entered.toStdString(), job));
+      figures.push_back(measuredFrom(at + "=" + typed.replace(',', '.').toStdString(), job));
     }
     if (figures.empty()) throw std::invalid_argument("nothing is entered");
   } catch (const std::exception& error) {
@@ -272,21 +306,20 @@ Turns CorrectionDialog::present() const {
 
 void CorrectionDialog::ask(const Turns& offset, const QString& text, const std::optional<Turns>& back_to) {
   Comparison figures{{"now", "then", "change"}, {}};
-  std::vector<flute_grinder::SetOffset::Request> requests;
   for (const CorrectedAxis& one : kCorrectedAxes) {
     const double now = present()[indexOf(one.turn)], then = offset[indexOf(one.turn)];
     const auto cell = [](double value) { return shown(value, Unit::kMetre) + " mm"; };
     figures.rows.push_back({QString(axisLetter(one.axis)), cell(now), cell(then), cell(then - now)});
-    // The figures are shown here: the answer to a large change is given with them.
-    requests.push_back(offsetRequest(one.axis, then, done_.basis, {toString(NeedAnswer::kSetOffset)}));
   }
+  // The figures are shown here: the answer to a large change is given with them.
+  const auto request = offsetsRequest(offsetsOf(offset), done_.basis, {toString(NeedAnswer::kSetOffset)});
   const std::string by_hand = back_to ? byHandText(done_.correction) : "";
   const QString also = by_hand.empty() ? "" : QString::fromStdString(" Then " + by_hand + ".");
   question_->ask(
       text + also, figures,
-      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, requests, back_to] {
+      {{"confirm_correction", "Set them", "What is shown then counts; nothing moves", false, [this, request, back_to] {
           back_to_ = back_to;
-          Q_EMIT wanted(requests);
+          Q_EMIT wanted(request);
         }}});
   showQuestion(true);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/SetOffsets.h"
 #include "flute_grinder/WorkOffsets.h"
 #include "flute_grinder/record/correction.h"
 #include "panel/question.h"
@@ -13,7 +13,9 @@
 #include <QTimer>
 
 #include <atomic>
+#include <cstdint>
 #include <future>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,14 +44,15 @@ class CorrectionDialog : public QDialog {
   void showAnswer(const std::string& refusal);
 
  Q_SIGNALS:
-  void wanted(const std::vector<flute_grinder::SetOffset::Request>& requests);
+  void wanted(const flute_grinder::SetOffsets::Request& request);
 
  private:
   /// The result of the thread.
   struct Done {
     std::optional<SetupFindings> found{};  ///< nothing if nothing is known, with the reason in `text`
     Correction correction{};
-    ToolNumber tool{};  ///< the last tool
+    ToolNumber tool{};  ///< tool of which figures are entered
+    bool kept = false;  ///< whether what was entered is in its record
     OffsetBasis basis{};
     QString text{};
     bool good = false;
@@ -63,10 +66,12 @@ class CorrectionDialog : public QDialog {
 
   void layOut();
   void begin(std::vector<MeasuredFigure> figures);
-  Done work(const std::vector<MeasuredFigure>& figures) const;
+  /// @param tool number of the tool that was measured; 0 for the last.
+  Done work(const std::vector<MeasuredFigure>& figures, std::uint64_t tool) const;
   void poll();
   void take(Done done);
-  void showTable();
+  std::map<std::string, QString> entered() const;
+  void showTable(const std::map<std::string, QString>& entered);
   void keep();
   bool isSet() const;
   Turns present() const;

@@ -565,7 +565,7 @@ void GrindPanel::askToTakeBack() {
   touch_off_->ask("Set it back?", change(axis, now, before.value), [this, axis = axis, before = before] {
     const auto answered = reply("touch-off: the work offset of " + axisName(axis) + " is what it was");
     const std::vector<std::string> shown{toString(NeedAnswer::kSetOffset)};
-    link_->setOffset(offsetRequest(axis, before.value, before.basis, shown), [=](const std::string& refusal) {
+    link_->setOffsets(offsetsRequest({{axis, before.value}}, before.basis, shown), [=](const std::string& refusal) {
       answered(refusal);
       if (refusal.empty()) offerBack(std::nullopt);
     });
@@ -589,25 +589,14 @@ void GrindPanel::openCorrection() {
   }
   const std::string operation = job_->operation();
   correction_ = new CorrectionDialog(job_->file(), operation, QFileInfo(job_->file()).fileName(), name_, this);
-  connect(correction_, &CorrectionDialog::wanted, this, [this, dialog = correction_](const auto& requests) {
-    setOffsets(requests, [this, dialog](const std::string& refusal) {
+  connect(correction_, &CorrectionDialog::wanted, this, [this, dialog = correction_](const auto& request) {
+    link_->setOffsets(request, [this, dialog](const std::string& refusal) {
       showMessage(refusal.empty() ? "correction: the work offsets of Y and Z are set" : refusal);
       if (dialog) dialog->showAnswer(refusal);
     });
   });
   moveBeside(*correction_, *this);
   correction_->show();
-}
-
-void GrindPanel::setOffsets(std::vector<flute_grinder::SetOffset::Request> requests,
-                            const GrinderClient::OnAnswer& on_answer) {
-  if (requests.empty()) return on_answer("");
-  const flute_grinder::SetOffset::Request next = requests.front();
-  requests.erase(requests.begin());
-  link_->setOffset(next, [this, requests = std::move(requests), on_answer](const std::string& refusal) {
-    if (refusal.empty()) return setOffsets(requests, on_answer);
-    on_answer(requests.empty() ? refusal + "; " + kHalfSet : refusal);
-  });
 }
 
 /// The basis of an offset: the chosen job, if there is one. @throw std::exception with the reason if it is unknown.

@@ -99,7 +99,6 @@ class GrindPanel : public rviz::Panel {
   void askReclamped();
   void openCorrection();
   /// Sets work offsets one after the other, until one is refused.
-  void setOffsets(std::vector<flute_grinder::SetOffset::Request> requests, const GrinderClient::OnAnswer& on_answer);
   OffsetBasis touchedFor(int axis) const;
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception with the reason if it
   /// cannot.

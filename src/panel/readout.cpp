@@ -1,6 +1,7 @@
 #include "panel/readout.h"
 
 #include "flute_grinder/base/format.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/base/units.h"
 #include "panel/plain_words.h"
 #include "panel/text_view.h"
@@ -219,7 +220,7 @@ PositionBox::PositionBox(QWidget* parent)
   for (int axis = 0; axis < kAxisCount; ++axis) {
     QLabel* label = namedLabel(QString("to_go_%1").arg(QChar(axisLetter(axis)).toLower()));
     label->setFont(small);
-    label->setToolTip(QString("Distance to go to the end of the running move in %1").arg(axis == kA ? "deg" : "mm"));
+    label->setToolTip(QString("Distance to go to the end of the running move in %1").arg(shopUnit(unitOf(axis, 0))));
     // A long text must not make the panel grow.
     label->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Preferred);
     to_go->addWidget(label, 1);
@@ -241,19 +242,18 @@ void PositionBox::show(const GrinderView& view) {
   const bool moves = view.state && !(Axes(view.state->distance_to_go.data()) == 0).all();
   to_go_title_->setText(moves ? "To go" : " ");
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const char* unit = axis == kA ? "deg" : "mm";
+    const Unit unit = unitOf(axis, 0);
     const auto shown = [&](double si) {
-      return std::isfinite(si) ? QString::fromStdString(fixed(si / (axis == kA ? kDegree : kMillimetre), decimals_))
-                               : QString("-");
+      return std::isfinite(si) ? QString::fromStdString(fixed(si / shopScale(unit), decimals_)) : QString("-");
     };
     QLabel& label = *values_[static_cast<std::size_t>(axis)];
     const double work = view.work_position ? (*view.work_position)[axis] : kUnknown;
     const double machine = view.position ? (*view.position)[axis] : kUnknown;
-    label.setText(QString("%1 %2 %3").arg(axisLetter(axis)).arg(shown(work), decimals_ + 6).arg(unit));
+    label.setText(QString("%1 %2 %3").arg(axisLetter(axis)).arg(shown(work), decimals_ + 6).arg(shopUnit(unit)));
     const double to_go = view.state ? view.state->distance_to_go[static_cast<std::size_t>(axis)] : 0;
     to_go_[static_cast<std::size_t>(axis)]->setText(moves ? toGoText(axis, to_go) : "");
     label.setToolTip(QString("Position in work coordinates.\nMachine: %1 %3\nWork offset: %2 %3")
-                         .arg(shown(machine), shown(machine - work), unit));
+                         .arg(shown(machine), shown(machine - work), shopUnit(unit)));
   }
 }
 

@@ -24,7 +24,7 @@ constexpr int kLinesOfOffset = 3;
 constexpr double kFarthest = 9999;  ///< largest entry [mm or deg]
 
 double scaleOf(int axis) { return shopScale(unitOf(axis, 0)); }
-const char* unitName(int axis) { return axis == kA ? "deg" : "mm"; }
+const char* unitName(int axis) { return shopUnit(unitOf(axis, 0)); }
 
 }  // namespace
 

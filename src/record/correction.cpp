@@ -127,6 +127,12 @@ std::string settingsText(const SetupFindings& found, const Correction& correctio
   return correction.by_swivel ? lines + "\n" + byHandText(correction) + "; then use 'grind correct --since'" : lines;
 }
 
+OffsetValues offsetsOf(const Turns& offset) {
+  OffsetValues values;
+  for (const CorrectedAxis& one : kCorrectedAxes) values[one.axis] = offset[indexOf(one.turn)];
+  return values;
+}
+
 std::string notCorrectable(const MeasuredTool& last, const WorkOffsets& offsets, const OffsetBasis& job) {
   for (std::size_t i = 0; i < kCorrectedAxes.size(); ++i) {
     const WorkOffset& now = offsets.axes[static_cast<std::size_t>(kCorrectedAxes[i].axis)];

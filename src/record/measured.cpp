@@ -2,7 +2,6 @@
 
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
-#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/curve/conical_cutter.h"
 #include "flute_grinder/job/valid_job.h"
@@ -13,7 +12,6 @@
 #include <filesystem>
 #include <limits>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 namespace grinder {
@@ -27,7 +25,7 @@ constexpr std::size_t kMostNumbers = 10;  ///< most numbers of tools in a messag
 
 bool isOfEnd(ToolFigure figure) { return rowOf(figure).of == StrokeForm::kStraight; }
 bool isAngle(ToolFigure figure) { return rowOf(figure).unit == Unit::kRadian; }
-const char* valueKey(ToolFigure figure) { return isAngle(figure) ? "value_deg" : "value_mm"; }
+std::string valueKey(ToolFigure figure) { return std::string("value_") + shopUnit(rowOf(figure).unit); }
 std::string nameOf(ToolFigure figure) { return figure == ToolFigure::kCoreDiameter ? kCore : toString(figure); }
 
 /// Whether rake and core are the same along the flute.
@@ -139,19 +137,14 @@ void addMeasured(Record& record, const MeasuredFigure& measured) {
 }
 
 Record keepMeasured(const ToolNumber& tool, std::vector<MeasuredFigure> figures, const std::string& by) {
-  Record record = readRecord(tool.path);
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   for (MeasuredFigure& measured : figures) {
     measured.when = utcText(std::chrono::duration<double>(now).count());
     measured.by = by;
-    addMeasured(record, measured);
   }
-  try {
-    replaceFile(tool.path, text(record));
-  } catch (const std::system_error& error) {
-    throw FileError(tool.path + ": what was measured cannot be kept: " + error.code().message());
-  }
-  return record;
+  return changeRecord(tool.path, [&](Record& record) {
+    for (const MeasuredFigure& measured : figures) addMeasured(record, measured);
+  });
 }
 
 std::vector<MeasuredFigure> measuredOf(const Record& record) {

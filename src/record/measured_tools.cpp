@@ -80,7 +80,7 @@ Json figureHistory(const ValidJob& job, const std::vector<MeasuredTool>& tools, 
   return {{"figure", toString(at.figure)},
           {"words", row.words},
           {"x_mm", row.of == StrokeForm::kStraight ? Json(nullptr) : Json(shopNumber(at.x, Unit::kMetre))},
-          {"unit", row.unit == Unit::kRadian ? "deg" : "mm"},
+          {"unit", shopUnit(row.unit)},
           {"asked", asks ? Json(shown(asks->value)) : Json(nullptr)},
           {"tolerance", asks ? Json(shown(asks->tolerance)) : Json(nullptr)},
           {"tools", list}};

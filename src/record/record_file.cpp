@@ -4,6 +4,7 @@
 #include "flute_grinder/base/file_error.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/read_file.h"
+#include "flute_grinder/base/replace_file.h"
 #include "flute_grinder/job/sha256.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 
 namespace grinder {
@@ -246,6 +248,18 @@ RecordHead readHead(const std::string& path) {
     if (file.eof()) throw std::invalid_argument("it is cut off");
     return headIn(line);
   });
+}
+
+Record changeRecord(const std::string& path, const std::function<void(Record&)>& change) {
+  const FileLock lock(path);
+  Record record = readRecord(path);
+  change(record);
+  try {
+    replaceFile(path, text(record));
+  } catch (const std::system_error& error) {
+    throw FileError(path + ": cannot be changed: " + error.code().message());
+  }
+  return record;
 }
 
 Record readRecord(const std::string& path) {

@@ -82,8 +82,7 @@ std::string placeOf(const FigurePlace& p, ToolFigure figure) {
 /// The criterion of a figure without a measured value.
 Criterion criterionOf(const ToolFigureRow& row, double asked, double tolerance) {
   const double scale = shopScale(row.unit);
-  const char* unit = row.unit == Unit::kRadian ? "deg" : "mm";
-  return {row.words, unit, true, 3, asked / scale, tolerance / scale, {}, false, "", ""};
+  return {row.words, shopUnit(row.unit), true, 3, asked / scale, tolerance / scale, {}, false, "", ""};
 }
 
 /// The same at a place, where nothing may be asked.

@@ -103,7 +103,7 @@ bool isOfEnd(ToolFigure figure) { return rowOf(figure).of == StrokeForm::kStraig
 const Measurement& of(ToolFigure figure) { return kMeasurements[static_cast<std::size_t>(figure)]; }
 
 double scaleOf(const GroundFigure& figure) { return shopScale(rowOf(figure.figure).unit); }
-const char* unitOf(const GroundFigure& figure) { return rowOf(figure.figure).unit == Unit::kRadian ? " deg" : " mm"; }
+std::string unitOf(const GroundFigure& figure) { return std::string(" ") + shopUnit(rowOf(figure.figure).unit); }
 
 std::string rangeText(const GroundFigure& figure, const char* digits, const Range& range) {
   const std::string low = format(digits, range.from / scaleOf(figure));
@@ -178,7 +178,7 @@ std::string askedText(const GroundFigure& figure) { return figure.asked ? rangeT
 
 std::string text(const GroundFigure& figure) {
   if (!figure.asked) return groundText(figure);
-  const char* unit = unitOf(figure);
+  const std::string unit = unitOf(figure);
   return groundText(figure) + "; asked " + askedText(figure) + unit + " within " +
          format("%g", figure.tolerance / scaleOf(figure)) + unit;
 }

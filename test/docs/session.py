@@ -142,7 +142,7 @@ class Session:
                 master = xmlrpc.client.ServerProxy(self.master)
                 known = {stem(name) for kind in master.getSystemState('/test')[2] for _, names in kind for name in names}
                 return ({stem(node) for node in nodes} <= known and
-                        all(master.lookupService('/test', node + '/set_offset')[0] == 1 for node in grinders))
+                        all(master.lookupService('/test', node + '/set_offsets')[0] == 1 for node in grinders))
             except OSError:
                 return False
 

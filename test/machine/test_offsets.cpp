@@ -346,18 +346,25 @@ TEST(OffsetLimits, AreTheTravelAndOfAOneTurnMoreAndAnyOffsetIfItTurnsForEver) {
 
 TEST(OffsetLimits, ALargeChangeOfOneThatWasSetWantsAConfirmation) {
   const OffsetLimits limits = limitsOf(100);
-  const WorkOffset was{0.0015, "anna@grinder", 1.7e9};
-  const auto need = needOfChange(limits, kY, was, -0.0105);
+  WorkOffsets was;
+  for (const int axis : {kY, kZ, kA}) was.axes[static_cast<std::size_t>(axis)] = {0.0015, "anna@grinder", 1.7e9};
+  const auto need = needOfChange(limits, was, {{kY, -0.0105}});
   ASSERT_TRUE(need);
   EXPECT_EQ(need->text,
             "work offset of axis Y would change by 12 mm, from 1.5 mm to -10.5 mm; allowed without an answer: 5 mm");
   EXPECT_EQ(need->figures[0].difference, "-12 mm");
-  EXPECT_FALSE(needOfChange(limits, kY, was, 0.006));
-  EXPECT_TRUE(needOfChange(limits, kY, was, kNan));
-  EXPECT_FALSE(needOfChange(limits, kA, was, 6));
-  EXPECT_TRUE(needOfChange(limits, kA, was, 7));
-  EXPECT_FALSE(needOfChange(limits, kY, WorkOffset{}, 0.1)) << "never set";
-  EXPECT_FALSE(needOfChange(limits, kY, {kNan, "anna@grinder", 1.7e9}, 0.1)) << "unknown";
+  const auto of_several = needOfChange(limits, was, {{kY, -0.0105}, {kZ, 0.002}, {kA, 7}});
+  ASSERT_TRUE(of_several);
+  EXPECT_EQ(of_several->text.find(need->text + "; work offset of axis A would change by "), 0U) << of_several->text;
+  EXPECT_EQ(of_several->figures.size(), 2U) << "of Z it is small";
+  EXPECT_NE(answerId(*of_several, NeedAnswer::kSetOffset), answerId(*need, NeedAnswer::kSetOffset));
+  EXPECT_FALSE(needOfChange(limits, was, {{kY, 0.006}}));
+  EXPECT_TRUE(needOfChange(limits, was, {{kY, kNan}}));
+  EXPECT_FALSE(needOfChange(limits, was, {{kA, 6}}));
+  EXPECT_TRUE(needOfChange(limits, was, {{kA, 7}}));
+  EXPECT_FALSE(needOfChange(limits, WorkOffsets{}, {{kY, 0.1}})) << "never set";
+  was.axes[kY].value = kNan;
+  EXPECT_FALSE(needOfChange(limits, was, {{kY, 0.1}})) << "unknown";
 }
 
 }  // namespace test_offsets

@@ -31,7 +31,7 @@ import yaml
 from actionlib_msgs.msg import GoalStatus
 from flute_grinder.msg import (GrindAction, GrindActionResult, GrinderState, GrindGoal, OffsetBasis, ProbeAction,
                                ProbeActionFeedback, ProbeGoal, Process, SetpointBatch, WrittenSetpoint)
-from flute_grinder.srv import ConfirmSwivel, ConfirmWheel, InjectFault, SetFeedOverride, SetOffset, TouchOff
+from flute_grinder.srv import ConfirmSwivel, ConfirmWheel, InjectFault, SetFeedOverride, SetOffsets, TouchOff
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Header
 from std_srvs.srv import Trigger
@@ -459,13 +459,13 @@ class Grinder:
         return rospy.ServiceProxy(name, kind)(*arguments)
 
     def set_offset(self, axis, value, by='anna@grinder', basis=None, answers=('set-offset',)):
-        return self._offset('set_offset', SetOffset, axis, value, by, basis, answers)
+        return self.set_offsets([axis], [value], by, basis, answers)
+
+    def set_offsets(self, axes, values, by='anna@grinder', basis=None, answers=('set-offset',)):
+        return self._call('set_offsets', SetOffsets, axes, values, by, basis or OffsetBasis(), list(answers))
 
     def touch_off(self, axis, position, by='anna@grinder', basis=None, answers=('set-offset',)):
-        return self._offset('touch_off', TouchOff, axis, position, by, basis, answers)
-
-    def _offset(self, service, kind, axis, value, by, basis, answers):
-        return self._call(service, kind, axis, value, by, basis or OffsetBasis(), list(answers))
+        return self._call('touch_off', TouchOff, axis, position, by, basis or OffsetBasis(), list(answers))
 
     enable = partialmethod(_call, 'enable', Trigger)
     disable = partialmethod(_call, 'disable', Trigger)

@@ -89,6 +89,10 @@ class TestSetting(OffsetsTest):
         self.start_ready()
         self.check_refused(self.client.set_offset(4, 0), 'axis = 4; allowed: 0 to 3 for X, Y, Z, A')
         self.check_refused(self.client.touch_off(255, 0), 'axis = 255; allowed: 0 to 3')
+        for axes, values in ([], []), ([X, Y], [0.01]), ([X], [0.01, 0.02]):
+            self.check_refused(self.client.set_offsets(axes, values), 'axes has %d entries, values %d; allowed: ' % (len(axes), len(values)))
+        self.check_refused(self.client.set_offsets([X, Y, X], [0.01, 0.01, 0.02]), 'axes has axis X twice; allowed: each axis once')
+        self.check_refused(self.client.set_offsets([X, Y, Z], [0.01, 0.01, 0.3]), 'work offset of axis Z = 300 mm; allowed: ')
         self.check_refused(self.client.set_offset(X, 0.3001),
                            'work offset of axis X = 300.1 mm; allowed: -100 to 300 mm, the travel of the axis')
         self.check_refused(self.client.touch_off(A, math.nan), ' deg, the travel of the axis')
@@ -118,6 +122,27 @@ class TestSetting(OffsetsTest):
         run.cancel()
         run.wait()
         self.check_touch_off_where_the_axes_stand()
+
+    def test_several_are_set_at_once_or_none_also_where_one_changes_by_much(self):
+        self.start_ready()
+        heard = gc.received(self.addCleanup, '/%s/offsets' % self.node.name, WorkOffsets)
+        gc.poll(lambda: heard, 'the offsets of the start')
+        self.assertTrue(self.client.set_offsets([Z, Y], [-0.007, 0.0015]).success)
+        correction = OffsetBasis(method=OffsetBasis.CORRECTION)
+        # Each time Y could be set, and the other one not.
+        with open(self.file) as file:
+            before = file.read()
+        far = self.client.set_offsets([Y, Z], [0.0014, 0.001], answers=())
+        self.check_refused(far, 'work offset of axis Z would change by 8 mm')
+        self.assertEqual([[figure.what for figure in need.figures] for need in far.needs], [['axis Z']])
+        self.check_refused(self.client.set_offsets([Y, X], [0.0014, 0.001], basis=correction), 'X was never set: it cannot be corrected')
+        self.check_refused(self.client.set_offsets([Y, A], [0.0014, math.nan]), ' deg, the travel of the axis')
+        with open(self.file) as file:
+            self.assertEqual(file.read(), before)
+        self.assertTrue(self.client.set_offsets([Y, Z], [0.0014, 0.001], answers=[far.needs[0].answers[0].id]).success)
+        # None was ever heard of that is set by half.
+        gc.poll(lambda: heard[-1].values[Y] == 0.0014, 'the offsets as set')
+        self.assertEqual([tuple(offsets.values[Y:A]) for offsets in heard], [(0, 0), (0.0015, -0.007), (0.0014, 0.001)])
 
     def test_refused_without_the_reference_and_while_homing(self):
         # Y homes first, and needs a second.

@@ -249,7 +249,7 @@ class TestPeers(unittest.TestCase):
         for target in sum(found, []):
             self.addCleanup(target.close)
         self.assertLessEqual({'/attacked/' + name for name in ('stop', 'jog', 'grind/goal', 'grind/cancel', 'probe/goal', 'probe/cancel', 'probe_alive',
-                                                               'jog_step', 'set_offset')}, {target.name for target in sum(found, [])})
+                                                               'jog_step', 'set_offsets')}, {target.name for target in sum(found, [])})
         return found
 
     def send(self, maker, targets, messages):

@@ -216,7 +216,7 @@ class TestMasterWatch(unittest.TestCase):
         self.node = self.start(gc.program('grinder'), '__name:=' + NODE[1:])
         # The action's goals and then its cancels are what it registers last.
         wait_for(lambda: {NODE + '/grind/goal', NODE + '/grind/cancel'} <= self.registered()['subscribers'] and
-                 self.api.lookupService(NODE + '/set_offset'), 'node as it is once it has started')
+                 self.api.lookupService(NODE + '/set_offsets'), 'node as it is once it has started')
         self.node_api = xmlrpc.client.ServerProxy(self.api.lookupNode(NODE))
 
     def start(self, *command):
@@ -278,7 +278,7 @@ class TestMasterWatch(unittest.TestCase):
             own.unregisterPublisher(topic, uri)
         for topic in before['subscribers']:
             own.unregisterSubscriber(topic, uri)
-        service_uri = self.api.lookupService(NODE + '/set_offset')
+        service_uri = self.api.lookupService(NODE + '/set_offsets')
         for service in before['services']:
             own.unregisterService(service, service_uri)
         wait_for(lambda: self.registered() == before, 'node as it was')

@@ -10,7 +10,7 @@
 #include "flute_grinder/MachineInfo.h"
 #include "flute_grinder/Reclamped.h"
 #include "flute_grinder/SetFeedOverride.h"
-#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/SetOffsets.h"
 #include "flute_grinder/Stop.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/WorkOffsets.h"
@@ -74,7 +74,7 @@ class Stage {
       answer(response, touch_refusal);
       response.needs = touch_needs;
     });
-    serve<flute_grinder::SetOffset>("set_offset", [this](const auto& request, auto& response) {
+    serve<flute_grinder::SetOffsets>("set_offsets", [this](const auto& request, auto& response) {
       offsets_set.push_back(request);
       answer(response, "");
     });
@@ -205,7 +205,7 @@ class Stage {
   std::vector<flute_grinder::TouchOff::Request> touches;
   std::string touch_refusal;
   std::vector<flute_grinder::Need> touch_needs;  ///< what must be answered then
-  std::vector<flute_grinder::SetOffset::Request> offsets_set;
+  std::vector<flute_grinder::SetOffsets::Request> offsets_set;
   int reclamped = 0;
   std::string goal_id;                 ///< of the progress
   flute_grinder::GrindResult planned;  ///< of a dry run

@@ -186,8 +186,8 @@ TEST_F(Jogging, ATouchOffShowsWhatItChangesBeforeItCountsAndIsTakenBack) {
   panel.press("confirm_touch");
   WAIT_FOR(stage.get(&Stage::offsets_set).size() == 1);
   const auto set = stage.get(&Stage::offsets_set)[0];
-  EXPECT_EQ(set.axis, kX);
-  EXPECT_EQ(set.value, -0.002866);
+  EXPECT_EQ(set.axes, std::vector<std::uint8_t>{kX});
+  EXPECT_EQ(set.values, std::vector<double>{-0.002866});
   EXPECT_EQ(set.basis.job_name, "before.yaml") << "with what it was set for";
   WAIT_FOR(!panel.enabled("touch_back"));
 

@@ -203,7 +203,7 @@ class MeasuredTool : public ZeroPoints {
     panel.openTab("Zero");
     WAIT_FOR(panel.enabled("measured"));
     panel.click("measured");
-    WAIT_FOR(panel.widget().findChild<QLineEdit*>("measured_0"));
+    WAIT_FOR(panel.widget().findChild<QLineEdit*>("measured_rake@2"));
   }
   void enter(const char* box, const char* figure) { panel.the<QLineEdit>(box).setText(figure); }
 
@@ -218,7 +218,7 @@ TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
   EXPECT_TRUE(panel.shows("correction", "no tool has been measured"));
   panel.picture("nothing_measured", "correction_dialog");
   // The core in the middle, too thick by 0.05 mm, half the tolerance.
-  enter("measured_4", "9,8");
+  enter("measured_core_diameter@15", "9,8");
   panel.press("keep_measured");
   WAIT_FOR(panel.enabled("apply_correction"));
   const std::vector<MeasuredFigure> kept = measuredOf(readRecord(path().toStdString()));
@@ -231,35 +231,53 @@ TEST_F(MeasuredTool, CorrectsTheZeroPointsOnceItIsConfirmedAndTheyAreSetBack) {
   panel.press("confirm_correction");
   WAIT_FOR(panel.shows("correction", "The work offsets of Y and Z are set."));
   auto set = stage.get(&Stage::offsets_set);
-  ASSERT_EQ(set.size(), 2U);
-  EXPECT_EQ(std::pair(set[0].axis, set[1].axis), std::pair(std::uint8_t{kY}, std::uint8_t{kZ}));
-  EXPECT_LT(set[0].value, 0.0015) << "the wheel goes deeper";
+  ASSERT_EQ(set.size(), 1U) << "both or none";
+  EXPECT_EQ(set[0].axes, (std::vector<std::uint8_t>{kY, kZ}));
+  ASSERT_EQ(set[0].values.size(), 2U);
+  EXPECT_LT(set[0].values[0], 0.0015) << "the wheel goes deeper";
   EXPECT_EQ(set[0].basis.method, flute_grinder::OffsetBasis::CORRECTION);
   EXPECT_EQ(set[0].basis.job_name, "paper.yaml");
-  publishZeros(kFoundAt, set[0].value, set[1].value);
+  publishZeros(kFoundAt, set[0].values[0], set[0].values[1]);
   WAIT_FOR(!panel.enabled("apply_correction"));  // it is set
   panel.press("correct_back");
   panel.press("confirm_correction");
-  WAIT_FOR(stage.get(&Stage::offsets_set).size() == 4);
+  WAIT_FOR(stage.get(&Stage::offsets_set).size() == 2);
   set = stage.get(&Stage::offsets_set);
-  EXPECT_EQ(std::pair(set[2].value, set[3].value), std::pair(0.0015, -0.007));
-  EXPECT_EQ(set[2].basis.method, flute_grinder::OffsetBasis::CORRECTION);
+  EXPECT_EQ(set[1].values, (std::vector<double>{0.0015, -0.007}));
+  EXPECT_EQ(set[1].basis.method, flute_grinder::OffsetBasis::CORRECTION);
+}
+
+TEST_F(MeasuredTool, KeepsWhatWasEnteredOfItWhileTheNextOneIsGround) {
+  ASSERT_NO_FATAL_FAILURE(open());
+  enter("measured_core_diameter@15", "9.8");
+  stage.be("running", panel);
+  const QString next = folder_.filePath("cell/stage/0000000008_20261122T170513.123Z.json");
+  QFile::copy(path(), next);
+  stage.be("ready", panel);
+  WAIT_FOR(panel.shows("measured_tool", "Tool 7, of which figures are entered. Tool 8 has been ground since"));
+  EXPECT_EQ(panel.the<QLineEdit>("measured_core_diameter@15").text(), "9.8");
+  panel.picture("entered_of_an_earlier_tool", "correction_dialog");
+  panel.press("keep_measured");
+  WAIT_FOR(panel.shows("measured_tool", "Tool 8, the last of this job"));
+  EXPECT_EQ(panel.the<QLineEdit>("measured_core_diameter@15").text(), "");
+  EXPECT_EQ(measuredOf(readRecord(path().toStdString())).size(), 1U);
+  EXPECT_TRUE(measuredOf(readRecord(next.toStdString())).empty());
 }
 
 TEST_F(MeasuredTool, SetsNothingByAWrongEntryOrForZeroPointsFoundAnew) {
   ASSERT_NO_FATAL_FAILURE(open());
   for (const char* wrong : {"98", "9.8 mm", "nan"}) {
-    enter("measured_4", wrong);
+    enter("measured_core_diameter@15", wrong);
     panel.press("keep_measured");
     EXPECT_TRUE(panel.shows("correction", std::string("core = ") + wrong + "; allowed: "));
   }
   EXPECT_TRUE(measuredOf(readRecord(path().toStdString())).empty());
-  enter("measured_4", "8.8");  // a digit
+  enter("measured_core_diameter@15", "8.8");  // a digit
   panel.press("keep_measured");
   WAIT_FOR(panel.shows("correction", "no correction: measure the tool again"));
   EXPECT_TRUE(panel.shows("correction", "tool 7: core_diameter@15 = 8.8 mm; allowed: "));
   EXPECT_FALSE(panel.enabled("apply_correction"));
-  enter("measured_4", "9.8");
+  enter("measured_core_diameter@15", "9.8");
   panel.press("keep_measured");
   WAIT_FOR(panel.enabled("apply_correction"));
   publishZeros(kFoundAt, 0.0015, -0.007, 1);

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace grinder {
@@ -91,6 +92,26 @@ TEST(Measured, IsKeptWithAllEntriesAndTheLastOfAPlaceCounts) {
   EXPECT_EQ(all[2].by, "anna@grinder");
   record.body["measured"][0]["figure"] = "size";
   EXPECT_THROW(measuredOf(record), std::invalid_argument);
+}
+
+TEST(Measured, IsKeptOfAllWhoEnterItAtOnce) {
+  const test_support::TempFolder folder;
+  const ToolNumber tool{3, folder.path() / "0000000003_20261122T170413.123Z.json"};
+  Record record;
+  record.body = Json::object();
+  std::ofstream(tool.path) << text(record);
+  constexpr int writers = 8, entries = 10;
+  std::vector<std::thread> threads;
+  for (int writer = 0; writer < writers; ++writer) {
+    threads.emplace_back([&, writer] {
+      for (int i = 0; i < entries; ++i) {
+        const MeasuredFigure one{ToolFigure::kRake, (writer + i / 100.0) * kMillimetre, kDegree, "", ""};
+        keepMeasured(tool, {one}, "anna@grinder");
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(measuredOf(readRecord(tool.path)).size(), std::size_t{writers * entries});
 }
 
 TEST(Measured, IsShownBesideWhatIsAsked) {

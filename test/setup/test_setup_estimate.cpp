@@ -196,6 +196,33 @@ TEST(SetupTurns, AreFoundForAReliefThatIsTooDeepAndThePrimaryThatIsTooNarrow) {
   }
 }
 
+TEST(SetupTurns, OfAReliefDoByATurnOfAWhatZDoes) {
+  // Both move the wheel along the surface that it grinds: to turn A as well would set nothing that Y and Z cannot.
+  const FigureModel model = figureModel(
+      reliefOf("primary"), {{ToolFigure::kClearance, 11 * kMillimetre}, {ToolFigure::kEdgeDiameter, 11 * kMillimetre}});
+  const VectorXd a = model.slope.col(indexOf(SetupTurn::kShift)), z = model.slope.col(indexOf(SetupTurn::kZ));
+  EXPECT_NEAR(a[0] / z[0], a[1] / z[1], 0.01);
+  // Half a millimetre moves the clearance by less than its tolerance, and no touch-off is off by that much.
+  EXPECT_LT(std::abs(z[0]) * 0.5 * kMillimetre, model.tolerance[0]);
+}
+
+TEST(SetupEstimate, SetsNothingByAClearanceThatIsOffAlone) {
+  for (const char* operation : {"primary", "secondary"}) {
+    const ValidJob job = reliefOf(operation);
+    const FigureModel model = figureModel(job, judgedFigures(*job));
+    VectorXd measured = model.planned;
+    measured.head<3>().array() += model.tolerance[0];
+    VectorXd spread(measured.size());
+    for (Index i = 0; i < spread.size(); ++i) spread[i] = gauge()[i < 3 ? 0 : 3];
+    SetupEstimate estimate(usualSpread());
+    for (int tool = 0; tool < 3; ++tool) {
+      estimate.nextTool();
+      EXPECT_TRUE(estimate.take(model, measured, spread)) << operation;
+    }
+    EXPECT_EQ(estimate.error(), Turns::Zero());
+  }
+}
+
 /// The tool that the paper's job grinds on a machine that is off: the job itself is changed, so that nothing of the
 /// model under test is used.
 GroundCutter toolOff(const Turns& off) {

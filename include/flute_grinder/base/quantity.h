@@ -38,6 +38,9 @@ std::string text(const Quantity& quantity, int digits = 6);
 /// @param to upper end, in the unit of `from`.
 std::string text(const Quantity& from, const Quantity& to, int digits = 6);
 
+/// The symbol of the shop unit, e.g. "mm"; empty for a plain number.
+const char* shopUnit(Unit unit) noexcept;
+
 /// SI value divided by shop value, e.g. 0.001 for millimetres.
 double shopScale(Unit unit) noexcept;
 

@@ -36,6 +36,20 @@ class FileReplacement {
   int descriptor_ = -1;
 };
 
+/// Keeps a file from the others that would read it, change it and replace it: all that take its lock meanwhile.
+/// Processes and threads are alike. Without it, one of two changes made at once would be lost.
+class FileLock {
+ public:
+  /// Waits for the others. @throw FileError if the file cannot be opened for writing, or is kept for 10 s.
+  explicit FileLock(const std::string& path);
+  FileLock(const FileLock&) = delete;
+  FileLock& operator=(const FileLock&) = delete;
+  ~FileLock();
+
+ private:
+  int descriptor_ = -1;
+};
+
 /// Replaces the text of a file like FileReplacement; returns once it is on the disk.
 /// @throw std::system_error if that fails; the file is then unchanged, unless only its folder could not be
 ///        synchronized.

@@ -94,8 +94,8 @@ class GrinderClient {
   void sayReclamped(const OnAnswer& on_answer);
   /// Sets the work offset of an axis from its present position.
   void touchOff(const flute_grinder::TouchOff::Request& request, const OnNeeds& on_answer);
-  /// Sets the work offset of an axis.
-  void setOffset(const flute_grinder::SetOffset::Request& request, const OnAnswer& on_answer);
+  /// Sets work offsets, all of them or none.
+  void setOffsets(const flute_grinder::SetOffsets::Request& request, const OnAnswer& on_answer);
   /// Moves an axis by a distance.
   void jogStep(const flute_grinder::JogStep::Request& request, const OnAnswer& on_answer);
   /// Moves an axis for as long as this function is called repeatedly. Uses a connection that survives the ROS master.

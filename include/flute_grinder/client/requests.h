@@ -3,7 +3,7 @@
 #include "flute_grinder/ConfirmWheel.h"
 #include "flute_grinder/JogStep.h"
 #include "flute_grinder/Reclamped.h"
-#include "flute_grinder/SetOffset.h"
+#include "flute_grinder/SetOffsets.h"
 #include "flute_grinder/TouchOff.h"
 #include "flute_grinder/motion/work_offsets.h"
 
@@ -14,10 +14,10 @@
 /// Requests to the grinder's services, in the name of this user.
 namespace grinder {
 
-/// @param value the work offset [m], A [rad]. @param basis job and wheel for which it is set.
+/// @param values the work offsets. @param basis job and wheel for which they are set.
 /// @param answers answers to needs of an earlier response, see NeedAnswer.msg.
-flute_grinder::SetOffset::Request offsetRequest(int axis, double value, const OffsetBasis& basis,
-                                                const std::vector<std::string>& answers);
+flute_grinder::SetOffsets::Request offsetsRequest(const OffsetValues& values, const OffsetBasis& basis,
+                                                  const std::vector<std::string>& answers);
 /// @param position work position of the place where the axis is [m], A [rad].
 flute_grinder::TouchOff::Request touchOffRequest(int axis, double position, const OffsetBasis& basis,
                                                  const std::vector<std::string>& answers);

@@ -25,10 +25,10 @@ OffsetLimits offsetLimits(const AxisLimits& travel, const Axes& change);
 /// @param value the offset [m], A [rad].
 std::string travelRefusal(const OffsetLimits& limits, int axis, double value);
 
-/// What must be said before an offset changes by more than OffsetLimits::change. An offset that was never set, or is
-/// unknown, may be set to any value.
-/// @param from the present offset.
-/// @param to the new value [m], A [rad].
-std::optional<Need> needOfChange(const OffsetLimits& limits, int axis, const WorkOffset& from, double to);
+/// What must be said before any offset changes by more than OffsetLimits::change, with a figure for each that does. An
+/// offset that was never set, or is unknown, may be set to any value.
+/// @param from the present offsets.
+/// @param to the new values.
+std::optional<Need> needOfChange(const OffsetLimits& limits, const WorkOffsets& from, const OffsetValues& to);
 
 }  // namespace grinder

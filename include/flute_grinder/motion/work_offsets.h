@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 
 namespace grinder {
@@ -47,6 +48,9 @@ struct OffsetBasis {
 
   bool hasJob() const noexcept { return !wheel_digest.empty(); }
 };
+
+/// Values of the work offsets of some axes [m], A [rad].
+using OffsetValues = std::map<int, double>;
 
 /// The work offset of an axis, with who set it and for which job.
 struct WorkOffset {

@@ -47,8 +47,8 @@ std::string byHandText(const Correction& correction);
 /// What to set, as lines of text; why nothing is to be set, if so.
 std::string settingsText(const SetupFindings& found, const Correction& correction);
 
-/// Said if a correction ended halfway.
-constexpr const char* kHalfSet = "the work offset of Y is corrected, the one of Z is not: correct again";
+/// Work offsets as a request sets them. @param offset of each of kCorrectedAxes.
+OffsetValues offsetsOf(const Turns& offset);
 
 /// Why the present zero points cannot be corrected by what is known: they are not those of the last tool, corrected or
 /// not, or do not fit the job any longer; empty if they can.

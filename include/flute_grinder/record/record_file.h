@@ -4,6 +4,7 @@
 #include "flute_grinder/record/verdict.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,11 @@ RecordHead readHead(const std::string& path);
 
 /// Reads a record, with its texts escaped(). @throw FileError as readHead(), and if the checksum is wrong.
 Record readRecord(const std::string& path);
+
+/// Changes a record on the disk. One change is made after the other: none is lost if programs make them at once.
+/// @param change is given the record as it is now. @return the record as changed. @throw FileError as readRecord(), and
+/// if it cannot be written; the record is then as it was.
+Record changeRecord(const std::string& path, const std::function<void(Record&)>& change);
 
 /// Whether a file begins like a record. @throw FileError if it cannot be read or is not a regular file.
 bool isRecord(const std::string& path);

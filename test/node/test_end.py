@@ -23,12 +23,12 @@ TEETH = 4
 
 
 class TestEnd(JournalTest):
-    """The end mill's flutes, gashes and primary flanks of the end, in one pass each."""
+    """An end mill's flutes, gashes and primary flanks of the end, in one pass each; two of its teeth go to the axis."""
 
     def setUp(self):
         super().setUp()
         self.history = self.folder + '/history'
-        self.job_path = gc.end_file(self.folder + '/mill.yaml', 'end_mill_d10_t4')
+        self.job_path = gc.end_file(self.folder + '/mill.yaml', 'center_cutting_d10_t4')
         self.goal = job_file.goal(self.job_path, 'end_primary')
 
     def start(self, **arguments):
@@ -41,10 +41,10 @@ class TestEnd(JournalTest):
         paths = gc.poll(lambda: (lambda found: len(found) == number and found)(sorted(glob.glob(self.history + '/*.json'))), 'the record')
         return record_files.read(paths[-1])
 
-    def prepare(self, operation, swivel):
+    def prepare(self, operation):
         """Answers what a start asks for. The zero points are the machine's, so that a plan begins where the run does."""
         self.grind(0, 'confirm-wheel', self.job_path, '--operation', operation)
-        self.grind(0, 'confirm-swivel', swivel)
+        self.grind(0, 'confirm-swivel', '%.4f' % math.degrees(gc.process_of(job_file.goal(self.job_path, operation)).setup_swivel))
         zeros = [argument for axis in 'xyz' for argument in ('--set', axis + '=0')]
         self.grind(0, 'offsets', *zeros, '--job', self.job_path, '--operation', operation, '--answer', 'set-offset')
         return self.job_path, '--operation', operation
@@ -57,9 +57,9 @@ class TestEnd(JournalTest):
 
     def check_as_planned(self):
         """On a tool whose operations before are ground, without anybody who interferes."""
-        for operation, swivel in (('flute', '43.32'), ('gash', '3')):
-            self.grind(0, 'run', *self.prepare(operation, swivel))
-        end = self.prepare('end_primary', '81.76')
+        for operation in ('flute', 'gash'):
+            self.grind(0, 'run', *self.prepare(operation))
+        end = self.prepare('end_primary')
         self.grind(0, 'plan', *end, '--csv', self.folder + '/plan.csv')
         self.grind(0, 'run', *end, '--csv', self.folder + '/run.csv')
         planned, streamed = ([row[:12] for row in csv.reader(open('%s/%s.csv' % (self.folder, name)))] for name in ('plan', 'run'))

@@ -334,7 +334,7 @@ TEST_F(Jogging, WhilePressedItIsRepeatedAndStopsWhenReleased) {
   }
   EXPECT_EQ(panel.text("messages"), "");
   stage.refuseJog("jog refused: axis Y is at machine position -20 mm, the end of its travel");
-  WAIT_FOR(panel.says("messages", "Jog refused: axis Y is at -20 mm"));
+  WAIT_FOR(panel.says("messages", "Jog refused: axis Y is at machine position -20 mm"));
   QTest::mouseRelease(&panel.the<QPushButton>("jog_y_minus"), Qt::LeftButton);
   expectStopped();
   EXPECT_TRUE(steps().empty());

@@ -122,37 +122,44 @@ def measure_trajectories(cutters, feeds, of_axes, name, program):
                           (None, 100 * used / peers.PERIOD, None))
 
 
-def origin(load):
+def linuxcnc():
+    """LinuxCNC with its version."""
+    return ' '.join(subprocess.run(['dpkg-query', '-W', 'linuxcnc-uspace'], check=True, stdout=subprocess.PIPE,
+                                   universal_newlines=True).stdout.split())
+
+
+def origin(load, *peer):
     """Where the table is from, in a line."""
-    version = subprocess.run(['dpkg-query', '-W', 'linuxcnc-uspace'], check=True, stdout=subprocess.PIPE,
-                             universal_newlines=True).stdout.split()[1]
     run = bench_all.origin()
-    return 'Commit %s of %s, linuxcnc-uspace %s, %s, %d cores, %s, load %.2f at the start.' % (
-        run['commit'], run['date'], version, run['cpu'], run['cores'], run['kernel'], load)
+    return ', '.join(['Commit %s of %s' % (run['commit'], run['date']), *peer, run['cpu'], '%d cores' % run['cores'], run['kernel'],
+                      'load %.2f at the start.' % load])
 
 
 def main():
     parser = argparse.ArgumentParser(prog='scripts/bench_peers', description=__doc__)
     parser.add_argument('--docs', action='store_true', help='write the table into docs/comparison.md')
-    parser.add_argument('--ruckig', metavar='DIR', type=pathlib.Path, help='also measure Ruckig, compiled from its sources in DIR')
     parser.add_argument('--ros-controllers', metavar='DIR', type=pathlib.Path,
-                        help="also measure ros_control's joint trajectory controller, compiled from the sources of ros_controllers in DIR")
+                        help="only ros_control's joint trajectory controller, compiled from the sources of ros_controllers in DIR")
+    parser.add_argument('--ruckig', metavar='DIR', type=pathlib.Path, help='only Ruckig, compiled from its sources in DIR')
     arguments = parser.parse_args()
     of_axes = numpy.array(limits())
+    from_sources = [(by, folder) for by, folder in ((trajectory_peers.of_ros_controllers, arguments.ros_controllers),
+                                                    (trajectory_peers.of_ruckig, arguments.ruckig)) if folder]
+    load = os.getloadavg()[0]
     try:
-        head = origin(os.getloadavg()[0])
-        more = [by(folder) for by, folder in ((trajectory_peers.of_ros_controllers, arguments.ros_controllers),
-                                              (trajectory_peers.of_ruckig, arguments.ruckig)) if folder]
-        found = [*measure_own(CUTTERS, FEEDS, of_axes), *measure_linuxcnc(CUTTERS, FEEDS, of_axes)]
-        for peer in more:
-            found += measure_trajectories(CUTTERS, FEEDS, of_axes, *peer)
-    except (RuntimeError, subprocess.CalledProcessError) as error:
+        if from_sources:
+            block, head = 'scripts/bench_peers --ros-controllers DIR --ruckig DIR', origin(load)
+            found = [each for by, folder in from_sources for each in measure_trajectories(CUTTERS, FEEDS, of_axes, *by(folder))]
+        else:
+            block, head = 'scripts/bench_peers', origin(load, linuxcnc())
+            found = [*measure_own(CUTTERS, FEEDS, of_axes), *measure_linuxcnc(CUTTERS, FEEDS, of_axes)]
+    except (OSError, RuntimeError, subprocess.CalledProcessError) as error:
         sys.exit(str(error))
     table = [HEADER] + [found_row for name in CUTTERS for feed in FEEDS
                         for found_row in found if found_row[:2] == [name, str(feed)]]
     if arguments.docs:
         lines = figures.markdown(table, ['---', '---:', '---'] + ['---:'] * 10)
-        PAGE.write_text(figures.with_lines(PAGE.read_text(), 'scripts/bench_peers', [head, '', *lines]))
+        PAGE.write_text(figures.with_lines(PAGE.read_text(), block, [head, '', *lines]))
     print(head + '\n\n' + figures.aligned(table))
 
 

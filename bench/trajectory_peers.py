@@ -15,7 +15,7 @@ FOLDER = ROOT / 'build/bench'
 
 def of_ruckig(folder):
     """(name, program), compiled from the folder of its sources."""
-    version = re.search(r'VERSION ([\d.]+)', (folder / 'CMakeLists.txt').read_text())[1]
+    version = version_in(folder / 'CMakeLists.txt', r'VERSION ([\d.]+)')
     sources = [source for source in sorted((folder / 'src/ruckig').glob('*.cpp')) if source.stem != 'cloud_client']
     return 'Ruckig ' + version, compiled('ruckig', '-DRUCKIG', '-I', folder / 'include', *sources)
 
@@ -23,8 +23,15 @@ def of_ruckig(folder):
 def of_ros_controllers(folder):
     """(name, program), compiled from the folder of its sources."""
     package = folder / 'joint_trajectory_controller'
-    version = re.search(r'<version>([\d.]+)', (package / 'package.xml').read_text())[1]
+    version = version_in(package / 'package.xml', r'<version>([\d.]+)')
     return 'joint trajectory controller ' + version, compiled('ros_controllers', '-I', package / 'include')
+
+
+def version_in(path, pattern):
+    found = re.search(pattern, path.read_text())
+    if not found:
+        raise RuntimeError('%s: names no version' % path)
+    return found[1]
 
 
 def compiled(name, *arguments):
@@ -67,14 +74,15 @@ def timed(cutter, feed, acceleration, jerk):
     """The feed with the shortest ramp at which the axes keep their limits, to a hundredth."""
     def keeps(ramp):
         at = Feed(cutter, feed, ramp)
-        rows = cutter.rows(at.x(numpy.append(numpy.arange(0, at.duration, peers.PERIOD), at.duration))[0])
-        return all(peers.uses(rows, limits, order, 1) <= 1 for limits, order in ((acceleration, 2), (jerk, 3)))
+        time = numpy.minimum(numpy.arange(0, at.duration + peers.PERIOD, peers.PERIOD), at.duration)
+        return all(peers.uses(cutter.rows(at.x(time)[0]), limits, order, 1) <= 1 for limits, order in ((acceleration, 2), (jerk, 3)))
 
-    longest = peers.LENGTH / feed * cutter.edge()
-    ramp = peers.PERIOD
-    while not keeps(ramp) and ramp < longest:
+    ramp, longest = peers.PERIOD, peers.LENGTH / feed * cutter.edge()
+    while not keeps(ramp):
         ramp *= 1.01
-    return Feed(cutter, feed, min(ramp, longest))
+        if ramp > longest:
+            raise RuntimeError('no ramp up to a feed of %g m/s keeps the limits' % feed)
+    return Feed(cutter, feed, ramp)
 
 
 def goal_size(states):

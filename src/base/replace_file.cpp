@@ -109,8 +109,7 @@ FileLock::FileLock(const std::string& path) {
   for (auto waited = std::chrono::milliseconds(0);; waited += pause) {
     descriptor_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
     if (descriptor_ < 0) throw failed(std::generic_category().message(errno));
-    struct stat own {
-    }, now{};
+    struct stat own, now;
     const bool locked = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
     const int error = errno;
     // Who had it has replaced the file, which is then another one.

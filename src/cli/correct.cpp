@@ -5,6 +5,7 @@
 #include "cli/machine_file.h"
 #include "cli/offsets.h"
 #include "cli/online.h"
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/client/latest.h"
 #include "flute_grinder/job/job_file.h"
@@ -68,10 +69,12 @@ void printFigures(const std::vector<CorrectedFigure>& figures) {
               "after");
   for (const CorrectedFigure& figure : figures) {
     const double scale = scaleOf(figure.at);
-    std::printf("%-14s %8.3f %10.4f %10.4f %10.4f %10.4f %10.4f %s%s\n", toString(figure.at.figure),
-                figure.at.x / kMillimetre, figure.asked / scale, figure.tolerance / scale, figure.planned / scale,
-                figure.now / scale, figure.after / scale, unitNameOf(figure.at),
-                figure.seen ? "" : "; tolerance too narrow for a gauge");
+    std::string values;
+    for (const double value : {figure.asked, figure.tolerance, figure.planned, figure.now, figure.after}) {
+      values += format(" %10s", fixed(value / scale, 4).c_str());
+    }
+    std::printf("%-14s %8.3f%s %s%s\n", toString(figure.at.figure), figure.at.x / kMillimetre, values.c_str(),
+                unitNameOf(figure.at), figure.seen ? "" : "; tolerance too narrow for a gauge");
   }
 }
 

@@ -165,7 +165,10 @@ int runOffsets(const std::string& node, const OffsetsOptions& options) {
   OffsetValues values;
   for (const std::string& argument : options.set) {
     const int axis = axisOf(argument);
-    values[axis] = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
+    const double value = parseNumber(argument.c_str() + 2) * shopScale(unitOf(axis, 0));
+    if (!values.emplace(axis, value).second) {
+      throw std::invalid_argument("--set names " + axisName(axis) + " twice; allowed: each axis once");
+    }
   }
   if (!values.empty()) {
     if (const int status = setWorkOffsets(nh, values, basis, options.answers)) return status;

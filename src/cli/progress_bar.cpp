@@ -5,9 +5,6 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -21,13 +18,6 @@ namespace {
 constexpr std::size_t kMinBar = 12, kMaxBar = 32;  ///< width of the bar with its brackets
 constexpr std::size_t kAnyWidth = 1000;            ///< width of a line in a file
 constexpr const char* kSeparator = "  ";
-
-/// Usable columns: a character in the last one would wrap the cursor to a new line.
-std::size_t terminalWidth() {
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  return known ? size.ws_col - 1U : 79U;
-}
 
 std::string timeLeft(double seconds) {
   const long all = std::lround(std::clamp(seconds, 0.0, 1e7));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <future>
 #include <string>
 #include <thread>
@@ -9,6 +10,9 @@ namespace grinder {
 /// Whether stderr is a terminal on which a line can be drawn again.
 bool isTerminal();
 
+/// Usable columns: a character in the last one would wrap the cursor to a new line.
+std::size_t terminalWidth();
+
 /// Goes to the beginning of a terminal's line and clears it.
 constexpr const char* kClearLine = "\r\x1b[K";
 
@@ -16,7 +20,8 @@ constexpr const char* kClearLine = "\r\x1b[K";
 /// done. Says nothing in a file, a pipe or on a dumb terminal.
 class Working {
  public:
-  explicit Working(std::string what);
+  /// @param what e.g. "drawing"; shown escaped, and cut to the terminal's width.
+  explicit Working(const std::string& what);
   ~Working();
 
  private:

@@ -230,7 +230,7 @@ void GrinderClient::touchOff(const flute_grinder::TouchOff::Request& request, co
 }
 
 void GrinderClient::setOffsets(const flute_grinder::SetOffsets::Request& request, const OnAnswer& on_answer) {
-  ask<flute_grinder::SetOffsets>("set_offsets", request, "set-offset", "set-offset: ", on_answer);
+  ask<flute_grinder::SetOffsets>("set_offsets", request, "set-offsets", "set-offsets: ", on_answer);
 }
 
 void GrinderClient::jogStep(const flute_grinder::JogStep::Request& request, const OnAnswer& on_answer) {

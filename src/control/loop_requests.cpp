@@ -57,7 +57,7 @@ RequestReply Answer::reply() const {
     case Refusal::kNotInWork: text << "the wheel is not in the work"; break;
     // In shop units, because only people read them: the answer to a request has no fields for data.
     case Refusal::kTooFar:
-      text << "it would lead " << axisName(axis) << " to " << position(value)
+      text << "it would lead " << axisName(axis) << " to machine position " << position(value)
            << (value < limit ? "; allowed: down to " : "; allowed: up to ") << position(limit);
       break;
     case Refusal::kSwivel: text << grinder::text(reasonOf(swivel, job_swivel)); break;

@@ -216,7 +216,13 @@ void checkOperations(Checker& checker, const GrindJob& job) {
   for (std::size_t i = 0; i < job.operations.size() && checker.good(); ++i) {
     const OperationKind kind = job.operations[i].kind;
     const int number = static_cast<int>(kind), at = static_cast<int>(i);
-    checker.whole("process.kind", number, i > 0 && isStraight(kind) ? countOf<OperationKind>() - 1 : at, least);
+    const int most = i > 0 && isStraight(kind) ? countOf<OperationKind>() - 1 : at;
+    if (least > most) {
+      checker.refuse(ReasonKind::kNotAllowed, "process.kind", {static_cast<double>(number), Unit::kNone},
+                     "more than the kind of the operation before it, each kind once");
+    } else {
+      checker.whole("process.kind", number, most, least);
+    }
     least = number + 1;
   }
   if (!checker.good()) return;

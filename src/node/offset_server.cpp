@@ -144,11 +144,13 @@ bool OffsetServer::onSet(flute_grinder::SetOffsets::Request& request, flute_grin
 }
 
 bool OffsetServer::onTouchOff(flute_grinder::TouchOff::Request& request, flute_grinder::TouchOff::Response& response) {
+  double value = 0;
   const auto offsets_at = [&](const Axes& position) {
-    response.value = position[request.axis] - request.position;
-    return OffsetValues{{request.axis, response.value}};
+    value = position[request.axis] - request.position;
+    return OffsetValues{{request.axis, value}};
   };
   set(request, OffsetMethod::kTouchOff, offsets_at, response);
+  if (response.success != 0) response.value = value;
   return true;
 }
 

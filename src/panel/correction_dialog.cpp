@@ -1,5 +1,6 @@
 #include "panel/correction_dialog.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/client/requests.h"
 #include "flute_grinder/drive/parameters.h"
@@ -74,7 +75,7 @@ Turns mostTurnsOf(const std::string& grinder, const std::atomic<bool>& stop) {
   return mostTurns(limit);
 }
 
-QString shown(double si, Unit unit) { return QString::number(si / shopScale(unit), 'f', kFigureDecimals); }
+QString shown(double si, Unit unit) { return QString::fromStdString(fixed(si / shopScale(unit), kFigureDecimals)); }
 
 /// @param utc text of utcText().
 QString localTime(const std::string& utc) {
@@ -181,10 +182,12 @@ void CorrectionDialog::poll() {
 }
 
 void CorrectionDialog::take(Done done) {
-  showText(done.text, done.good);
+  showText((done.kept && !done.found ? "Kept. " : "") + done.text, done.good);
   if (table_ != nullptr) table_->setEnabled(true);
-  // What was shown stays, with what has been typed, if nothing could be read.
-  if (!done.found) return;
+  // What was shown stays, with what has been typed and not kept, if nothing could be read.
+  failed_ = !done.found;
+  if (failed_ && done.kept && done_.found) showTable({});
+  if (failed_) return;
   const auto stays = done.kept ? std::map<std::string, QString>() : entered();
   done_ = std::move(done);
   const MeasuredTool& last = done_.found->last;
@@ -234,7 +237,7 @@ void CorrectionDialog::showTable(const std::map<std::string, QString>& entered) 
     if (const auto typed = entered.find(at); typed != entered.end()) entry->setText(typed->second);
     connect(entry, &QLineEdit::textChanged, this, [this] {
       const bool is_earlier = done_.tool.number != done_.found->last.number;
-      if (is_earlier && this->entered().empty() && !working_.valid()) begin({});
+      if ((is_earlier || failed_) && this->entered().empty() && !working_.valid()) begin({});
     });
     const MeasuredFigure* measured = last.number == done_.tool.number ? last.find(figure.at) : nullptr;
     if (measured != nullptr) entry->setPlaceholderText(shown(measured->value, unit));

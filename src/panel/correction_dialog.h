@@ -51,7 +51,7 @@ class CorrectionDialog : public QDialog {
   struct Done {
     std::optional<SetupFindings> found{};  ///< nothing if nothing is known, with the reason in `text`
     Correction correction{};
-    ToolNumber tool{};  ///< tool of which figures are entered
+    ToolNumber tool{};  ///< tool whose figures are entered; the last if none are
     bool kept = false;  ///< whether what was entered is in its record
     OffsetBasis basis{};
     QString text{};
@@ -84,6 +84,7 @@ class CorrectionDialog : public QDialog {
   Done done_;
   std::optional<WorkOffsets> offsets_;
   bool may_ = true;
+  bool failed_ = false;           ///< whether the records could not be read at last
   std::optional<Turns> back_to_;  ///< for `before_`, once what is under way is done
   std::optional<Turns> before_;   ///< work offsets of Y and Z before the last correction from this dialog
   std::vector<Row> rows_;

@@ -98,7 +98,6 @@ class GrindPanel : public rviz::Panel {
   void askToTakeBack();
   void askReclamped();
   void openCorrection();
-  /// Sets work offsets one after the other, until one is refused.
   OffsetBasis touchedFor(int axis) const;
   /// The work Y at which the chosen job's wheel touches a blank [m]. @throw std::exception with the reason if it
   /// cannot.

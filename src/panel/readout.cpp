@@ -46,7 +46,7 @@ constexpr int kFewestDecimals = 3, kMaxDecimals = 4;
 
 /// A distance to go in mm or deg, short enough for four in a line. @param to_go [m], A [rad].
 QString toGoText(int axis, double to_go) {
-  const double shown = to_go / (axis == kA ? kDegree : kMillimetre);
+  const double shown = to_go / shopScale(unitOf(axis, 0));
   const int decimals = std::abs(shown) < 99.9995 ? kFewestDecimals : 1;
   return QString("%1 %2").arg(axisLetter(axis)).arg(QString::fromStdString(fixed(shown, decimals)));
 }

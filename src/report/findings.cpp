@@ -142,7 +142,7 @@ Json RunFindings::axesJson(const Json& machine) const {
                               {"following", following_, "max_following_error"}};
   Json rows = Json::array();
   for (int axis = 0; axis < kAxisCount; ++axis) {
-    const double unit = axis == kA ? kDegree : kMillimetre;
+    const double unit = shopScale(unitOf(axis, 0));
     Json row{{"axis", std::string(1, axisLetter(axis))}};
     const auto limit = [&](const char* key) {
       return machine.empty() ? Json(nullptr) : Json(std::next(machine.at(key).begin(), axis).value());

@@ -11,6 +11,7 @@ import numpy
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / 'bench'))
 import peers  # noqa: E402
+import trajectory_peers  # noqa: E402
 
 LIMITS = numpy.array([0.5, 0.5, 0.5, 62.83]), numpy.array([10, 10, 10, 1257])
 CYLINDER = peers.Cutter(0.01, 0, math.radians(30), 0)
@@ -23,6 +24,23 @@ def smooth(x_of, duration):
 
 
 class PeersTest(unittest.TestCase):
+    def test_states_of_a_trajectory_are_the_law_s_with_its_derivatives(self):
+        timed = trajectory_peers.timed(CONE, 0.01, *LIMITS)
+        states, h = timed.states(1e-3), 1e-5
+        time = states[:, 0]
+        self.assertTrue((numpy.diff(time) > 0).all())
+        self.assertLessEqual(numpy.diff(states[:, 1]).max(), 1.0001e-3)
+        numpy.testing.assert_allclose(states[[0, -1], 1], [0, peers.LENGTH], atol=1e-12)
+        self.assertAlmostEqual(states[len(time) // 2, 5] * CONE.edge(), 0.01)  # the feed along the edge
+        before, at, after = (CONE.rows(timed.x(numpy.clip(time + s * h, 0, timed.duration))[0]) for s in (-1, 0, 1))
+        numpy.testing.assert_allclose(states[:, 1:5], at)
+        inner = slice(1, -1)
+        numpy.testing.assert_allclose(states[inner, 5:9], ((after - before) / 2 / h)[inner], rtol=1e-4, atol=1e-5)
+        # At the ends of the ramps the acceleration has a corner.
+        smooth = (numpy.abs(time - timed.ramp) > h) & (numpy.abs(time - timed.duration + timed.ramp) > h)
+        smooth[[0, -1]] = False
+        numpy.testing.assert_allclose(states[smooth, 9:13], ((after - 2 * at + before) / h**2)[smooth], rtol=1e-3, atol=2e-2)
+
     def test_an_error_of_a_is_found_where_it_is(self):
         rows = CONE.rows(peers.LENGTH * smooth(lambda t: 3 * t**2 - 2 * t**3, 4))
         rows[:, 3] += 1e-5 * numpy.sin(math.pi * rows[:, 0] / 0.01)  # none at each 10 mm, most between them

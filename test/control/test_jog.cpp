@@ -345,7 +345,7 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
   EXPECT_NEAR(clear, kClearanceHeight, 1e-12);
   EXPECT_EQ(rig.jog(on(kY, -0.01)).text,
             "jog refused: axis Y is at machine position 8.23708 mm, the end of its travel");
-  EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to 8.23608 mm");
+  EXPECT_CONTAINS(rig.jog(step(kY, -1e-6)).text, "jog refused: it would lead axis Y to machine position 8.23608 mm");
   release(rig);
   ASSERT_TRUE(rig.jog(step(kY, 0.01)).accepted);
   rig.runUntil(S::kRetracted);

@@ -447,7 +447,8 @@ TEST(AWheelRoundTheWork, IsNotLiftedOnceAStopCameWhileItBackedOff) {
 TEST(AWheelRoundTheWork, IsNotBackedOffBeyondTheAxis) {
   const double lowest = machineConfig().machine.limits.min_position[kX];
   RoundTheWork wheel(false, RoundTheWork::kClearX + 0.004 - lowest + 1e-3);
-  EXPECT_EQ(wheel.rig.ask(E::kLift).text, "lift refused: it would lead axis X to -101 mm; allowed: down to -100 mm");
+  EXPECT_EQ(wheel.rig.ask(E::kLift).text,
+            "lift refused: it would lead axis X to machine position -101 mm; allowed: down to -100 mm");
 }
 
 TEST(AfterARestart, ItIsLiftedFromBeyondTheLimitsOfTheOtherAxes) {

@@ -343,5 +343,24 @@ TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
   }
 }
 
+TEST(FaceStroke, HasTheSetUpsOfTheTrade) {
+  struct Row {
+    OnTooth normal;
+    double swivel, tooth;
+  };
+  const auto end = [](double clearance, double dish) { return endNormal(clearance * kDegree, dish * kDegree); };
+  for (const auto& [normal, swivel, tooth] :
+       {Row{end(8, 2), 81.76, -13.95}, Row{end(18, 2), 71.90, -6.13}, Row{end(6, 0), 84.00, 0},
+        Row{flankNormal(45 * kDegree, 10 * kDegree), 44.14, 76.00},
+        Row{flankNormal(59 * kDegree, 12 * kDegree), 30.25, 76.07}}) {
+    const FacePose right = flankPose(normal, CutDirection::kRightHand);
+    const FacePose left = flankPose(normal, CutDirection::kLeftHand);
+    EXPECT_NEAR(right.swivel / kDegree, swivel, 0.005);
+    EXPECT_NEAR(right.tooth / kDegree, tooth, 0.005);
+    EXPECT_EQ(left.swivel, right.swivel);
+    EXPECT_NEAR(left.tooth / kDegree, 180 - tooth, 0.005);
+  }
+}
+
 }  // namespace test_face_stroke
 }  // namespace grinder

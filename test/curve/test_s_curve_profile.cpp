@@ -261,5 +261,23 @@ TEST(SCurveProfile, WhatIsNoFactorDoesNotSlowItDown) {
   EXPECT_TRUE(resting.finished());
 }
 
+TEST(SCurveProfile, ARefusedTargetChangesNothing) {
+  for (const double bad : {kNan, -1e-9, 2.0000001, kInf, -kInf}) {
+    SCOPED_TRACE(bad);
+    SCurveProfile law({2, 1, 1}, 10, 2);
+    SCurveProfile untouched({2, 1, 1}, 10, 2);
+    for (int i = 0; i < 90; ++i) {
+      EXPECT_FALSE(law.setTarget(bad));
+      law.advance(0.1);
+      untouched.advance(0.1);
+      ASSERT_EQ(law.position(), untouched.position());
+      ASSERT_EQ(law.speed(), untouched.speed());
+      ASSERT_EQ(law.target(), 2);
+      ASSERT_EQ(law.timeLeft(), untouched.timeLeft());
+    }
+    EXPECT_TRUE(law.finished());
+  }
+}
+
 }  // namespace test_s_curve_profile
 }  // namespace grinder

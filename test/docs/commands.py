@@ -37,7 +37,7 @@ NOT_RUN = {
     'scripts/bench_hal': 'measures for minutes',
     'scripts/bench_peers': 'measures for minutes',
     'scripts/bench_peers --docs': 'measures for minutes',
-    'scripts/bench_peers --ros-controllers DIR --ruckig DIR': 'measures for minutes, with sources from elsewhere',
+    'scripts/bench_peers --docs --ros-controllers DIR --ruckig DIR': 'needs sources from elsewhere',
     'scripts/bench_rviz': 'measures for minutes',
     'scripts/bench_stop': 'measures for minutes',
     'kill -STOP': 'lacks the number of a process; test/hal/test_hal_stops.py does it',

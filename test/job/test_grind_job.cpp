@@ -474,7 +474,7 @@ TEST(GrindJob, OfAWholeMillNamesWhatItsOperationsNeed) {
        [](GrindJob& j) {
          before(j, {Kind::kGash, Kind::kPrimaryRelief});
        },
-       "process.kind = 1; allowed: 4 to 2"},
+       "process.kind = 1; allowed: more than the kind of the operation before it, each kind once"},
       {"end_mill_d10_t4 flute",
        [](GrindJob& j) {
          before(j, {Kind::kGash, Kind::kGash});

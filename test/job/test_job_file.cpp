@@ -310,5 +310,53 @@ TEST(JobFile, AnyTextIsAJobOrIsRefusedByItsLines) {
   EXPECT_LT(read, 750);
 }
 
+TEST(JobFile, ReadsEveryChoice) {
+  EXPECT_EQ(jobWith("pass_major", "tooth_major").process().order, GrindOrder::kToothMajor);
+  EXPECT_EQ(jobWith("to_end", "from_end").process().direction, StrokeDirection::kFromEnd);
+  EXPECT_EQ(jobWith("third_order", "published").interpolation.even_step, EvenStepRule::kPublished);
+  EXPECT_EQ(jobWith("third_order", "exact").interpolation.even_step, EvenStepRule::kExact);
+}
+
+TEST(JobFile, ReportsAllOfSeveralErrors) {
+  const std::string cut = std::string(kGoodJob).substr(0, std::string(kGoodJob).find("interpolation:"));
+  const struct {
+    std::string text;
+    std::vector<const char*> messages;  ///< as for hasLine()
+  } rows[]{
+      {with("depth_mm: 1.5", "depth_mm: deep", with("pass_major", "any")) + "extra: 1\n",
+       {"job.yaml:18 ... process.depth_mm ... deep", "job.yaml:24 ... process.order ... any", "job.yaml:39 ... extra"}},
+      {with("depth_mm: 1.5", "depth_mm: 51", with("feed_mm_min: 200", "feed_mm_min: 0")),
+       {"job.yaml:18 ... process.depth_mm ... 51 mm", "job.yaml:17 ... process.feed_mm_min ... 0 mm/min"}},
+      {cut + "interpolation: exact\n",
+       {"job.yaml:35 ... interpolation", "interpolation.tolerance_um ... missing",
+        "interpolation.rotary_scale_mm_per_rad ... missing", "interpolation.even_step ... missing"}}};
+  for (const auto& row : rows) {
+    const std::string error = errorOf(row.text);
+    EXPECT_EQ(linesOf(error), static_cast<std::ptrdiff_t>(row.messages.size())) << error;
+    for (const char* message : row.messages) EXPECT_TRUE(hasLine(error, message)) << message << "\ngot: " << error;
+  }
+}
+
+TEST_F(JobFileOnDisk, ThatMayNotBeRead) {
+  std::filesystem::permissions(path_, std::filesystem::perms::none);
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    // root may read everything.
+    constexpr uid_t nobody = 65534;
+    const bool other = ::geteuid() != 0 || ::setuid(nobody) == 0;
+    const std::string error = other ? fileErrorOf(path_) : "cannot be another user than root";
+    ::_exit(::write(ends[1], error.data(), error.size()) < 0 ? 1 : 0);
+  }
+  ::close(ends[1]);
+  std::array<char, 1000> error{};
+  EXPECT_GE(::read(ends[0], error.data(), error.size() - 1), 0);
+  ::close(ends[0]);
+  EXPECT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(std::string(error.data()), path_ + ": cannot be read: Permission denied");
+}
+
 }  // namespace test_job_file
 }  // namespace grinder

@@ -258,5 +258,13 @@ TEST(Reason, CutsNothingOff) {
   EXPECT_EQ(format("%s", ""), "");
 }
 
+TEST(Reason, ManyStandSideBySide) {
+  Reason stop, other;
+  stop.kind = Kind::kEmergencyStop;
+  other.kind = Kind::kOther;
+  other.detail = "busy";
+  EXPECT_EQ(text(std::vector<Reason>{stop, other}), "emergency stop; busy");
+}
+
 }  // namespace test_reason
 }  // namespace grinder

@@ -294,5 +294,27 @@ TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPassALimitOfPositions) {
   EXPECT_FALSE(passes(LimitCheck::kUnplannedRoundings, 7, terms));
 }
 
+TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPass) {
+  AxisLimits l = plainLimits();
+  l.max_velocity[kA] = 1.0 / 1024;
+  LimitCheck check(l, kPeriod);
+  Setpoint p;
+  const auto passes = [&](int epsilons) {
+    p.cycle = 0, p.position[kA] = 0;
+    check.check(p);
+    p.cycle = 1;
+    p.position[kA] = l.max_velocity[kA] * kPeriod + epsilons * 16 * std::numeric_limits<double>::epsilon();
+    return !check.check(p);
+  };
+  Axes terms = Axes::Zero();
+  terms[kA] = 16;
+  check.restart(terms);
+  EXPECT_TRUE(passes(2));
+  check.restart(terms);
+  EXPECT_FALSE(passes(4));
+  check.restart();
+  EXPECT_FALSE(passes(2));
+}
+
 }  // namespace test_limit_check
 }  // namespace grinder

@@ -90,6 +90,10 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
       ASSERT_GE(p.move_fraction, before.move_fraction);
     } else {
       ASSERT_EQ(p.move_index, before.move_index + 1);
+      ASSERT_EQ(before.move_fraction, 1);
+      if (before.move != MoveKind::kStroke) {
+        ASSERT_TRUE((before.position == moves[before.move_index].to).all());
+      }
       ASSERT_LT(p.move_fraction, 0.5);
     }
     // Of a stroke that is not cut for an axis it is the way in X.
@@ -102,6 +106,7 @@ TEST(SetpointStream, ReportsMoveAndProgress) {
     }
   }
   EXPECT_EQ(p.move_index, moves.size() - 1);
+  EXPECT_TRUE((before.position == plainMachine().park).all());
 }
 
 }  // namespace test_setpoint_stream

@@ -49,7 +49,7 @@ LIFT, STROKE = MOVES.index('lift'), MOVES.index('stroke')
 ODD, EVEN = WrittenSetpoint.ODD, WrittenSetpoint.EVEN
 
 # Much longer than anything takes, even on a host that stalls.
-PATIENCE = 60
+PATIENCE = 120
 
 # Found once: it takes a search of the whole clone.
 PACKAGE = rospkg.RosPack().get_path('flute_grinder')

@@ -174,7 +174,7 @@ class TestCommandLine(CommandLine):
         self.assertEqual(self.grind(0, 'jog', 'x', '-1.25').stdout, 'X -49.7500 mm\n')
         self.assertRegex(self.grind(0, 'jog', 'a', '-90', '--feed', '10000').stdout, r'^A -(90\.000|89\.999)\d deg\n$')
         self.assertEqual(self.grind(1, 'jog', 'y', '200').stderr,
-                         'jog refused: it would lead axis Y to 250 mm; allowed: up to 150 mm\n')
+                         'jog refused: it would lead axis Y to machine position 250 mm; allowed: up to 150 mm\n')
         self.assertRegex(self.grind(1, 'jog', 'y', '1', '--feed', '6001').stderr, 'speed of axis Y = 6001 mm/min')
         command = Command('jog', 'x', '100', '--feed', '300')
         self.addCleanup(command.close)

@@ -36,8 +36,8 @@ class FileReplacement {
   int descriptor_ = -1;
 };
 
-/// Keeps a file from the others that would read it, change it and replace it: all that take its lock meanwhile.
-/// Processes and threads are alike. Without it, one of two changes made at once would be lost.
+/// Holds off all others that lock the same file before they read it, change it and replace it, in this process and in
+/// others. Without it, one of two changes made at once would be lost.
 class FileLock {
  public:
   /// Waits for the others. @throw FileError if the file cannot be opened for writing, or is kept for 10 s.

@@ -299,10 +299,13 @@ class TestOutput(CommandLine):
         self.addCleanup(os.close, reader)
         done = subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, TERM=kind), stdout=subprocess.DEVNULL,
                               stderr=writer, timeout=gc.PATIENCE)
-        os.write(writer, b'.')
+        end, shown = b'\x04', b''
+        os.write(writer, end)
+        while not shown.endswith(end):
+            shown += os.read(reader, 1000)
         os.close(writer)
         self.assertEqual(done.returncode, 0)
-        return os.read(reader, 10000).decode()[:-1]
+        return shown[:-1].decode()
 
     def test_terminal_shows_what_takes_long_and_then_nothing_of_it(self):
         simulate = 'simulate', PAPER_JOB, '--stl', self.path('tool.stl')

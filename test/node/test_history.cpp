@@ -128,7 +128,6 @@ TEST_F(HistoryTest, SkipsWhatIsNamedLikeARecordButIsNoFileAndNamesTenOfIt) {
 TEST_F(HistoryTest, ReportsAFolderThatCannotBe) {
   std::ofstream(folder_ / "a") << "a file";
   open(kPlenty);
-  keep(0, "x");
   waitForError(true);
   EXPECT_NE(history_->error().find(kept_.string()), std::string::npos) << history_->error();
   // It is well again as soon as a record is kept.

@@ -15,7 +15,7 @@ FOLDER = ROOT / 'build/bench'
 
 def of_ruckig(folder):
     """(name, program), compiled from the folder of its sources."""
-    version = version_in(folder / 'CMakeLists.txt', r'VERSION ([\d.]+)')
+    version = version_in(folder / 'CMakeLists.txt', r'ruckig VERSION ([\d.]+)')
     sources = [source for source in sorted((folder / 'src/ruckig').glob('*.cpp')) if source.stem != 'cloud_client']
     return 'Ruckig ' + version, compiled('ruckig', '-DRUCKIG', '-I', folder / 'include', *sources)
 

@@ -60,9 +60,9 @@ class TestEnd(JournalTest):
         for operation in ('flute', 'gash'):
             self.grind(0, 'run', *self.prepare(operation))
         end = self.prepare('end_primary')
-        # 8 deg of clearance and 2 deg of dish: sin of the swivel = cos(clearance) cos(dish), both measured at right angles to the edge.
-        axial = math.hypot(math.tan(math.radians(8)), math.tan(math.radians(2)))
-        self.assertAlmostEqual(math.degrees(gc.process_of(self.goal).setup_swivel), 90 - math.degrees(math.atan(axial)), delta=0.001)
+        # 8 deg of clearance and 2 deg of dish, both as the trade measures them, along the tool.
+        steepest = math.hypot(math.tan(math.radians(8)), math.tan(math.radians(2)))
+        self.assertAlmostEqual(math.degrees(gc.process_of(self.goal).setup_swivel), 90 - math.degrees(math.atan(steepest)), delta=0.001)
         self.grind(0, 'plan', *end, '--csv', self.folder + '/plan.csv')
         self.grind(0, 'run', *end, '--csv', self.folder + '/run.csv')
         planned, streamed = ([row[:12] for row in csv.reader(open('%s/%s.csv' % (self.folder, name)))] for name in ('plan', 'run'))

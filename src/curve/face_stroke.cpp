@@ -49,7 +49,7 @@ struct NextTooth {
 
   /// @param place a place on the plane.
   NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
-    const double pitch = std::min(tooth.pitch, kWidestFlank);
+    const double pitch = tooth.past_axis > 0 ? tooth.pitch : std::min(tooth.pitch, kWidestFlank);
     const double turn = tooth.cut == CutDirection::kRightHand ? pitch : -pitch;
     const double y = tooth.radius * std::cos(pose.tooth + turn), z = tooth.radius * std::sin(pose.tooth + turn);
     const double sin = std::sin(pose.swivel), cos = std::cos(pose.swivel);

@@ -187,15 +187,10 @@ void checkCenterTeeth(Checker& checker, const GrindJob& job) {
     if (from.si != 0) checker.refuse(ReasonKind::kNotAllowed, "cutter.end_short_from", from, kNoCenterTeeth);
     return;
   }
-  constexpr int kFewest = 3;      // of two, none is short beside others
-  constexpr double kEven = 1e-6;  // the digits of a file
-  bool even = teeth >= kFewest && teeth % center == 0;
-  for (int i = 0; i < teeth; ++i) {
-    even = even && std::abs(job.tooth_angles[static_cast<std::size_t>(i)] - i * units::kTurn / teeth) <= kEven;
-  }
-  if (!even) {
+  constexpr int kFewest = 2;  // for each that goes to the centre: a short one is beside it
+  if (teeth < kFewest * center || teeth % center != 0) {
     checker.refuse(ReasonKind::kNotAllowed, "cutter.end_center_teeth", {static_cast<double>(center), Unit::kNone},
-                   "0, 1 of 3 or more evenly spaced teeth, or 2 of an even number of them from 4 on");
+                   "0, 1 of 2 or more teeth, or 2 of an even number of them from 4 on");
   }
   const double least = 4 * kEndGap;
   if (!(from.si >= least)) {
@@ -423,6 +418,11 @@ GrindJob GrindJob::ofOperation(int index) const {
 bool GrindJob::hasGround(OperationKind kind) const {
   return std::any_of(operations.begin(), operations.begin() + operation + 1,
                      [kind](const GrindProcess& p) { return p.kind == kind; });
+}
+
+int GrindJob::behind(int tooth) const {
+  const int teeth = static_cast<int>(tooth_angles.size()), way = cutter.cut == CutDirection::kRightHand ? 1 : -1;
+  return (tooth + way + teeth) % teeth;
 }
 
 bool GrindJob::isShort(int tooth) const {

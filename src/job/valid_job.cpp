@@ -224,12 +224,16 @@ double swivelOfPlane(const GrindJob& job) { return lastFaceStroke(job, 0, 0).swi
 
 EndTooth endToothOf(const GrindJob& job, int tooth) {
   const std::vector<double>& angles = job.tooth_angles;
-  const std::size_t count = angles.size(), i = static_cast<std::size_t>(tooth);
-  const bool right = job.cutter.cut == CutDirection::kRightHand;
-  const std::size_t next = (right ? i + 1 : i + count - 1) % count;
-  const double way = right ? angles[next] - angles[i] : angles[i] - angles[next];
+  const int next = job.behind(tooth);
+  const double turn = angles.at(static_cast<std::size_t>(next)) - angles.at(static_cast<std::size_t>(tooth));
+  const double way = job.cutter.cut == CutDirection::kRightHand ? turn : -turn;
   EndTooth end{job.cutter.end_diameter / 2, way > 0 ? way : way + units::kTurn, job.cutter.cut};
-  if (job.isShort(static_cast<int>(next))) end.next_from = job.cutter.end_short_from, end.past_axis = kEndGap;
+  if (!job.isShort(next)) return end;
+  end.next_from = job.cutter.end_short_from;
+  // The rim cuts other edges to the axis by this. The only one's own takes what is left of its heel instead, in front
+  // of all short edges; with two teeth it goes the less far down for it.
+  const bool cuts_edge = job.isShort(tooth) || job.cutter.end_center_teeth > 1;
+  end.past_axis = cuts_edge ? kEndGap : end.next_from / (angles.size() > 2 ? 4 : 2);
   return end;
 }
 

@@ -186,11 +186,21 @@ class EndCheck {
   /// Takes by how much the end stands in front of an edge, up to the next tooth that has one as far in.
   void takeHeel(EndPlace& place, std::size_t tooth, const EndSection& at) {
     if (!at.edge) return;
-    const EndTooth own = endToothOf(*job_, static_cast<int>(tooth));
     place.at = EndSection{};
     place.at.r = at.r;
-    place.drag = end_.heelDrag(tooth, at, at.r < own.next_from ? units::kTurn / cutter_.end_center_teeth : own.pitch);
+    place.drag = end_.heelDrag(tooth, at, wayToNext(static_cast<int>(tooth), at.r));
     take(place, tooth);
+  }
+
+  /// The angle to the next tooth that has an edge at a distance from the axis [rad].
+  double wayToNext(int tooth, double r) const {
+    double way = 0, next_from = 0;
+    do {
+      const EndTooth own = endToothOf(*job_, tooth);
+      way += own.pitch, next_from = own.next_from;
+      tooth = job_->behind(tooth);
+    } while (r < next_from);
+    return way;
   }
 
   /// The length of the periphery's edge, behind the chamfer, that is taken away.

@@ -48,6 +48,6 @@ def plan(path, job, process, rate, folder):
         names, lines = next(file).strip().split(','), [line for line in file if ',stroke,' in line]
     first, last = names.index('x_mm'), lines[-1].split(',')[names.index('pass')]
     strokes = [[line.split(',')[first:first + 4] for line in lines if ',stroke,%d,%s,' % (tooth, last) in line]
-               for tooth in range(job['cutter']['teeth'])]
+               for tooth in range(job['cutter'].get('teeth') or len(job['cutter']['tooth_angles_deg']))]
     off = [[0], [(job['cutter']['end_diameter_mm'] + process['wheel']['diameter_mm']) / 2], [process['setup']['height_mm']], [0]]
     return json.loads(printed), [numpy.array(rows, float).T + off for rows in strokes]

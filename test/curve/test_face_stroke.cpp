@@ -187,15 +187,17 @@ TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
   }
 }
 
-/// Two of an even number of teeth go to the axis, or one of any: where the next tooth is short, the rim passes the
-/// axis.
+/// Two of an even number of teeth go to the axis, or one of any, at any pitch: where the next tooth is short, the rim
+/// passes the axis.
 TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
   auto between = test_support::numbers(7);
   for (int i = 0; i < 60; ++i) {
-    const int teeth = 3 + i % 4, center = teeth % 2 == 0 && i % 3 > 0 ? 2 : 1;
+    const int teeth = 2 + i % 5, center = teeth % 2 == 0 && teeth > 2 && i % 3 > 0 ? 2 : 1;
     const CutDirection cut = kHands[i / 12 % 2];
     const bool right = cut == CutDirection::kRightHand;
-    const double hand = right ? 1 : -1, pitch = 2 * kPi / teeth;
+    const double hand = right ? 1 : -1;
+    std::vector<double> angles;
+    for (int tooth = 0; tooth < teeth; ++tooth) angles.push_back((tooth + between(-0.05, 0.05)) * 2 * kPi / teeth);
     const double radius = between(3, 8) * kMillimetre, from = between(0.15, 0.4) * radius;
     const double clearance = between(5, 20) * kDegree, dish = between(0, 3) * kDegree;
     SCOPED_TRACE(testing::Message() << center << " of " << teeth << " teeth, hand " << hand << ", R " << radius
@@ -206,19 +208,23 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
     if (!right) wheel.inner_radius = wheel.radius - radius - 1 * kMillimetre;
     const OnTooth normal = endNormal(clearance, dish), through(0, radius, 0);
     const auto is_short = [&](int tooth) { return tooth % (teeth / center) != 0; };
+    const auto angle = [&](int tooth) { return angles[static_cast<std::size_t>(tooth)]; };
     BruteForce tool(wheel, radius, true);
     for (int tooth = 0; tooth < teeth; ++tooth) {
       // Behind a left-hand tooth is the one before it.
-      const bool passes = is_short(right ? (tooth + 1) % teeth : (tooth + teeth - 1) % teeth);
-      const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? kGap : 0};
+      const int next = right ? (tooth + 1) % teeth : (tooth + teeth - 1) % teeth;
+      const double way = hand * (angle(next) - angle(tooth)), pitch = way > 0 ? way : way + 2 * kPi;
+      const bool passes = is_short(next);
+      const double past = center > 1 || is_short(tooth) ? kGap : from / (teeth > 2 ? 4 : 2);
+      const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? past : 0};
       const FaceStroke stroke = endStroke(end, normal, through, wheel, kGap, 1 * kMillimetre);
-      tool.grind(stroke, tooth * pitch, right ? 60 : 1);
+      tool.grind(stroke, angle(tooth), right ? 60 : 1);
       const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
       const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
       // Of the face, whose plane meets the axis at the edge's end.
       const double off = (Vector3d(radius * std::tan(dish), 0, 0) - face).norm();
       if (passes) {
-        EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, kGap, 1e-9);
+        EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, past, 1e-9);
       }
       // The next edge, and what is under it on the plane, are outside a rim, or within a cup's.
       double nearest = right ? 1 : 0;
@@ -237,10 +243,10 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
     const double behind = hand * 1e-6, slope = std::tan(dish);
     for (int tooth = 0; tooth < teeth; ++tooth) {
       for (double r = is_short(tooth) ? from : 3 * kGap; r < radius; r += 0.05 * kMillimetre) {
-        EXPECT_NEAR(tool.top(r, tooth * pitch + behind), (radius - r) * slope, 1e-7) << tooth << ' ' << r;
+        EXPECT_NEAR(tool.top(r, angle(tooth) + behind), (radius - r) * slope, 1e-7) << tooth << ' ' << r;
       }
     }
-    EXPECT_GE(tool.top(1e-9, 0), radius * slope - 1e-9);  // without a nib
+    EXPECT_GE(tool.top(1e-9, angle(0)), radius * slope - 1e-9);  // without a nib
   }
 }
 

@@ -115,11 +115,12 @@ struct NextTooth {
   std::array<Real, 2> at_axis{};                   ///< what of the plane is on the axis
 };
 
-/// The next tooth, or a line 140 deg behind the edge before it, as seen along the spindle: (across, Y).
+/// The next tooth, or, unless the rim passes the axis, a line 140 deg behind the edge before it, as seen along the
+/// spindle: (across, Y).
 NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
   const Vector axis{f.radius * std::tan(f.dish), 0, 0};
   const Vector inner{(f.radius - f.behind_from) * std::tan(f.dish), f.behind_from, 0};
-  const Real turn = std::min(f.pitch, 7 * std::acos(Real(-1)) / 9);
+  const Real turn = f.past_axis > 0 ? f.pitch : std::min(f.pitch, 7 * std::acos(Real(-1)) / 9);
   const auto ofNext = [&](const Vector& place) {
     return inMachine(f, place, pose.tooth + (f.left_hand ? -turn : turn));
   };
@@ -135,9 +136,9 @@ NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
 
 /// For a tooth whose edge goes to the axis, the rim is past the axis.
 void judgeRimPastAxis(const Face& f, const Pose& pose, const Vector& face, const NextTooth& next, Real rim) {
-  if (!f.past_axis) return;
+  if (f.past_axis == 0) return;
   const Real off = std::hypot(next.at_axis[0] - dot(face, pose.across), next.at_axis[1] - face[1]);
-  requireSame("rim past the axis", f.left_hand ? off - rim : rim - off, f.gap, kNear);
+  requireSame("rim past the axis", f.left_hand ? off - rim : rim - off, f.past_axis, kNear);
 }
 
 /// The inner edge of a cup's rim round the next tooth, of which all is within it by the gap.

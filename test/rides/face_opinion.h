@@ -15,7 +15,7 @@ struct Face {
   Real radius = 0;            ///< of the tool at its end [m]
   Real pitch = 0;             ///< to the tooth behind [rad]
   Real behind_from = 0;       ///< radius from which that tooth has an edge [m]
-  bool past_axis = false;     ///< whether the rim ends past the axis by the gap, rather than beside all of that edge
+  Real past_axis{};           ///< by which the rim ends past the axis; 0: beside all of that edge
   Real a = 0;                 ///< of the tooth's edge [rad]
   Real dish = 0, rake = 0;    ///< of the end [rad]
   Real clearance = 0;         ///< of the plane [rad]

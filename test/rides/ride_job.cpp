@@ -156,9 +156,9 @@ ValidJob withEnd(Random& random, GrindJob job) {
     p.gash_past = c.end_diameter * between(random, -0.3, 0.1);
   }
   if (job.spiral_angles.empty() && c.end_diameter > 10 * kEndGap && flip(random, 0.4)) {
-    const int teeth = flip(random, 0.5) ? 3 : 4;
-    job.tooth_angles.clear();
-    for (int i = 0; i < teeth; ++i) job.tooth_angles.push_back(i * units::kTurn / teeth);
+    const int teeth = 2 + static_cast<int>(fraction(random) * 3);
+    job.tooth_angles.assign(1, 0);
+    for (int i = 1; i < teeth; ++i) job.tooth_angles.push_back((i + between(random, -0.2, 0.2)) * units::kTurn / teeth);
     c.end_center_teeth = teeth == 4 && flip(random, 0.7) ? 2 : 1;
     c.end_short_from = between(random, 5 * kEndGap, 0.45 * c.end_diameter);
     if (p.kind == OperationKind::kGash) {
@@ -238,11 +238,13 @@ second_opinion::Face faceOf(const ValidJob& job, int tooth) {
   const std::size_t behind = (i + (f.left_hand ? angles.size() - 1 : 1)) % angles.size();
   const double way = f.left_hand ? angles[i] - angles[behind] : angles[behind] - angles[i];
   f.pitch = way > 0 ? way : way + units::kTurn;
-  // The first tooth goes to the axis, and the opposite one if there are two.
+  // The first tooth goes to the axis, and the one half of the teeth further if there are two. The rim of the only one
+  // may pass the axis farther.
   const std::size_t every = angles.size() / static_cast<std::size_t>(std::max(c.end_center_teeth, 1));
   const auto is_short = [&](std::size_t one) { return c.end_center_teeth > 0 && one % every != 0; };
-  f.past_axis = is_short(behind);
-  f.behind_from = f.past_axis ? c.end_short_from : 0;
+  f.behind_from = is_short(behind) ? c.end_short_from : 0;
+  f.past_axis = f.behind_from / (angles.size() > 2 ? 4 : 2);
+  if (f.past_axis > 0 && (is_short(i) || c.end_center_teeth > 1)) f.past_axis = kEndGap;
   f.a = angles[i] + job.edges()[i].at_end;
   f.dish = c.end_dish;
   f.rake = c.end_rake;

@@ -157,8 +157,14 @@ TEST(EndCheck, FindsAFinThatIsNarrowerThanAnyStep) {
   for (const char* operation : {"end_secondary", "chamfer"}) {
     SCOPED_TRACE(operation);
     GrindJob job = readJobFile("jobs/slot_drill_d8_t2.yaml", operation);
+    job.cutter.end_center_teeth = 0;
+    job.cutter.end_short_from = gashOf(job).gash_short_past = 0;
+    job.cutter.end_uncut_diameter = 0.3 * kMillimetre;
+    for (GrindProcess& p : job.operations) {
+      if (isEndFlank(p.kind)) p.wheel_diameter = 100 * kMillimetre;
+    }
     EXPECT_TRUE(checked(job).reasons.empty());
-    operationOf(job, OperationKind::kGash).gash_past = 0.2 * kMillimetre;
+    gashOf(job).gash_past = 0.2 * kMillimetre;
     const CutterCheck fin = checked(job);
     ASSERT_EQ(fin.reasons.size(), 1U);
     EXPECT_EQ(fin.reasons[0].detail, "heel drag");

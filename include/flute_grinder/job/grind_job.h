@@ -148,8 +148,10 @@ struct GrindJob {
   const GrindProcess& process() const { return processOf(*this); }  ///< the job's operation
   /// Whether the tool has an operation of a kind after the job's: it is the job's, or before it.
   bool hasGround(OperationKind kind) const;
+  /// The next tooth behind a tooth's edge.
+  int behind(int tooth) const;
   /// Whether a tooth's edge at the end does not go to the axis, beside others' that do: those of the first tooth, and
-  /// of the opposite one if there are two.
+  /// that half of the teeth further if there are two.
   bool isShort(int tooth) const;
   /// Whether the wheel comes along X, and has to go back along it before it is lifted: a cup, whose rim goes round the
   /// next tooth of a left-hand end.

@@ -42,6 +42,15 @@ const OtherKey& otherJobKey(const std::string& path) {
   return found != keys.end() ? *found : throw std::out_of_range(path);
 }
 
+const std::vector<JobNumber>& jobNumbers() {
+  static const std::vector<JobNumber> numbers = [] {
+    std::vector<JobNumber> all;
+    visitJobTable([&](const JobField& field, auto of) { all.push_back({field, JobNumber::Of(of)}); });
+    return all;
+  }();
+  return numbers;
+}
+
 std::string fieldName(const std::string& path) {
   std::string name = path;
   visitJobFields([&](const JobField& field, auto) {

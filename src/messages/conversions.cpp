@@ -44,7 +44,7 @@ To converted(const From& asked) {
   for (std::size_t i = 0; i < from.operations.size(); ++i) {
     from.operation = static_cast<decltype(from.operation)>(i);
     to.operation = static_cast<decltype(to.operation)>(i);
-    visitJobFields([&](const JobField&, auto of) { of(to) = of(from); });
+    visitJobTable([&](const JobField&, auto of) { of(to) = of(from); });
     visitJobChoices(
         [&](const char*, int, auto of) { of(to) = static_cast<std::remove_reference_t<decltype(of(to))>>(of(from)); });
     copyPoints(from.operations[i].wheel_points, to.operations[i].wheel_points);

@@ -71,7 +71,7 @@ double hostileOrAny(Dice& dice, double min, double max) {
 
 /// A number of a job, and its range in SI.
 struct Number {
-  double& (*of)(GrindJob&);
+  JobNumber::Of of;
   double min, max;
 };
 

@@ -36,11 +36,11 @@ struct JobField {
   Quantity high() const { return {max * shopScale(unit), unit}; }
 };
 
-/// Visits every number of a job except the lists and the choices.
-/// @param visit called with each JobField and a function that returns the field's number from a GrindJob or a
-///        GrindGoal, whose members have the same names.
+/// The table of a job's numbers, all but the lists and the choices, for a job and for what has members of the same
+/// names: a GrindGoal.
+/// @param visit called with each JobField and a function that returns the field's number from either.
 template <typename Visit>
-void visitJobFields(const Visit& visit) {
+void visitJobTable(const Visit& visit) {
   using F = JobField;
   constexpr Unit mm = Unit::kMetre, deg = Unit::kRadian, mm_min = Unit::kFeedMetrePerSecond;
   constexpr Unit mm3_s = Unit::kCubicMetrePerSecond, um = Unit::kDeviationMetre, mm_rad = Unit::kRotaryMetrePerRadian;
@@ -165,8 +165,35 @@ void visitJobFields(const Visit& visit) {
   // clang-format on
 }
 
+/// A field, and its number in a job.
+struct JobNumber {
+  class Of {
+   public:
+    template <typename Number>
+    explicit Of(Number number) : number_(number), of_const_(number) {}
+    double& operator()(GrindJob& job) const { return number_(job); }
+    double operator()(const GrindJob& job) const { return of_const_(job); }
+
+   private:
+    double& (*number_)(GrindJob&);
+    const double& (*of_const_)(const GrindJob&);
+  };
+  JobField field;
+  Of of;
+};
+
+/// The numbers of a job in the table's order.
+const std::vector<JobNumber>& jobNumbers();
+
+/// Visits every number of a job except the lists and the choices.
+/// @param visit called with each JobField and its JobNumber::Of.
+template <typename Visit>
+void visitJobFields(const Visit& visit) {
+  for (const JobNumber& number : jobNumbers()) visit(number.field, number.of);
+}
+
 /// Visits the choices and counts of a job, which have other types in a goal.
-/// @param visit called with the path, the maximum allowed value, and a function like the one for visitJobFields().
+/// @param visit called with the path, the maximum allowed value, and a function like the one for visitJobTable().
 template <typename Visit>
 void visitJobChoices(const Visit& visit) {
   // clang-format off

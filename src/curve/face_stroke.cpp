@@ -15,9 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kFaceSteps = 8;  ///< steps to the centre of a face, each of which finds it more exactly
-/// Angle behind a tooth beyond which its flank ends even before the next tooth: where the next one is opposite, a rim
-/// that came to it would be far past the axis.
+/// Angle behind a tooth beyond which its flank ends even before the next tooth, unless its edge goes to the axis: where
+/// the next one is opposite, a rim that came to it would be far past the axis.
 constexpr double kWidestFlank = 140 * units::kDegree;
+/// The same where the rim passes the axis: beyond it, the plane of the flank is in front of the end.
+constexpr double kWidestPastAxis = units::kTurn / 2;
 
 /// A place of a tooth in the machine, while the tooth stands at an angle.
 Vector3d inMachine(const OnTooth& place, double tooth, CutDirection cut) {
@@ -49,7 +51,7 @@ struct NextTooth {
 
   /// @param place a place on the plane.
   NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
-    const double pitch = tooth.past_axis > 0 ? tooth.pitch : std::min(tooth.pitch, kWidestFlank);
+    const double pitch = std::min(tooth.pitch, tooth.past_axis > 0 ? kWidestPastAxis : kWidestFlank);
     const double turn = tooth.cut == CutDirection::kRightHand ? pitch : -pitch;
     const double y = tooth.radius * std::cos(pose.tooth + turn), z = tooth.radius * std::sin(pose.tooth + turn);
     const double sin = std::sin(pose.swivel), cos = std::cos(pose.swivel);

@@ -15,7 +15,7 @@ const std::vector<OtherKey>& otherJobKeys() {
   // clang-format off
   static const std::vector<OtherKey> keys{
       {"cutter.cut", "cutter.cut", namesOf<CutDirection>(), "which way the cutter turns, and so which wall of a flute is the rake face and which way Z goes"},
-      {"cutter.end_center_teeth", "cutter.end.center_teeth", upTo(kMaxCenterTeeth, 0), "number of end teeth whose edges go to the axis: 1, the first, of 2 or more; 2, also the one half of the teeth further, of an even number from 4", "0, all edges end at `cutter.end.uncut_diameter_mm`"},
+      {"cutter.end_center_teeth", "cutter.end.center_teeth", upTo(kMaxCenterTeeth, 0), "number of end teeth whose edges go to the axis: 1, the first, of 2 or more; 2, also the tooth half of their number further, as the third of four, of an even number from 4", "0, all edges end at `cutter.end.uncut_diameter_mm`"},
       {"cutter.teeth", "cutter.teeth", upTo(kMaxTeeth, 1), "evenly spaced"},
       {"cutter.tooth_angles", "cutter.tooth_angles_deg", "angles in deg, 0 first, ascending, below 360", "instead of `cutter.teeth`, for unequal spacing"},
       {"cutter.spiral_angles", "cutter.spiral_angles_deg", "angles in deg, one per tooth", "instead of `cutter.spiral_angle_deg`, for a helix per tooth; each within the range of that key"},

@@ -115,12 +115,12 @@ struct NextTooth {
   std::array<Real, 2> at_axis{};                   ///< what of the plane is on the axis
 };
 
-/// The next tooth, or, unless the rim passes the axis, a line 140 deg behind the edge before it, as seen along the
-/// spindle: (across, Y).
+/// The next tooth, or a line before it 140 deg behind the edge, or 180 deg where the rim passes the axis, as seen along
+/// the spindle: (across, Y).
 NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
   const Vector axis{f.radius * std::tan(f.dish), 0, 0};
   const Vector inner{(f.radius - f.behind_from) * std::tan(f.dish), f.behind_from, 0};
-  const Real turn = f.past_axis > 0 ? f.pitch : std::min(f.pitch, 7 * std::acos(Real(-1)) / 9);
+  const Real turn = std::min(f.pitch, (f.past_axis > 0 ? 9 : 7) * std::acos(Real(-1)) / 9);
   const auto ofNext = [&](const Vector& place) {
     return inMachine(f, place, pose.tooth + (f.left_hand ? -turn : turn));
   };

@@ -171,8 +171,8 @@ struct GrindJob {
 Range askedSpiral(const GrindJob& job);
 
 constexpr double kEvenRake = 0.005 * units::kDegree;  ///< maximum variation of the rake with kConstantRake [rad]
-/// Distance of the rim from the next tooth at a stroke's end on the end; also that by which it passes the axis for a
-/// tooth to the centre [m].
+/// Distance of the rim from the next tooth at a stroke's end on the end; also by which it passes the axis, beyond which
+/// it cuts other edges to the axis [m].
 constexpr double kEndGap = 0.05e-3;
 constexpr int kMaxCenterTeeth = 2;    ///< maximum number of end teeth whose edges go to the axis
 constexpr int kMaxWheelPoints = 100;  ///< maximum number of points of a wheel's profile

@@ -167,6 +167,7 @@ void visitJobTable(const Visit& visit) {
 
 /// A field, and its number in a job.
 struct JobNumber {
+  /// The number of a field in a job, to read or to set.
   class Of {
    public:
     template <typename Number>

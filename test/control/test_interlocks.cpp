@@ -100,19 +100,6 @@ TEST(WaitsFor, EachPartAndTheJournalWithSpindleAndCoolantAndEndsTheJobAtTheTimeo
   }
 }
 
-TEST(BeforeAJob, TheFirstThatIsMissingIsReported) {
-  for (std::size_t first = 0; first < parts().size(); ++first) {
-    Rig<FakeDrive> rig;
-    rig.enable();
-    ASSERT_TRUE(rig.askToStartPaper().accepted);
-    rig.drive.on_read = [=](FakeDrive& d) {
-      for (std::size_t i = first; i < parts().size(); ++i) parts()[i].lose(d);
-    };
-    rig.runUntil(S::kReady);
-    EXPECT_EQ(rig.last().fault.interlock, parts()[first].interlock);
-  }
-}
-
 /// When a part is lost, and the state in the cycle that detects it. At any moment of any job test/rides lose them.
 struct LossMoment {
   std::string name;
@@ -201,17 +188,6 @@ TEST(Lost, TakesTheWheelOffTheWorkUntilItIsBackAndTheJobIsResumed) {
       if (rig.jobsEnded() == 0) rig.runToEnd();
       expectCompleted(rig);
     }
-  }
-}
-
-TEST(LostPart, WithoutAJobIsNothing) {
-  for (const Part& part : parts()) {
-    SCOPED_TRACE(part.name);
-    RigIn rig(S::kReady);
-    rig.drive.on_read = part.lose;
-    rig.run(50);
-    EXPECT_EQ(rig.last().state, S::kReady);
-    EXPECT_EQ(rig.last().interlock, Interlock::kNone);
   }
 }
 

@@ -45,19 +45,6 @@ TEST(LateCycle, IsNoFaultAtRest) {
   }
 }
 
-TEST(LateCycle, IsNothingToADriveThatHasCommandsWaiting) {
-  RigIn late(S::kRunning, patient(), 1), punctual(S::kRunning, patient(), 1);
-  late.drive.status.commands_waiting = punctual.drive.status.commands_waiting = 1;  // within the following error
-  punctual.cycle();
-  late.cycle(50);
-  for (int i = 0; i < 10; ++i) {
-    ASSERT_EQ(late.last().state, S::kRunning) << late.last().fault.text();
-    ASSERT_TRUE(sameBits(late.last().command, punctual.last().command));
-    late.cycle();
-    punctual.cycle();
-  }
-}
-
 /// Distance that X goes in a cycle.
 double step(const Rig<FakeDrive>& rig, std::size_t i) { return rig.log[i].command[kX] - rig.log[i - 1].command[kX]; }
 

@@ -159,13 +159,15 @@ TEST(MachineConfig, AMachineNeedsNoProbe) {
 // ---------------------------------------------------------------------------------------------------------------------
 // What is refused beside what test_parameters.cpp shows of each parameter by itself
 
-TEST(MachineConfig, RefusesALimitWithoutItsFlag) {
+TEST(MachineConfig, RefusesALimitWithoutItsFlagOrSwitchedOff) {
   for (const std::string limit : {"velocity", "position"}) {
     YAML::Node p = parameters();
     p["joint_limits"]["axis_y"]["max_" + limit] = 0.1;
-    EXPECT_EQ(errorOf(p), "parameter /grinder/joint_limits/axis_y/has_" + limit +
-                              "_limits is missing, though /grinder/joint_limits/axis_y/max_" + limit +
+    const std::string flag = "/grinder/joint_limits/axis_y/has_" + limit + "_limits";
+    EXPECT_EQ(errorOf(p), "parameter " + flag + " is missing, though /grinder/joint_limits/axis_y/max_" + limit +
                               " is there; allowed: true beside it");
+    p["joint_limits"]["axis_y"]["has_" + limit + "_limits"] = false;
+    EXPECT_EQ(errorOf(p), "parameter " + flag + " = false; allowed: true, since every axis needs this limit");
   }
 }
 

@@ -214,22 +214,5 @@ TEST(WorkOffsets, TheNextJobMayHaveOthers) {
   }
 }
 
-TEST(WorkOffsets, TheStatusHasThePositionsAsRead) {
-  Rig<FakeDrive> rig;
-  rig.drive.place({0.01, 0.02, 0.03, 4});
-  rig.cycle();
-  EXPECT_TRUE(sameBits(toAxes(rig.loop->status().position), Axes(0.01, 0.02, 0.03, 4)));
-  EXPECT_TRUE(rig.loop->status().position_valid);
-  rig.drive.position[kZ] = std::numeric_limits<double>::quiet_NaN();
-  rig.cycle();
-  EXPECT_FALSE(rig.loop->status().position_valid);
-  rig.drive.position[kZ] = 0;
-  rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
-  rig.cycle();
-  EXPECT_TRUE(rig.loop->status().position_valid) << "as yet";
-  rig.run(3);
-  EXPECT_FALSE(rig.loop->status().position_valid) << "not fresh for 3 periods; 2.5 are allowed";
-}
-
 }  // namespace test_work_offsets
 }  // namespace grinder::test_support

@@ -234,29 +234,6 @@ TEST_P(JogFrom, AnotherAxisOrStepIsRefusedUntilTheOneRests) {
 
 INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), stateName);
 
-TEST(Jog, ToALimitItEndsThereWithoutAFault) {
-  Rig<FakeDrive> rig;
-  rig.enable();
-  const AxisLimits limits = machineConfig().machine.limits;
-  for (const int axis : {kZ, kX, kA}) {
-    for (const bool up : {true, false}) {
-      const double limit = up ? limits.max_position[axis] : limits.min_position[axis];
-      const double speed = limits.max_velocity[axis] / 2;
-      for (int i = 0; i < 60000 && (i < 100 || rig.last().state == S::kJogging); ++i) {
-        if (i % 20 == 0) rig.loop->postJog(on(axis, up ? speed : -speed));
-        rig.cycle();
-        static_cast<void>(rig.loop->jogReply());
-      }
-      ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
-      EXPECT_EQ(rig.last().command[axis], limit);
-      release(rig);
-      EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its travel");
-      release(rig);
-    }
-  }
-  EXPECT_TRUE(smooth(rig.log));
-}
-
 TEST(Jog, FromOutsideTheLimitsOfAnyAxisIsRefused) {
   const std::tuple<int, double, const char*> rows[]{
       {kX, -0.101, "axis X is at machine position -101 mm, outside its limit -100 mm"},

@@ -221,6 +221,7 @@ TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsLiftedToTheTopAndACupIsFirstBac
     rig.drive.position = {row.x, 0.05, 0, 0};
     rig.enable();
     rig.run(500);
+    EXPECT_EQ(rig.last().drive.homed, row.homed);
     EXPECT_EQ(rig.last().wheel_backs_off, row.x > row.x_of_lift);
     rig.keepLast();
     ASSERT_NO_FATAL_FAILURE(rig.lift());
@@ -369,16 +370,18 @@ TEST(AfterARestart, ItIsLiftedFromBeyondTheLimitsOfTheOtherAxes) {
 }
 
 TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
-  const auto expect_refused = [](const Wheel& wheel, double y) {
+  const auto expect_refused = [](const Wheel& wheel, double y, const char* to) {
     Rig<FakeDrive> rig(machineConfig(), wheel);
     rig.drive.status.homed = wheel.known;
     rig.drive.position[kY] = y;
     rig.enable();
-    EXPECT_CONTAINS(rig.ask(E::kLift).text, " mm; allowed: up to 150 mm");
+    EXPECT_EQ(rig.ask(E::kLift).text, std::string("lift refused: it would lead axis Y to machine position ") + to +
+                                          " mm; allowed: up to 150 mm");
     EXPECT_EQ(rig.last().state, S::kReady);
   };
-  for (const double far : {0.2, std::numeric_limits<double>::quiet_NaN()}) expect_refused({true, far, 0.01}, 0);
-  expect_refused(kUnknownWheel, 0.151);
+  expect_refused({true, 0.2, 0.01}, 0, "200");
+  expect_refused({true, std::numeric_limits<double>::quiet_NaN(), 0.01}, 0, "nan");
+  expect_refused(unknownWheel(machineConfig().machine.limits, false), 0.151, "321");  // by its whole travel
 }
 
 }  // namespace test_lift

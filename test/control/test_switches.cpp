@@ -36,7 +36,11 @@ TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
   EXPECT_EQ(rig.ask(E::kCoolantOn).text, "coolant on refused: the drive does not switch the coolant");
   EXPECT_EQ(rig.last().state, S::kReady);
   EXPECT_FALSE(rig.drive.written_drive.home || rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
-  EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted) << "off is never refused";
+  for (const E off : {E::kSpindleOff, E::kCoolantOff}) EXPECT_TRUE(rig.ask(off).accepted) << "refused in a job alone";
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRetracted));
+  EXPECT_EQ(rig.ask(E::kSpindleOff).text, "spindle off refused: the drive does not switch the spindle");
+  EXPECT_EQ(rig.ask(E::kCoolantOff).text, "coolant off refused: the drive does not switch the coolant");
+  ASSERT_TRUE(rig.ask(E::kResume).accepted) << "they are on";
 }
 
 /// And neither the power nor what else ends such a state switches on again.
@@ -172,14 +176,6 @@ TEST(SwitchesInAJob, WhatIsLostAfterTheStartOrTheResumeTakesTheWheelOffTheWork) 
     EXPECT_EQ(rig.cycle().interlock, Interlock::kSpindle);
     EXPECT_EQ(rig.last().state, S::kHolding);
   }
-}
-
-TEST(SwitchesInAJob, WhatTheDriveCannotSwitchOnAgainIsNotSwitchedOff) {
-  Rig<FakeDrive> without(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
-  ASSERT_NO_FATAL_FAILURE(bringTo(without, S::kRetracted));
-  EXPECT_EQ(without.ask(E::kSpindleOff).text, "spindle off refused: the drive does not switch the spindle");
-  EXPECT_EQ(without.ask(E::kCoolantOff).text, "coolant off refused: the drive does not switch the coolant");
-  ASSERT_TRUE(without.ask(E::kResume).accepted);
 }
 
 TEST(DistanceToGo, IsThatOfAJogByADistance) {

@@ -99,24 +99,16 @@ TEST(Swivel, IsNotTurnedBeforeAJobHasEnded) {
   }
 }
 
-TEST(MeasuredSwivel, IsNotConfirmed) {
-  Rig<FakeDrive> rig;
-  measure(rig, 0.25);
-  rig.cycle();
-  const RequestReply answer = rig.confirm(0.25);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text,
-            "confirm-swivel refused: the drive measures the swivel, which is at 14.3239 deg; nothing is to be "
-            "confirmed");
-}
-
-TEST(MeasuredSwivel, ThatIsLostIsUnknownEvenIfItWasConfirmedBefore) {
+TEST(MeasuredSwivel, IsNotConfirmedAndOnceLostItIsUnknownEvenIfItWasConfirmedBefore) {
   Rig<FakeDrive> rig;
   rig.cycle();
   ASSERT_EQ(rig.last().swivel.angle, kPaperSwivel) << "confirmed";
   for (const double lost : {kNan, HUGE_VAL}) {
-    measure(rig, kPaperSwivel);
+    measure(rig, 0.25);
     EXPECT_TRUE(rig.cycle().swivel.measured);
+    EXPECT_EQ(rig.confirm(0.25).text,
+              "confirm-swivel refused: the drive measures the swivel, which is at 14.3239 deg; nothing is to be "
+              "confirmed");
     measure(rig, lost);
     EXPECT_TRUE(std::isnan(rig.cycle().swivel.angle));
     EXPECT_FALSE(rig.last().swivel.measured);

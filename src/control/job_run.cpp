@@ -35,7 +35,6 @@ Refusal JobRun::begin(const JobStart& job) noexcept {
   now_.wheel.startJob(job.wheel);
   now_.limit_check.restart(program.terms());
   sample.fault = LoopFault{};
-  sample.interlock = Interlock::kNone;
   sample.job_ended = false;  // for a previous job whose sample was lost
   status.end = JobEnd::kNone;
   status.fault = LoopFault{};
@@ -128,7 +127,7 @@ void JobRun::checkInterlocks() noexcept {
 }
 
 bool JobRun::beginLiftOff() noexcept {
-  const bool in_work = written_.setpoints > 0 && now_.sample.command[kY] < now_.wheel.wheel().clear_y;
+  const bool in_work = now_.sample.command[kY] < now_.wheel.wheel().clear_y;
   if (now_.sample.state != MachineState::kCanceling || !may_lift_off_ || !in_work) return false;
   may_lift_off_ = false;
   stream_->retract();

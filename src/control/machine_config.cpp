@@ -3,8 +3,6 @@
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/motion/work_offsets.h"
 
-#include <cmath>
-
 namespace grinder {
 
 namespace {
@@ -60,7 +58,7 @@ double limit(const ParameterReader& p, const std::string& joint, const LimitName
   if (states(p, joint, name.flag, name.about_flag, {name.value})) {
     return p.number("joint_limits/" + joint + "/" + name.value, kMin, kMax, name.about);
   }
-  if (from_urdf > 0 && std::isfinite(from_urdf)) return from_urdf;
+  if (from_urdf > 0) return from_urdf;
   throw ParameterError("parameter " + p.name("joint_limits/" + joint + "/" + name.flag) +
                        " is missing, and robot_description has no such limit; allowed: true, with " + name.value);
 }

@@ -21,7 +21,8 @@ template <typename Drive>
 class Rig {
  public:
   explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {})
-      : Rig(config, [&](Drive& d) { setUp(d, config); }, wheel) {}
+      : Rig(
+            config, [&](Drive& d) { setUp(d, config); }, wheel) {}
 
   /// With a drive that `prepare` sets up.
   template <typename Prepare>

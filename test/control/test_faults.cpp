@@ -66,12 +66,12 @@ std::vector<FaultCase> faultCases() {
     cases.push_back({"Nan" + letter, K::kInvalidFeedback, {name + " position", "nan"}, reads(kNan), axis});
     cases.push_back({"Infinite" + letter, K::kInvalidFeedback, {name + " position", "-inf"}, reads(-HUGE_VAL), axis});
     const double limit = axis == kA ? 0.05 : 0.001;
-    cases.push_back({"Following" + letter,
-                     K::kFollowingError,
-                     {name + " following error", axis == kA ? "2.87" : "1.002 mm",
-                      axis == kA ? "limit 2.86479 deg" : "limit 1 mm"},
-                     [=](FakeDrive& d) { d.position[n] += limit * 1.002; },
-                     axis});
+    cases.push_back(
+        {"Following" + letter,
+         K::kFollowingError,
+         {name + " following error", axis == kA ? "2.87" : "1.002 mm", axis == kA ? "limit 2.86479 deg" : "limit 1 mm"},
+         [=](FakeDrive& d) { d.position[n] += limit * 1.002; },
+         axis});
   }
   return cases;
 }

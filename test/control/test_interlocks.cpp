@@ -113,9 +113,12 @@ std::vector<LossMoment> lossMoments() {
                                  rig.loop->setFeedOverride(1);
                                },
                                S::kHeld}};
-  for (const auto& [state, then] :
-       {std::pair(S::kRunning, S::kHolding), {S::kHolding, S::kHolding}, {S::kHeld, S::kRetracting},
-        {S::kRetracting, S::kRetracting}, {S::kRetracted, S::kRetracted}, {S::kResuming, S::kHolding}}) {
+  for (const auto& [state, then] : {std::pair(S::kRunning, S::kHolding),
+                                    {S::kHolding, S::kHolding},
+                                    {S::kHeld, S::kRetracting},
+                                    {S::kRetracting, S::kRetracting},
+                                    {S::kRetracted, S::kRetracted},
+                                    {S::kResuming, S::kHolding}}) {
     all.push_back({toString(state), [in = state](Rig<FakeDrive>& rig) { bringTo(rig, in); }, then});
   }
   const std::uint64_t last = planned().back().cycle;

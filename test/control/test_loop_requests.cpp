@@ -192,10 +192,7 @@ TEST(Request, ForWhatIsSoAlreadyIsAcceptedAndChangesNothing) {
                                             {S::kHeld, {E::kHold}},
                                             {S::kStarting, {E::kHold, E::kResume}},
                                             {S::kCanceling, {E::kCancel, E::kDisable, E::kHold}},
-                                            {S::kFault, {E::kDisable}},
-                                            {S::kLifting, {E::kHold, E::kCancel, E::kDisable}},
-                                            {S::kJogging, {E::kHold, E::kCancel, E::kDisable}},
-                                            {S::kJoggingRetracted, {E::kHold}}};
+                                            {S::kFault, {E::kDisable}}};
   for (const auto& [state, events] : rows) {
     for (const E event : events) {
       SCOPED_TRACE(testing::Message() << toString(event) << " in " << toString(state));

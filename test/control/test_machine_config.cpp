@@ -112,6 +112,7 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.machine.swivel.from, -0.7);
   EXPECT_EQ(config.machine.swivel.to, 1.1);
   expectAxes(config.jog_velocity, {0.02 * 1, 0.02 * 2, 0.02 * 3, 0.02 * 4});
+  EXPECT_EQ(config.name, "grinder");
   EXPECT_EQ(config.machine.period, 0.002);
   EXPECT_EQ(config.feedback_timeout, 0.01);
   EXPECT_EQ(config.enable_timeout, 3);

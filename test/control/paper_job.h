@@ -47,11 +47,4 @@ inline void expectCompleted(const Rig<Drive>& rig) {
   EXPECT_TRUE(ground) << "the stroke's end was not ground";
 }
 
-template <typename Drive>
-inline void expectResumedAndCompleted(Rig<Drive>& rig) {
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  if (rig.jobsEnded() == 0) rig.runToEnd();
-  expectCompleted(rig);
-}
-
 }  // namespace grinder::test_support

@@ -20,17 +20,15 @@ namespace grinder::test_support {
 template <typename Drive>
 class Rig {
  public:
-  explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {}) : config_(config) {
-    setUp(drive, config);
-    loop = std::make_unique<ControlLoop>(drive, config, wheel);
-    loop->postSwivel(kPaperSwivel);
-  }
+  explicit Rig(const LoopConfig& config = machineConfig(), const Wheel& wheel = {})
+      : Rig(
+            config, [&](Drive& d) { setUp(d, config); }, wheel) {}
 
   /// With a drive that `prepare` sets up.
   template <typename Prepare>
-  Rig(const LoopConfig& config, const Prepare& prepare) : config_(config) {
+  Rig(const LoopConfig& config, const Prepare& prepare, const Wheel& wheel = {}) : config_(config) {
     prepare(drive);
-    loop = std::make_unique<ControlLoop>(drive, config);
+    loop = std::make_unique<ControlLoop>(drive, config, wheel);
     loop->postSwivel(kPaperSwivel);
   }
 
@@ -65,26 +63,22 @@ class Rig {
       useNoHeap([&] { ticket = loop->postStopWithReply(event); });
       return answerOf([&] { return loop->stopReply(event, ticket); });
     }
-    post([&] { return loop->post(event); }, "the request");
-    return answerOf([&] { return loop->reply(); });
+    return askBy([&] { return loop->post(event); }, [&] { return loop->reply(); });
   }
 
   /// Requests to start a job and runs cycles until the request is answered.
   RequestReply askToStart(SetpointStream& job) {
-    post([&] { return loop->startJob({&job, wheelOf(job.program())}); }, "the start");
-    return answerOf([&] { return loop->startJobReply(); });
+    return askBy([&] { return loop->startJob({&job, wheelOf(job.program())}); }, [&] { return loop->startJobReply(); });
   }
 
   /// Confirms the swivel and runs cycles until that is answered.
   RequestReply confirm(double angle) {
-    post([&] { return loop->postSwivel(angle); }, "the confirmation");
-    return answerOf([&] { return loop->swivelReply(); });
+    return askBy([&] { return loop->postSwivel(angle); }, [&] { return loop->swivelReply(); });
   }
 
   /// Requests a jog and runs the cycle that answers it.
   RequestReply jog(const JogRequest& request) {
-    post([&] { return loop->postJog(request); }, "the jog");
-    return answerOf([&] { return loop->jogReply(); });
+    return askBy([&] { return loop->postJog(request); }, [&] { return loop->jogReply(); });
   }
 
   /// Runs cycles until there is an answer.
@@ -225,11 +219,12 @@ class Rig {
     });
   }
 
-  template <typename Request>
-  void post(const Request& request, const char* name) {
+  template <typename Post, typename Poll>
+  RequestReply askBy(const Post& post, const Poll& poll) {
     bool taken = false;
-    useNoHeap([&] { taken = request(); });
-    EXPECT_TRUE(taken) << name << " was not taken";
+    useNoHeap([&] { taken = post(); });
+    EXPECT_TRUE(taken) << "the request was not taken";
+    return answerOf(poll);
   }
 
   /// One failure says enough of a loop that uses the heap in every cycle.

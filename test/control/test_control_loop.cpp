@@ -1,15 +1,17 @@
 #include "control/paper_job.h"
 
+#include <limits>
+
 // The loop without power, a whole job, and the samples.
 namespace grinder::test_support {
 namespace test_control_loop {
 
-TEST(ControlLoopDisabled, SamplesWhatWasRead) {
+TEST(ControlLoopDisabled, ReportsWhatWasRead) {
   Rig<FakeDrive> rig;
   rig.drive.place({0.01, 0.02, 0.03, 0.04});
   rig.drive.velocity = {1, 2, 3, 4};
   rig.drive.status.emergency_stop = true;
-  const CycleSample& sample = rig.cycle();
+  const CycleSample sample = rig.cycle();
   EXPECT_TRUE(sameBits(sample.position, Axes(0.01, 0.02, 0.03, 0.04)));
   EXPECT_TRUE(sameBits(sample.velocity, Axes(1, 2, 3, 4)));
   EXPECT_TRUE(sample.drive.emergency_stop);
@@ -17,6 +19,17 @@ TEST(ControlLoopDisabled, SamplesWhatWasRead) {
   EXPECT_EQ(sample.drive.feedback_count, 1u);
   EXPECT_DOUBLE_EQ(sample.time, 1000.001);
   EXPECT_DOUBLE_EQ(sample.period, 0.001);
+  EXPECT_TRUE(sameBits(toAxes(rig.loop->status().position), sample.position));
+  EXPECT_TRUE(rig.loop->status().position_valid);
+  rig.drive.position[kZ] = std::numeric_limits<double>::quiet_NaN();
+  rig.cycle();
+  EXPECT_FALSE(rig.loop->status().position_valid);
+  rig.drive.position[kZ] = 0;
+  rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
+  rig.cycle();
+  EXPECT_TRUE(rig.loop->status().position_valid) << "as yet";
+  rig.run(3);
+  EXPECT_FALSE(rig.loop->status().position_valid) << "not fresh for 3 periods; 2.5 are allowed";
 }
 
 TEST(PaperJob, IsStreamedBitForBitAsPlannedASetpointACycle) {
@@ -32,6 +45,12 @@ TEST(PaperJob, IsStreamedBitForBitAsPlannedASetpointACycle) {
     ASSERT_EQ(sample.state, S::kRunning);
     ASSERT_TRUE(sameBits(sample.command, sample.setpoint.position));
   }
+  const LoopStatus status = rig.loop->status();
+  EXPECT_EQ(status.cycles, rig.log.size());
+  EXPECT_DOUBLE_EQ(status.time, rig.last().time);
+  EXPECT_TRUE(status.homed);
+  EXPECT_TRUE(sameBits(toAxes(status.command), rig.last().command));
+  EXPECT_NEAR(status.wheel.clear_y, kClearanceHeight, 1e-15);
 }
 
 TEST(ControlLoopSamples, ThoseNobodyTakesAreCountedAndTheLoopGoesOn) {

@@ -2,6 +2,7 @@
 
 #include "control/fixtures.h"
 
+#include <cmath>
 #include <limits>
 
 namespace grinder::test_support {
@@ -25,35 +26,60 @@ class DriveChecksTest : public testing::Test {
     return fault ? fault->kind : FaultKind::kNone;
   }
 
-  const LoopConfig config_ = machineConfig();
+  const LoopConfig config_ = [] {
+    LoopConfig config = machineConfig();
+    config.following_error << 0.001, 0.002, 0.003, 0.05;
+    return config;
+  }();
   DriveChecks checks_{config_};
   CycleSample sample_;
 };
 
 // Each cause is added to the ones over which it takes precedence.
-TEST_F(DriveChecksTest, FindTheCauseBeforeItsConsequences) {
+TEST_F(DriveChecksTest, FindTheCauseBeforeItsConsequencesAndRefusePowerForIt) {
+  const auto refusal = [&] { return checks_.powerRefusal(sample_); };
   sample_.position[kY] += 1;
   EXPECT_EQ(found(), FaultKind::kFollowingError);
+  EXPECT_EQ(refusal(), Refusal::kNone);
   sample_.position[kY] = kNan;
   EXPECT_EQ(found(), FaultKind::kInvalidFeedback);
-  sample_.feedback_age = 1;
-  EXPECT_EQ(found(), FaultKind::kStaleFeedback);
+  EXPECT_EQ(refusal(), Refusal::kFeedback);
+  for (const double age : {1.0, kNan}) {
+    sample_.feedback_age = age;
+    EXPECT_EQ(found(), FaultKind::kStaleFeedback);
+    EXPECT_EQ(refusal(), Refusal::kFeedback);
+  }
   sample_.drive.enabled = false;
   EXPECT_EQ(found(), FaultKind::kPowerLost);
   sample_.drive.fault = true;
   EXPECT_EQ(found(), FaultKind::kDriveFault);
+  EXPECT_EQ(refusal(), Refusal::kDriveFault);
   sample_.period *= 2 * config_.late_fault;
   EXPECT_EQ(found(), FaultKind::kLate);
   ++sample_.drive.underruns;
   EXPECT_EQ(found(), FaultKind::kUnderrun);
   sample_.drive.emergency_stop = true;
   EXPECT_EQ(found(), FaultKind::kEmergencyStop);
+  EXPECT_EQ(refusal(), Refusal::kEmergencyStop);
 }
 
-/// Lets two seconds of cycles pass. @param period of each [control periods].
+TEST_F(DriveChecksTest, LetTheFollowingErrorOfEachAxisBeItsLimitAndNoMore) {
+  sample_.position = sample_.command_in_effect = Axes::Zero();
+  for (int axis = 0; axis < kAxisCount; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      sample_.position[axis] = side * config_.following_error[axis];
+      EXPECT_EQ(found(), FaultKind::kNone) << axis;
+      sample_.position[axis] = side * std::nextafter(config_.following_error[axis], 1.0);
+      EXPECT_EQ(found(), FaultKind::kFollowingError) << axis;
+    }
+    sample_.position[axis] = 0;
+  }
+}
+
+/// Lets a second of cycles pass, over which they are averaged. @param period of each [control periods].
 void pass(DriveChecks& checks, CycleSample sample, double period) {
   sample.period *= period;
-  for (double time = 0; time < 2; time += sample.period) checks.observe(sample);
+  for (double time = 0; time < 1.01; time += sample.period) checks.observe(sample);
 }
 
 TEST_F(DriveChecksTest, ALoopAtHalfItsRateIsAFaultWhateverTheAxesDo) {
@@ -66,8 +92,10 @@ TEST_F(DriveChecksTest, ALoopAtHalfItsRateIsAFaultWhateverTheAxesDo) {
   sample_.drive.enabled = false;
   EXPECT_EQ(found(), FaultKind::kPowerLost) << "which may be why it was slow";
   sample_.drive.enabled = true;
-  pass(checks_, sample_, 1);
+  for (int i = 0; i < 10; ++i) pass(checks_, sample_, 1);
   EXPECT_EQ(found(), FaultKind::kNone);
+  pass(checks_, sample_, 2);
+  EXPECT_EQ(found(), FaultKind::kSlow) << "the good seconds before do not count";
   LoopConfig patient = config_;
   patient.late_slow_down = 4;
   DriveChecks checks(patient);
@@ -86,19 +114,6 @@ TEST_F(DriveChecksTest, ALoopThatIsLateNowAndThenIsNotSlow) {
     pass(checks_, sample_, 1.2);
     EXPECT_EQ(found(false), FaultKind::kNone);
   }
-}
-
-TEST_F(DriveChecksTest, RefusePowerWithTheReason) {
-  sample_.feedback_age = kNan;
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
-  EXPECT_EQ(found(), FaultKind::kStaleFeedback);
-  sample_.feedback_age = 0;
-  sample_.position[kZ] = kNan;
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kFeedback);
-  sample_.drive.fault = true;
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kDriveFault);
-  sample_.drive.emergency_stop = true;
-  EXPECT_EQ(checks_.powerRefusal(sample_), Refusal::kEmergencyStop);
 }
 
 }  // namespace test_drive_checks

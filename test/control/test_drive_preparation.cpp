@@ -29,11 +29,11 @@ class Preparation : public testing::Test {
   ~Preparation() override { gate.open = true; }
 
   /// @param timeout of an enable [s].
-  void make(double timeout, std::function<void()> on_prepare, bool prepares = true) {
+  void make(double timeout, std::function<void()> on_prepare) {
     LoopConfig config = machineConfig();
     config.enable_timeout = timeout;
     made_.emplace(config, [&](FakeDrive& drive) {
-      drive.can.prepares = prepares;
+      drive.can.prepares = true;
       drive.on_prepare = std::move(on_prepare);
     });
   }

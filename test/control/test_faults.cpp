@@ -18,76 +18,60 @@ struct Thrown : std::exception {
 
 struct FaultCase {
   std::string name;
-  std::function<void(FakeDrive&)> spoil;
-  int cycles;  ///< until it is to be seen
   FaultKind kind;
-  int axis;
   std::vector<std::string> words;
+  std::function<void(FakeDrive&)> spoil;
+  int axis = 0;
+  int cycles = 1;  ///< until it is to be seen
 };
 
 std::vector<FaultCase> faultCases() {
-  std::vector<FaultCase> cases;
-  const auto add = [&](const std::string& name, FaultKind kind, const std::vector<std::string>& words,
-                       const std::function<void(FakeDrive&)>& spoil, int axis = 0, int cycles = 1) {
-    cases.push_back({name, spoil, cycles, kind, axis, words});
+  using K = FaultKind;
+  const std::string drive = "the drive reports a fault: ";
+  const auto reports = [](const char* text) {
+    return [=](FakeDrive& d) { d.status.fault = true, d.status.fault_text = text; };
   };
-  add("EmergencyStop", FaultKind::kEmergencyStop, {"emergency stop"},
-      [](FakeDrive& d) { d.status.emergency_stop = true; });
-  add("DriveFault", FaultKind::kDriveFault, {"the drive reports a fault"}, [](FakeDrive& d) { d.status.fault = true; });
-  add("DriveFaultInItsWords", FaultKind::kDriveFault, {"the drive reports a fault: overcurrent in X (code 12)"},
-      [](FakeDrive& d) {
-        d.status.fault = true;
-        d.status.fault_text = "overcurrent in X (code 12)";
-      });
-  add("DriveFaultThatControlsATerminal", FaultKind::kDriveFault, {"the drive reports a fault: \\x1b[2J\\t\\xff"},
-      [](FakeDrive& d) {
-        d.status.fault = true;
-        d.status.fault_text = "\x1b[2J\t\xff";
-      });
-  add("ReadThrows", FaultKind::kDriveFault, {"the drive reports a fault: no answer (thrown by its read())"},
-      [](FakeDrive&) { throw Thrown("no answer"); });
-  add("ReadThrowsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text (thrown by its read())"},
-      [](FakeDrive&) { throw Thrown(nullptr); });
-  add("ReadThrowsAnEmptyText", FaultKind::kDriveFault, {"the drive reports a fault: no text (thrown by its read())"},
-      [](FakeDrive&) { throw Thrown(""); });
-  static const std::string long_text(200, 'x');
-  add("ReadThrowsALongText", FaultKind::kDriveFault,
-      {"the drive reports a fault: " + std::string(FaultText::kMost - 23, 'x') + " (thrown by its read())"},
-      [](FakeDrive&) { throw Thrown(long_text.c_str()); });
-  add("DriveFaultIsNoText", FaultKind::kDriveFault, {"the drive reports a fault: no text"}, [](FakeDrive& d) {
-    const char* none = nullptr;
-    d.status.fault = true;
-    d.status.fault_text = none;
-  });
-  add("ReadThrowsAnything", FaultKind::kDriveFault,
-      {"the drive reports a fault: an exception that is no std::exception (thrown by its read())"},
-      [](FakeDrive&) { throw 7; });
-  add("PowerLost", FaultKind::kPowerLost, {"switched its power off"}, [](FakeDrive& d) { d.status.enabled = false; });
-  // Fresh positions may be missing for 2.5 periods.
-  add(
-      "StaleFeedback", FaultKind::kStaleFeedback, {"no fresh positions", "for 0.003 s", "allowed 0.0025 s"},
-      [](FakeDrive& d) { --d.status.feedback_count; }, 0, 3);
-  for (const double turn : {2 * std::acos(-1.0), -2 * std::acos(-1.0)}) {
-    add(
-        turn > 0 ? "FullTurn" : "FullTurnBack", FaultKind::kFollowingError,
-        {"axis A following error 360", " deg", "limit 2.86479 deg"}, [=](FakeDrive& d) { d.position[kA] += turn; }, kA);
-  }
+  const auto throws = [](const char* text) { return [=](FakeDrive&) { throw Thrown(text); }; };
+  static const std::string long_text(200, 'x'), cut_off(FaultText::kMost - 23, 'x');
+  std::vector<FaultCase> cases{
+      {"EmergencyStop", K::kEmergencyStop, {"emergency stop"}, [](FakeDrive& d) { d.status.emergency_stop = true; }},
+      {"InItsWords", K::kDriveFault, {drive + "overcurrent in X (code 12)"}, reports("overcurrent in X (code 12)")},
+      {"ThatControlsATerminal", K::kDriveFault, {drive + "\\x1b[2J\\t\\xff"}, reports("\x1b[2J\t\xff")},
+      {"InNoText", K::kDriveFault, {drive + "no text"}, reports(nullptr)},
+      {"ThrowsNoText", K::kDriveFault, {drive + "no text (thrown by its read())"}, throws(nullptr)},
+      {"ThrowsAnEmptyText", K::kDriveFault, {drive + "no text (thrown by its read())"}, throws("")},
+      {"ThrowsALongText", K::kDriveFault, {drive + cut_off + " (thrown by its read())"}, throws(long_text.c_str())},
+      {"ThrowsAnything",
+       K::kDriveFault,
+       {drive + "an exception that is no std::exception (thrown by its read())"},
+       [](FakeDrive&) { throw 7; }},
+      {"PowerLost", K::kPowerLost, {"switched its power off"}, [](FakeDrive& d) { d.status.enabled = false; }},
+      // Fresh positions may be missing for 2.5 periods.
+      {"StaleFeedback",
+       K::kStaleFeedback,
+       {"no fresh positions", "for 0.003 s", "allowed 0.0025 s"},
+       [](FakeDrive& d) { --d.status.feedback_count; },
+       0,
+       3},
+      {"FullTurn",
+       K::kFollowingError,
+       {"axis A following error 360", " deg", "limit 2.86479 deg"},
+       [](FakeDrive& d) { d.position[kA] += 2 * std::acos(-1.0); },
+       kA}};
   for (int axis = 0; axis < kAxisCount; ++axis) {
     const std::string letter(1, axisLetter(axis));
     const std::string name = "axis " + letter;
     const auto n = static_cast<std::size_t>(axis);
-    add(
-        "Nan" + letter, FaultKind::kInvalidFeedback, {name + " position", "nan"},
-        [=](FakeDrive& d) { d.position[n] = kNan; }, axis);
-    add(
-        "Infinite" + letter, FaultKind::kInvalidFeedback, {name + " position", "-inf"},
-        [=](FakeDrive& d) { d.position[n] = -HUGE_VAL; }, axis);
+    const auto reads = [=](double value) { return [=](FakeDrive& d) { d.position[n] = value; }; };
+    cases.push_back({"Nan" + letter, K::kInvalidFeedback, {name + " position", "nan"}, reads(kNan), axis});
+    cases.push_back({"Infinite" + letter, K::kInvalidFeedback, {name + " position", "-inf"}, reads(-HUGE_VAL), axis});
     const double limit = axis == kA ? 0.05 : 0.001;
-    const std::vector<std::string> words{name + " following error", axis == kA ? "2.87" : "1.002 mm",
-                                         axis == kA ? "limit 2.86479 deg" : "limit 1 mm"};
-    add(
-        "Following" + letter, FaultKind::kFollowingError, words, [=](FakeDrive& d) { d.position[n] += limit * 1.002; },
-        axis);
+    cases.push_back(
+        {"Following" + letter,
+         K::kFollowingError,
+         {name + " following error", axis == kA ? "2.87" : "1.002 mm", axis == kA ? "limit 2.86479 deg" : "limit 1 mm"},
+         [=](FakeDrive& d) { d.position[n] += limit * 1.002; },
+         axis});
   }
   return cases;
 }
@@ -141,22 +125,6 @@ TEST(ControlLoopFault, OfAHangIsFoundInAnyStateWithPowerWhenItEnds) {
       ASSERT_NO_FATAL_FAILURE(rig.recover());
     }
   }
-}
-
-TEST(ControlLoopFault, OfAHangWhilePowerIsAwaitedRefusesIt) {
-  Rig<FakeDrive> rig;
-  rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; };
-  rig.cycle();
-  ASSERT_TRUE(rig.loop->post(E::kEnable));
-  rig.run(2);
-  ASSERT_TRUE(rig.drive.written_drive.enable);
-  rig.loop->beginPowerOff();
-  rig.drive.on_read = nullptr;
-  rig.cycle();
-  const auto answer = rig.loop->reply();
-  ASSERT_TRUE(answer);
-  EXPECT_CONTAINS(answer->text, "it has returned to the control loop too late; its powerOff() has not returned");
-  EXPECT_FALSE(rig.drive.written_drive.enable);
 }
 
 TEST(ControlLoopFault, OfAThrowingWriteEndsTheJobInTheNextCycle) {
@@ -262,19 +230,6 @@ TEST(Enable, OfAMachineThatIsOnChangesNothing) {
   EXPECT_EQ(rig.run(20).state, S::kReady) << rig.last().fault.text();
 }
 
-TEST(Enable, IsRefusedWhilePositionsJump) {
-  for (const bool enabled : {true, false}) {
-    Rig<FakeDrive> rig;
-    rig.cycle();
-    rig.drive.on_read = [&, sign = 1](FakeDrive& d) mutable {
-      d.status.enabled = d.status.enabled && enabled;
-      d.position[kX] += (sign = -sign) * 0.01;
-    };
-    EXPECT_EQ(rig.ask(E::kEnable).text, "enable refused: the drive gives no valid, fresh positions");
-    EXPECT_FALSE(rig.drive.written_drive.enable);
-  }
-}
-
 TEST(ControlLoopReset, IsRefusedWhileTheEmergencyStopIsPressedAndCommandedForOneCycle) {
   RigIn rig(S::kFault);
   rig.drive.status.emergency_stop = true;
@@ -288,53 +243,23 @@ TEST(ControlLoopReset, IsRefusedWhileTheEmergencyStopIsPressedAndCommandedForOne
   EXPECT_FALSE(rig.drive.written_drive.reset);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
-// Following error, to the last bit. The limit is a power of two and the axes stand at zero: no rounding is in the way.
-
-TEST(FollowingErrorLimit, IsAllowedItselfAndTheNextNumberIsAFault) {
-  constexpr double kLimit = 0x1p-10;
-  LoopConfig config = machineConfig();
-  config.machine.park = Axes::Zero();
-  config.following_error.setConstant(kLimit);
-  const auto stateAt = [&](int axis, double error) {
-    Rig<FakeDrive> rig(config);
-    rig.enable();
-    rig.drive.on_read = [=](FakeDrive& d) { d.position[static_cast<std::size_t>(axis)] = error; };
-    return rig.run(3).state;
-  };
-  for (const int axis : {kX, kY, kZ, kA}) {
-    SCOPED_TRACE(axis);
-    for (const double side : {1.0, -1.0}) {
-      EXPECT_EQ(stateAt(axis, side * kLimit), S::kReady);
-      EXPECT_EQ(stateAt(axis, side * std::nextafter(kLimit, 1.0)), S::kFault);
-    }
-    config.following_error[axis] = 2 * kLimit;
-    EXPECT_EQ(stateAt(axis, 2 * kLimit), S::kReady) << "its own limit counts";
-    config.following_error[axis] = kLimit;
-  }
-}
-
-/// A limit of the loop that forbids a setpoint: the stream is planned for a stronger machine.
-struct LimitCase {
-  Axes AxisLimits::*limits;
-  int axis;
-  double limit;
-  LimitedQuantity quantity;
-  const char* value;  ///< how the fault's text begins
-  const char* bound;
-  const char* place;
-};
-
+// The stream is planned for a stronger machine. Which setpoint it is, the check's own tests see.
 TEST(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAreAndEndsTheJobWithoutPower) {
   using L = AxisLimits;
   using Q = LimitedQuantity;
-  const LimitCase rows[]{
+  const struct {
+    Axes L::*limits;
+    int axis;
+    double limit;
+    Q quantity;
+    const char *value, *bound, *place;  ///< in the fault's text, which begins with the first
+  } rows[]{
       {&L::max_position, kX, 0.01, Q::kPosition, "axis X machine position 10.", "limit 10 mm", "(stroke,"},
       {&L::min_position, kY, 0.02125, Q::kPosition, "axis Y machine position 21.", "limit 21.25 mm", "(approach,"},
       {&L::max_velocity, kX, 0.05, Q::kVelocity, "axis X velocity 50.", "limit 50 mm/s", "(position,"},
       {&L::max_acceleration, kX, 0.21, Q::kAcceleration, "axis X acceleration 2", "limit 210 mm/s^2", "(position,"},
       {&L::max_jerk, kY, 3, Q::kJerk, "axis Y jerk", "limit 3000 mm/s^3", "(approach,"}};
-  for (const LimitCase& c : rows) {
+  for (const auto& c : rows) {
     SCOPED_TRACE(c.value);
     LoopConfig tightened = machineConfig();
     (tightened.machine.limits.*c.limits)[c.axis] = c.limit;
@@ -354,12 +279,6 @@ TEST(ForbiddenSetpoint, IsNeverWrittenButAllBeforeItAreAndEndsTheJobWithoutPower
     const std::size_t forbidden = fault.violation.cycle;
     ASSERT_GT(forbidden, 0u);
     ASSERT_LT(forbidden, planned.size());
-    // Of the other quantities the check's own tests see which setpoint it is.
-    if (c.quantity == Q::kPosition) {
-      const double sign = c.limits == &L::max_position ? 1 : -1;
-      EXPECT_GT(sign * planned[forbidden].position[c.axis], sign * c.limit);
-      EXPECT_LE(sign * planned[forbidden - 1].position[c.axis], sign * c.limit);
-    }
     EXPECT_EQ(fault.text().find(c.value), 0u) << fault.text();
     EXPECT_CONTAINS(fault.text(), std::string("beyond its ") + c.bound);
     EXPECT_CONTAINS(fault.text(), std::string(c.place) + " tooth 1, pass 1, X = ");
@@ -418,29 +337,21 @@ TEST(FaultIn, AnyStateEndsTheJobAndNothingMovesUntilResetEnableAndStart) {
       EXPECT_FALSE(rig.drive.written_drive.coolant);
       EXPECT_FALSE(rig.drive.written_drive.home);
     };
-    rig.stream.emplace(rig.paperStream());
-    const auto expectRefused = [&](std::initializer_list<E> events) {
-      for (const E event : events) EXPECT_FALSE(rig.ask(event, &*rig.stream).accepted) << toString(event);
-    };
     expectStanding();
-    expectRefused({E::kEnable, E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
     EXPECT_TRUE(rig.ask(E::kDisable).accepted);
     expectStanding();
     EXPECT_FALSE(rig.drive.written_drive.enable);
     ASSERT_TRUE(rig.ask(E::kReset).accepted);
-    expectRefused({E::kHome, E::kStart, E::kHold, E::kResume, E::kRetract, E::kLift, E::kCancel});
     expectStanding();
     EXPECT_EQ(rig.last().state, S::kDisabled);
     EXPECT_FALSE(rig.drive.written_drive.enable);
     ASSERT_NO_FATAL_FAILURE(rig.enable());
-    expectRefused({E::kHold, E::kResume, E::kRetract, E::kCancel});
     expectStanding();
     EXPECT_EQ(rig.last().state, S::kReady);
     EXPECT_EQ(rig.jobsEnded(), ended);
 
     EXPECT_EQ(rig.last().wheel_in_work, in_work);
     if (in_work) {
-      expectRefused({E::kHome, E::kStart});
       ASSERT_NO_FATAL_FAILURE(rig.lift());
     }
     rig.keepLast();

@@ -9,38 +9,6 @@
 namespace grinder::test_support {
 namespace test_homing {
 
-/// With incremental encoders.
-SimulatedDrive::Model awayFromHome() {
-  const Axes from_home(0.02, -0.01, 0.004, 0.5);
-  SimulatedDrive::Model model = driveModel();
-  for (std::size_t i = 0; i < model.size(); ++i) {
-    model[i].start_position = model[i].home_position + from_home[static_cast<int>(i)];
-    model[i].homing_velocity = i == kA ? 50 : 1.25;  // Y, X, Z, A: 8, 16, 4 and 10 periods
-  }
-  return model;
-}
-
-TEST(Homing, LeadsToTheHomePositionWhereTheAxesThenStand) {
-  const Axes home = machineConfig().machine.park;
-  Rig<SimulatedDrive> rig(machineConfig(), [](SimulatedDrive& d) { d.init(awayFromHome(), {false, 0.0045}); });
-  rig.enable();
-  const std::size_t before = rig.log.size();
-  ASSERT_TRUE(rig.ask(E::kHome).accepted);
-  for (int i = 0; i < 1000 && rig.last().state == S::kHoming; ++i) rig.cycle();
-  EXPECT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
-  // 38 periods, and a few for command and answer.
-  EXPECT_GE(rig.log.size() - before, 39u);
-  EXPECT_LE(rig.log.size() - before, 44u);
-  EXPECT_TRUE(rig.last().drive.homed);
-  EXPECT_FALSE(rig.last().drive.homing);
-  const std::size_t homed = rig.log.size() - 1;
-  rig.run(100);
-  EXPECT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
-  EXPECT_TRUE(atRestFrom(rig.log, homed));
-  EXPECT_TRUE((rig.last().position == home).all()) << rig.last().position.transpose();
-  EXPECT_TRUE((rig.last().command == home).all());
-}
-
 class HomingFake : public testing::Test {
  protected:
   void SetUp() override { rig_.enable(); }

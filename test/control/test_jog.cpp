@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <vector>
 
 // Jogs: steps and continuous ones, what is refused, and how they end.
@@ -115,6 +116,7 @@ TEST_P(JogFrom, AStepBeyondALimitIsRefusedWithTheLimit) {
   rig_.run(10);
   EXPECT_TRUE(atRestFrom(rig_.log, before_));
   EXPECT_EQ(rig_.last().state, GetParam());
+  EXPECT_TRUE(rig_.jog(on(kX, 0.01)).accepted) << "a refused step is no button that was pressed";
 }
 
 TEST_P(JogFrom, SpeedAndAxisAreChecked) {
@@ -130,13 +132,6 @@ TEST_P(JogFrom, SpeedAndAxisAreChecked) {
               "jog refused: axis = " + std::to_string(axis) + "; allowed: 0 to 3 for X, Y, Z, A");
   }
   EXPECT_TRUE(atRestFrom(rig_.log, before_));
-}
-
-TEST_P(JogFrom, WithoutTheReferenceItIsRefused) {
-  rig_.drive.status.homed = false;
-  rig_.cycle();
-  EXPECT_EQ(rig_.jog(step(kX, 0.001)).text, "jog refused: the axes are not homed");
-  EXPECT_EQ(rig_.last().state, GetParam());
 }
 
 TEST_P(JogFrom, WithoutMessagesTheAxisRestsWithinTheBrakingDistance) {
@@ -216,14 +211,20 @@ TEST_P(JogFrom, TheLastMessageCounts) {
 }
 
 TEST_P(JogFrom, AnotherAxisOrStepIsRefusedUntilTheOneRests) {
+  const auto expect_refused = [&](std::initializer_list<JogRequest> others) {
+    for (const JogRequest& other : others) {
+      EXPECT_EQ(rig_.jog(other).text, "jog refused: an axis is being jogged; wait until it rests");
+    }
+  };
   jogFor(on(kX, 0.1), 100);
-  for (const JogRequest& other : {on(kZ, 0.01), step(kX, 0.001), step(kZ, 0.001)}) {
-    EXPECT_EQ(rig_.jog(other).text, "jog refused: an axis is being jogged; wait until it rests");
-  }
-  ASSERT_TRUE(rig_.jog(on(kX, 0)).accepted);
-  rig_.runUntil(GetParam());
+  expect_refused({on(kZ, 0.01), step(kX, 0.001), step(kZ, 0.001)});
+  EXPECT_TRUE(rig_.jog(on(kX, 0.1)).accepted) << "which the others do not stop";
+  release(rig_);
+  expect_refused({on(kZ, 0.01), step(kZ, 0.001)});
+  expectStop();
+  release(rig_);
   ASSERT_TRUE(rig_.jog(step(kX, 0.01)).accepted);
-  EXPECT_EQ(rig_.jog(on(kX, 0.1)).text, "jog refused: an axis is being jogged; wait until it rests");
+  expect_refused({on(kX, 0.1)});
   release(rig_);
   rig_.runUntil(GetParam());
   EXPECT_EQ(rig_.last().command[kZ], at_[kZ]);
@@ -231,58 +232,20 @@ TEST_P(JogFrom, AnotherAxisOrStepIsRefusedUntilTheOneRests) {
   EXPECT_EQ(rig_.last().state, jogging());
 }
 
-TEST_P(JogFrom, EveryStopStopsItAndAllButAHoldEndAJob) {
-  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
-    SCOPED_TRACE(toString(stop));
-    const bool ends_job = GetParam() != S::kReady && stop != E::kHold;
-    RigIn rig(jogging());
-    const double before = rig.last().command[kY];
-    ASSERT_TRUE(rig.ask(stop).accepted);
-    EXPECT_EQ(rig.last().state, ends_job ? S::kCanceling : jogging()) << "an axis does not stop at once";
-    rig.runUntil(stop == E::kDisable ? S::kDisabled : stop == E::kHold ? GetParam() : S::kReady);
-    EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
-    EXPECT_TRUE(smooth(rig.log));
-    const std::size_t rest = rig.log.size() - 1;
-    EXPECT_LE(std::abs(rig.last().command[kY] - before), brakingDistance(kY, 0.05) + 0.05 * 0.02);
-    rig.run(100);
-    EXPECT_TRUE(atRestFrom(rig.log, rest));
-    EXPECT_EQ(rig.jobsEnded(), ends_job ? 1 : 0);
-    EXPECT_TRUE(!ends_job || rig.loop->status().end == JobEnd::kCanceled);
-    EXPECT_FALSE(rig.last().wheel_in_work);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(, JogFrom, testing::Values(S::kReady, S::kRetracted), stateName);
 
-TEST(Jog, ToALimitItEndsThereWithoutAFault) {
-  Rig<FakeDrive> rig;
-  rig.enable();
-  const AxisLimits limits = machineConfig().machine.limits;
-  for (const int axis : {kZ, kX, kA}) {
-    for (const bool up : {true, false}) {
-      const double limit = up ? limits.max_position[axis] : limits.min_position[axis];
-      const double speed = limits.max_velocity[axis] / 2;
-      for (int i = 0; i < 60000 && (i < 100 || rig.last().state == S::kJogging); ++i) {
-        if (i % 20 == 0) rig.loop->postJog(on(axis, up ? speed : -speed));
-        rig.cycle();
-        static_cast<void>(rig.loop->jogReply());
-      }
-      ASSERT_EQ(rig.last().state, S::kReady) << rig.last().fault.text();
-      EXPECT_EQ(rig.last().command[axis], limit);
-      release(rig);
-      EXPECT_CONTAINS(rig.jog(on(axis, up ? speed : -speed)).text, ", the end of its travel");
-      release(rig);
-    }
+TEST(Jog, FromOutsideTheLimitsOfAnyAxisIsRefused) {
+  const std::tuple<int, double, const char*> rows[]{
+      {kX, -0.101, "axis X is at machine position -101 mm, outside its limit -100 mm"},
+      {kY, 0.151, "axis Y is at machine position 151 mm, outside its limit 150 mm"},
+      {kZ, -0.051, "axis Z is at machine position -51 mm, outside its limit -50 mm"},
+      {kA, 130, "axis A is at machine position 7448.45 deg, outside its limit 7200 deg"}};
+  for (const auto& [axis, at, text] : rows) {
+    Rig<FakeDrive> rig;
+    rig.drive.position[static_cast<std::size_t>(axis)] = at;
+    rig.enable();
+    EXPECT_EQ(rig.jog(step(kX, 0.001)).text, std::string("jog refused: ") + text);
   }
-  EXPECT_TRUE(smooth(rig.log));
-}
-
-TEST(Jog, FromOutsideTheLimitsIsRefused) {
-  Rig<FakeDrive> rig;
-  rig.drive.position[kZ] = -0.051;
-  rig.enable();
-  EXPECT_EQ(rig.jog(step(kX, 0.001)).text,
-            "jog refused: axis Z is at machine position -51 mm, outside its limit -50 mm");
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {
@@ -312,7 +275,7 @@ TEST(Jog, AStallIsForgivenOncePerMessage) {
     rig.loop->keepAlive();
     ASSERT_TRUE(rig.jog(jog).accepted);
     rig.run(40);
-    rig.cycle(52);
+    rig.cycle(21);
     rig.run(40);  // 42 ms of silence
     EXPECT_NEAR(rig.last().setpoint.velocity[kX], kSpeed, 1e-9);
     rig.cycle(52);
@@ -357,6 +320,13 @@ TEST(JogRetracted, NeverGoesDownToTheWork) {
   }
   EXPECT_EQ(rig.last().command[kY], clear);
   EXPECT_TRUE(rig.drive.written_drive.spindle) << "the wheel keeps turning";
+}
+
+TEST(JogRetracted, AStepThatIsTooShortForAnyNumberIsOverAtOnce) {
+  RigIn rig(S::kRetracted);
+  ASSERT_TRUE(rig.jog(step(kX, 1e-300)).accepted);
+  EXPECT_EQ(rig.last().state, S::kRetracted);
+  EXPECT_EQ(rig.loop->status().jogs_ended, 1U);
 }
 
 TEST(JogRetracted, AtTheEndOfThePathItIsRefused) {

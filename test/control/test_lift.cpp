@@ -23,47 +23,44 @@ void turnTo(Rig<FakeDrive>& rig, double y) {
   }
 }
 
-class InTheWork : public testing::Test {
- protected:
-  RigInTheWork rig_;
-};
-
-TEST_F(InTheWork, LiftGoesStraightUpUntilItIsClear) {
-  EXPECT_EQ(rig_.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
-  const std::size_t before = rig_.log.size() - 1;
-  const Axes from = rig_.last().command;
-  ASSERT_TRUE(rig_.ask(E::kLift).accepted);
-  EXPECT_EQ(rig_.last().state, S::kLifting);
-  const std::uint64_t written = rig_.loop->status().setpoints_written;
-  while (rig_.last().state == S::kLifting) {
-    const CycleSample& sample = rig_.last();
+TEST(InTheWork, LiftGoesStraightUpUntilItIsClear) {
+  RigInTheWork rig;
+  EXPECT_EQ(rig.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
+  const std::size_t before = rig.log.size() - 1;
+  const Axes from = rig.last().command;
+  ASSERT_TRUE(rig.ask(E::kLift).accepted);
+  EXPECT_EQ(rig.last().state, S::kLifting);
+  const std::uint64_t written = rig.loop->status().setpoints_written;
+  while (rig.last().state == S::kLifting) {
+    const CycleSample& sample = rig.last();
     ASSERT_TRUE(sample.has_setpoint);
     ASSERT_EQ(sample.job, 0u);
     ASSERT_EQ(sample.setpoint.move, MoveKind::kLift);
     ASSERT_TRUE(sample.wheel_in_work);
     ASSERT_TRUE(sameBits(sample.command, Axes(from[kX], sample.command[kY], from[kZ], from[kA])));
-    ASSERT_GE(sample.command[kY], rig_.log[rig_.log.size() - 2].command[kY]);
-    ASSERT_FALSE(rig_.drive.written_drive.spindle);
-    rig_.cycle();
+    ASSERT_GE(sample.command[kY], rig.log[rig.log.size() - 2].command[kY]);
+    ASSERT_FALSE(rig.drive.written_drive.spindle);
+    rig.cycle();
   }
-  EXPECT_EQ(rig_.last().state, S::kReady);
-  EXPECT_EQ(rig_.last().command[kY], rig_.loop->status().wheel.clear_y);
-  EXPECT_NEAR(rig_.last().command[kY], kClearanceHeight, 1e-12);
-  EXPECT_FALSE(rig_.last().wheel_in_work);
-  EXPECT_FALSE(rig_.last().job_ended);
-  EXPECT_EQ(rig_.last().job, 1u) << "the last job's, where there is no setpoint";
-  EXPECT_EQ(rig_.loop->status().setpoints_written, written);
-  EXPECT_EQ(rig_.loop->status().jobs_started, 1u);
-  EXPECT_TRUE(smooth({rig_.log.begin() + static_cast<std::ptrdiff_t>(before), rig_.log.end()}));
-  EXPECT_EQ(rig_.ask(E::kLift).text, "lift refused: the wheel is not in the work");
+  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_EQ(rig.last().command[kY], rig.loop->status().wheel.clear_y);
+  EXPECT_NEAR(rig.last().command[kY], kClearanceHeight, 1e-12);
+  EXPECT_FALSE(rig.last().wheel_in_work);
+  EXPECT_FALSE(rig.last().job_ended);
+  EXPECT_EQ(rig.last().job, 1u) << "the last job's, where there is no setpoint";
+  EXPECT_EQ(rig.loop->status().setpoints_written, written);
+  EXPECT_EQ(rig.loop->status().jobs_started, 1u);
+  EXPECT_TRUE(smooth({rig.log.begin() + static_cast<std::ptrdiff_t>(before), rig.log.end()}));
+  EXPECT_EQ(rig.ask(E::kLift).text, "lift refused: the wheel is not in the work");
 }
 
-TEST_F(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
-  ASSERT_TRUE(rig_.ask(E::kDisable).accepted);
+TEST(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
+  RigInTheWork rig;
+  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
   const auto seeAt = [&](double y, bool homed, int cycles) {
-    rig_.drive.status.homed = homed;
-    turnTo(rig_, y);
-    return rig_.run(cycles).wheel_in_work;
+    rig.drive.status.homed = homed;
+    turnTo(rig, y);
+    return rig.run(cycles).wheel_in_work;
   };
   EXPECT_TRUE(seeAt(kClearanceHeight - 11e-6, true, 200));
   EXPECT_TRUE(seeAt(0.05, false, 200)) << "the position means nothing";
@@ -182,68 +179,8 @@ TEST(YThatWasReadWhereItCannotBe, IsBelievedOnceLiftedWhereTheDriveDoesNotHome) 
   EXPECT_FALSE(rig.last().wheel_in_work);
 }
 
-TEST(YThatWasReadWhereItCannotBe, IsNotBelievedAfterARestart) {
-  Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift, true});
-  EXPECT_TRUE(rig.run(500).wheel_in_work);
-  EXPECT_FALSE(rig.last().drive.homed);
-  EXPECT_TRUE(rig.loop->status().wheel.y_doubted);
-}
-
-TEST(Lift, IsStoppedOnItsWayByEveryStopWithTheWheelStillInTheWork) {
-  for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
-    SCOPED_TRACE(toString(stop));
-    RigIn rig(S::kLifting);
-    const auto is_lift = [](const CycleSample& r) { return r.state == S::kLifting; };
-    const auto begun = std::find_if(rig.log.begin(), rig.log.end(), is_lift);
-    const auto before = begun - rig.log.begin() - 1;
-    ASSERT_TRUE(rig.ask(stop).accepted);
-    EXPECT_EQ(rig.last().state, S::kLifting) << "an axis does not stop at once";
-    EXPECT_TRUE(rig.drive.written_drive.enable);
-    while (rig.last().state == S::kLifting) rig.cycle();
-    EXPECT_EQ(rig.last().state, stop == E::kDisable ? S::kDisabled : S::kReady);
-    EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
-    EXPECT_LT(rig.last().command[kY], kClearanceHeight - 1e-4);
-    EXPECT_TRUE(rig.last().wheel_in_work);
-    EXPECT_TRUE(smooth({rig.log.begin() + before, rig.log.end()}));
-    const std::size_t stopped = rig.log.size() - 1;
-    rig.run(50);
-    EXPECT_TRUE(atRestFrom(rig.log, stopped));
-    if (stop == E::kDisable) rig.enable();
-    ASSERT_NO_FATAL_FAILURE(rig.lift());
-    EXPECT_FALSE(rig.last().wheel_in_work);
-  }
-}
-
-/// Of a drive that has lost its reference, with the wheel in the work of a job that needs a lift.
-class WithoutTheReference {
- public:
-  explicit WithoutTheReference(double lift)
-      : rig(machineConfig(), [](SimulatedDrive& d) {
-          SimulatedDrive::Model model = driveModel();
-          model[kY].start_position = -0.0005;
-          d.init(model, {false, 0});
-        }) {
-    rig.loop = std::make_unique<ControlLoop>(rig.drive, machineConfig(), Wheel{true, kClearanceHeight, lift});
-    rig.run(2);
-    rig.enable();
-  }
-
-  /// Lifts the wheel some way only.
-  void stopLift() {
-    ASSERT_TRUE(rig.ask(E::kLift).accepted);
-    for (const double y = rig.last().command[kY]; rig.last().command[kY] < y + 1e-3;) rig.cycle();
-    ASSERT_TRUE(rig.ask(E::kHold).accepted);
-    rig.runUntil(S::kReady);
-  }
-
-  Rig<SimulatedDrive> rig;
-};
-
-const Wheel kUnknownWheel = unknownWheel(machineConfig().machine.limits, false);
-
 TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsMovedUpAloneToTheTop) {
-  const double top = machineConfig().machine.limits.max_position[kY];
-  Rig<FakeDrive> rig(machineConfig(), kUnknownWheel);
+  Rig<FakeDrive> rig(machineConfig(), unknownWheel(machineConfig().machine.limits, false));
   rig.enable();
   rig.run(500);
   const std::string refused = " refused: it is not known whether the wheel is in the work; lift it first";
@@ -258,97 +195,61 @@ TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsMovedUpAloneToTheTop) {
   rig.runUntil(S::kReady);
   EXPECT_TRUE(rig.last().wheel_in_work);
   ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_EQ(rig.last().command[kY], top);
-  EXPECT_FALSE(rig.last().wheel_in_work);
   EXPECT_TRUE(rig.loop->status().wheel.known);
   EXPECT_TRUE(rig.ask(E::kHome).accepted);
 }
 
-TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsLiftedToTheTopWithoutTheReferenceToo) {
-  const double top = machineConfig().machine.limits.max_position[kY];
-  for (const double above : {0.0, 1e-3}) {
-    Rig<FakeDrive> rig(machineConfig(), kUnknownWheel);
-    rig.drive.status.homed = false;
-    rig.drive.position[kY] = above == 0 ? 0 : top + above;
-    rig.enable();
-    const RequestReply reply = rig.ask(E::kLift);
-    EXPECT_EQ(reply.accepted, above == 0) << reply.text;
-    if (!reply.accepted) continue;
-    rig.runUntil(S::kReady);
-    EXPECT_EQ(rig.last().command[kY], top);
-    EXPECT_FALSE(rig.last().wheel_in_work);
-  }
-}
-
-TEST(AfterARestart, ACupOfWhichNothingIsKnownBacksOffToTheEndOfXBeforeItRises) {
+TEST(AfterARestart, AWheelOfWhichNothingIsKnownIsLiftedToTheTopAndACupIsFirstBackedOffToTheEndOfX) {
   const AxisLimits limits = machineConfig().machine.limits;
-  for (const bool homed : {true, false}) {
-    Rig<FakeDrive> rig(machineConfig(), unknownWheel(limits, true));
-    rig.drive.status.homed = homed;
+  const double end = limits.min_position[kX], before_end = end - 1e-3;
+  const struct {
+    bool is_cup, homed;
+    double x, x_of_lift;
+  } rows[]{{false, false, 0, 0}, {true, true, 0, end}, {true, false, 0, end}, {true, false, before_end, before_end}};
+  for (const auto& row : rows) {
+    SCOPED_TRACE(testing::Message() << row.is_cup << row.homed << row.x);
+    Rig<FakeDrive> rig(machineConfig(), unknownWheel(limits, row.is_cup));
+    rig.drive.status.homed = row.homed;
+    rig.drive.position = {row.x, 0.05, 0, 0};
     rig.enable();
     rig.run(500);
-    EXPECT_TRUE(rig.last().wheel_backs_off);
-    if (homed) {
-      EXPECT_FALSE(rig.jog({kY, false, 1e-3, 0.01}).accepted);
-      EXPECT_TRUE(rig.jog({kX, false, -1e-3, 0.01}).accepted);
-      rig.runUntil(S::kReady);
-    }
-    const std::size_t before = rig.log.size();
+    EXPECT_EQ(rig.last().drive.homed, row.homed);
+    EXPECT_EQ(rig.last().wheel_backs_off, row.x > row.x_of_lift);
+    rig.keepLast();
     ASSERT_NO_FATAL_FAILURE(rig.lift());
-    for (auto at = rig.log.begin() + static_cast<std::ptrdiff_t>(before); at != rig.log.end(); ++at) {
-      ASSERT_TRUE(at->command[kX] == limits.min_position[kX] || at->command[kY] == rig.log[before].command[kY]);
+    for (const CycleSample& sample : rig.log) {
+      ASSERT_TRUE(sample.command[kX] == row.x_of_lift || sample.command[kY] == 0.05);
     }
-    EXPECT_TRUE(sameBits(rig.last().command, Axes(limits.min_position[kX], limits.max_position[kY], 0, 0)));
+    EXPECT_TRUE(sameBits(rig.last().command, Axes(row.x_of_lift, limits.max_position[kY], 0, 0)));
     EXPECT_FALSE(rig.last().wheel_in_work);
     EXPECT_FALSE(rig.last().wheel_backs_off);
   }
 }
 
-TEST(AfterARestart, ACupThatReadsBeyondTheEndOfXWithoutTheReferenceIsLiftedThere) {
-  const AxisLimits limits = machineConfig().machine.limits;
-  Rig<FakeDrive> rig(machineConfig(), unknownWheel(limits, true));
-  rig.drive.status.homed = false;
-  rig.drive.position[kX] = limits.min_position[kX] - 1e-3;
-  rig.enable();
-  rig.run(500);
-  ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_EQ(rig.last().command[kX], limits.min_position[kX] - 1e-3);
-  EXPECT_EQ(rig.last().command[kY], limits.max_position[kY]);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-}
-
-TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJob) {
-  WithoutTheReference machine(kLift);
-  auto& rig = machine.rig;
-  EXPECT_EQ(rig.ask(E::kHome).text, "home refused: the wheel is in the work; lift it first");
-  const double from = rig.last().command[kY];
-  ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-  EXPECT_TRUE(rig.ask(E::kHome).accepted);
-}
-
-TEST(AfterARestart, WithoutTheReferenceALiftThatWasStoppedContinuesAsLongAsThePowerIsOn) {
-  const double top = machineConfig().machine.limits.max_position[kY];
-  WithoutTheReference machine(top);
-  ASSERT_EQ(machine.rig.last().command[kY], 0) << "where a drive counts from that does not know better";
-  auto& rig = machine.rig;
-  for (int i = 0; i < 2; ++i) ASSERT_NO_FATAL_FAILURE(machine.stopLift());
-  EXPECT_TRUE(rig.last().wheel_in_work);
-  ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_EQ(rig.last().command[kY], top);
-  EXPECT_FALSE(rig.last().wheel_in_work);
-}
-
-TEST(AfterARestart, WithoutTheReferenceTheWholeLiftIsDueOnceThePowerWasOff) {
-  WithoutTheReference machine(kLift);
-  auto& rig = machine.rig;
-  ASSERT_NO_FATAL_FAILURE(machine.stopLift());
-  ASSERT_TRUE(rig.ask(E::kDisable).accepted);
-  rig.enable();
-  const double from = rig.last().command[kY];
-  ASSERT_NO_FATAL_FAILURE(rig.lift());
-  EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
+TEST(AfterARestart, WithoutTheReferenceItIsLiftedByTheDepthOfTheJobAndAnewOnceThePowerWasOff) {
+  for (const bool was_off : {false, true}) {
+    Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift});
+    rig.drive.status.homed = false;
+    rig.drive.position[kY] = 0;
+    rig.enable();
+    double from = rig.last().command[kY];
+    for (int i = 0; i < 2; ++i) {
+      ASSERT_TRUE(rig.ask(E::kLift).accepted);
+      for (const double y = rig.last().command[kY]; rig.last().command[kY] < y + 1e-3;) rig.cycle();
+      ASSERT_TRUE(rig.ask(E::kHold).accepted);
+      rig.runUntil(S::kReady);
+      EXPECT_TRUE(rig.last().wheel_in_work);
+    }
+    if (was_off) {
+      ASSERT_TRUE(rig.ask(E::kDisable).accepted);
+      rig.enable();
+      from = rig.last().command[kY];
+    }
+    ASSERT_NO_FATAL_FAILURE(rig.lift());
+    EXPECT_NEAR(rig.last().command[kY] - from, kLift, 1e-15);
+    EXPECT_FALSE(rig.last().wheel_in_work);
+    EXPECT_TRUE(rig.ask(E::kHome).accepted);
+  }
 }
 
 /// A wheel whose rim is round the work, as the journal knows it: 4 mm of X from where it may be lifted.
@@ -382,29 +283,25 @@ class RoundTheWork {
   Axes from;
 };
 
-TEST(AWheelRoundTheWork, BacksOffAlongXBeforeItIsLifted) {
+TEST(AWheelRoundTheWork, IsMovedByHandOnlyAsALiftMovesIt) {
   RoundTheWork wheel(true);
   auto& rig = wheel.rig;
+  const auto move = [&](int axis, double way) {
+    const RequestReply reply = rig.jog({axis, false, way, 0.01});
+    if (reply.accepted) rig.runUntil(S::kReady);
+    return reply.text;
+  };
+  const std::string refused = "jog refused: the wheel is in the work; lift it first";
   for (const auto& [axis, way] : {std::pair(kX, 1e-3), std::pair(kY, 1e-3), std::pair(kY, -1e-3)}) {
-    EXPECT_EQ(rig.jog({axis, false, way, 0.01}).text, "jog refused: the wheel is in the work; lift it first");
+    EXPECT_EQ(move(axis, way), refused);
   }
-  EXPECT_TRUE(rig.jog({kX, false, -1e-3, 0.01}).accepted) << "the way out";
-  rig.runUntil(S::kReady);
+  EXPECT_EQ(move(kX, -4e-3), "");
+  EXPECT_EQ(move(kX, -1e-3), refused) << "it has backed off";
+  EXPECT_EQ(move(kY, 1e-3), "");
+  wheel.from = rig.last().command;
   wheel.expectLifted(RoundTheWork::kClearX, kClearanceHeight);
-}
-
-TEST(AWheelRoundTheWork, ThatHasBackedOffMayBeLiftedByHand) {
-  RoundTheWork wheel(true);
-  auto& rig = wheel.rig;
-  ASSERT_TRUE(rig.jog({kX, false, -4e-3, 0.01}).accepted);
-  rig.runUntil(S::kReady);
-  EXPECT_FALSE(rig.jog({kX, false, -1e-3, 0.01}).accepted);
-  EXPECT_TRUE(rig.jog({kY, false, 1e-3, 0.01}).accepted);
-}
-
-TEST(AWheelRoundTheWork, WithoutTheReferenceBacksOffByTheDistanceOfTheJob) {
-  RoundTheWork wheel(false);
-  wheel.expectLifted(wheel.from[kX] - RoundTheWork::kBack, wheel.from[kY] + RoundTheWork::kHeight);
+  EXPECT_EQ(move(kX, 0.01), "");
+  EXPECT_FALSE(rig.last().wheel_backs_off) << "it is not in the work";
 }
 
 TEST(AWheelRoundTheWork, WhoseYIsDoubtedBacksOffToWhereXIsClear) {
@@ -465,12 +362,25 @@ TEST(AfterARestart, ItIsLiftedFromBeyondTheLimitsOfTheOtherAxes) {
 }
 
 TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
-  for (const double far : {0.2, std::numeric_limits<double>::quiet_NaN()}) {
-    Rig<FakeDrive> rig(machineConfig(), Wheel{true, far, 0.01});
+  const auto expect_refused = [](const Wheel& wheel, double y, const char* to) {
+    Rig<FakeDrive> rig(machineConfig(), wheel);
+    rig.drive.status.homed = wheel.known;
+    rig.drive.position[kY] = y;
     rig.enable();
-    EXPECT_CONTAINS(rig.ask(E::kLift).text, " mm; allowed: up to 150 mm");
+    EXPECT_EQ(rig.ask(E::kLift).text, std::string("lift refused: it would lead axis Y to machine position ") + to +
+                                          " mm; allowed: up to 150 mm");
     EXPECT_EQ(rig.last().state, S::kReady);
-  }
+  };
+  expect_refused({true, 0.2, 0.01}, 0, "200");
+  expect_refused({true, std::numeric_limits<double>::quiet_NaN(), 0.01}, 0, "nan");
+  expect_refused(unknownWheel(machineConfig().machine.limits, false), 0.151, "321");  // by its whole travel
+}
+
+TEST(YThatWasReadWhereItCannotBe, IsNotBelievedAfterARestart) {
+  Rig<FakeDrive> rig(machineConfig(), Wheel{true, kClearanceHeight, kLift, true});
+  EXPECT_TRUE(rig.run(500).wheel_in_work);
+  EXPECT_FALSE(rig.last().drive.homed);
+  EXPECT_TRUE(rig.loop->status().wheel.y_doubted);
 }
 
 }  // namespace test_lift

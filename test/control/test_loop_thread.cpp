@@ -276,9 +276,13 @@ TEST_F(ControlLoopThread, AnswersAStopAndARequestAndReportsItsStatus) {
 }
 
 TEST_F(ControlLoopThread, RefusesOnEachRoadWhatBelongsOnAnother) {
-  EXPECT_EQ(loop_->stop(E::kEnable).text, "enable refused: allowed: hold, cancel, disable");
+  const RequestReply stop = loop_->stop(E::kEnable);
+  EXPECT_EQ(stop.text, "enable refused: allowed: hold, cancel, disable");
+  EXPECT_TRUE(stop.answered && !stop.accepted);
   for (const E event : {E::kHold, E::kStart, E::kFault}) {
-    EXPECT_CONTAINS(loop_->request(event).text, "allowed: enable, home, reset, retract, resume, lift");
+    const RequestReply reply = loop_->request(event);
+    EXPECT_CONTAINS(reply.text, "allowed: enable, home, reset, retract, resume, lift");
+    EXPECT_TRUE(reply.answered && !reply.accepted);
   }
 }
 

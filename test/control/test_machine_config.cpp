@@ -112,6 +112,7 @@ TEST(MachineConfig, TakesEveryFigureOfEveryAxis) {
   EXPECT_EQ(config.machine.swivel.from, -0.7);
   EXPECT_EQ(config.machine.swivel.to, 1.1);
   expectAxes(config.jog_velocity, {0.02 * 1, 0.02 * 2, 0.02 * 3, 0.02 * 4});
+  EXPECT_EQ(config.name, "grinder");
   EXPECT_EQ(config.machine.period, 0.002);
   EXPECT_EQ(config.feedback_timeout, 0.01);
   EXPECT_EQ(config.enable_timeout, 3);
@@ -159,13 +160,15 @@ TEST(MachineConfig, AMachineNeedsNoProbe) {
 // ---------------------------------------------------------------------------------------------------------------------
 // What is refused beside what test_parameters.cpp shows of each parameter by itself
 
-TEST(MachineConfig, RefusesALimitWithoutItsFlag) {
+TEST(MachineConfig, RefusesALimitWithoutItsFlagOrSwitchedOff) {
   for (const std::string limit : {"velocity", "position"}) {
     YAML::Node p = parameters();
     p["joint_limits"]["axis_y"]["max_" + limit] = 0.1;
-    EXPECT_EQ(errorOf(p), "parameter /grinder/joint_limits/axis_y/has_" + limit +
-                              "_limits is missing, though /grinder/joint_limits/axis_y/max_" + limit +
+    const std::string flag = "/grinder/joint_limits/axis_y/has_" + limit + "_limits";
+    EXPECT_EQ(errorOf(p), "parameter " + flag + " is missing, though /grinder/joint_limits/axis_y/max_" + limit +
                               " is there; allowed: true beside it");
+    p["joint_limits"]["axis_y"]["has_" + limit + "_limits"] = false;
+    EXPECT_EQ(errorOf(p), "parameter " + flag + " = false; allowed: true, since every axis needs this limit");
   }
 }
 
@@ -207,16 +210,12 @@ TEST(ParameterReader, KnowsWhatIsThere) {
   for (int i = 0; i < 2; ++i) EXPECT_FALSE(reader.has("a/b/other")) << "made by looking for it";
 }
 
-TEST(ParameterReader, TakesFiniteNumbersOnly) {
+TEST(ParameterReader, TakesFiniteNumbersAndWordsOnly) {
+  XmlRpcValue p;
   for (const double value : {kNan, kInfinity, -kInfinity}) {
-    XmlRpcValue p;
     p["number"] = value;
     EXPECT_THROW(ParameterReader(p, "/ns").number("number", -1e9, 1e9), ParameterError) << value;
   }
-}
-
-TEST(ParameterReader, RefusesAnEmptyText) {
-  XmlRpcValue p;
   p["empty"] = "";
   EXPECT_THROW(ParameterReader(p, "/ns").text("empty"), ParameterError);
 }

@@ -6,23 +6,16 @@
 namespace grinder::test_support {
 namespace test_stops {
 
-class HoldWhileStarting : public testing::Test {
- protected:
-  void SetUp() override { ASSERT_TRUE(rig_.ask(E::kHold).accepted); }
-
-  void spindleComes() { rig_.drive.on_read = nullptr; }
-
-  RigIn rig_{S::kStarting};
-};
-
-TEST_F(HoldWhileStarting, ResumeWhileStartingTakesItBack) {
-  ASSERT_TRUE(rig_.ask(E::kResume).accepted);
-  EXPECT_EQ(rig_.last().state, S::kStarting);
-  spindleComes();
-  rig_.runUntil(S::kRunning);
-  rig_.runToEnd();
-  EXPECT_EQ(rig_.loop->status().end, JobEnd::kDone);
-  for (const CycleSample& sample : rig_.log) EXPECT_NE(sample.state, S::kHeld);
+TEST(HoldWhileStarting, IsTakenBackByAResume) {
+  RigIn rig(S::kStarting);
+  ASSERT_TRUE(rig.ask(E::kHold).accepted);
+  ASSERT_TRUE(rig.ask(E::kResume).accepted);
+  EXPECT_EQ(rig.last().state, S::kStarting);
+  rig.drive.on_read = nullptr;  // the spindle comes
+  rig.runUntil(S::kRunning);
+  rig.runToEnd();
+  EXPECT_EQ(rig.loop->status().end, JobEnd::kDone);
+  for (const CycleSample& sample : rig.log) EXPECT_NE(sample.state, S::kHeld);
 }
 
 TEST(Cancel, StopsAsAStreamHeldInTheSameCycleAndLiftsTheWheelOffTheWork) {
@@ -105,27 +98,6 @@ TEST(CancelAndDisable, EndTheJobAtRestWithTheWheelOffTheWorkAndAreDoneThen) {
   }
 }
 
-TEST(Disable, WhilePowerIsAwaitedTakesTheEnableBack) {
-  Rig<FakeDrive> rig;
-  rig.drive.on_read = [](FakeDrive& d) { d.status.enabled = false; };
-  rig.cycle();
-  ASSERT_TRUE(rig.loop->post(E::kEnable));
-  rig.cycle();
-  ASSERT_FALSE(rig.loop->reply());
-  const std::uint32_t ticket = rig.loop->postStopWithReply(E::kDisable);
-  rig.cycle();
-  const auto stopped = rig.loop->stopReply(E::kDisable, ticket);
-  ASSERT_TRUE(stopped) << "a stop waits for an enable";
-  EXPECT_TRUE(stopped->accepted);
-  const auto enabled = rig.loop->reply();
-  ASSERT_TRUE(enabled);
-  EXPECT_EQ(enabled->text, "enable refused: disable came before the power");
-  rig.drive.on_read = nullptr;
-  rig.run(5);
-  EXPECT_EQ(rig.last().state, S::kDisabled);
-  EXPECT_FALSE(rig.drive.written_drive.enable);
-}
-
 TEST(Stops, EndHomingByThePower) {
   for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
     SCOPED_TRACE(toString(stop));
@@ -134,6 +106,33 @@ TEST(Stops, EndHomingByThePower) {
     EXPECT_EQ(rig.last().state, S::kDisabled);
     EXPECT_FALSE(rig.drive.written_drive.enable);
     EXPECT_FALSE(rig.drive.written_drive.home);
+  }
+}
+
+TEST(Stops, LetASingleAxisBrakeAndAllButAHoldEndItsJob) {
+  // 0.05 m/s is lost in 0.05 / 2 * (0.05 / 0.5 + 0.5 / 10) m, after a few cycles more.
+  constexpr double kFarthest = 0.00375 + 0.001;
+  for (const S state : {S::kLifting, S::kJogging, S::kJoggingRetracted}) {
+    for (const E stop : {E::kHold, E::kCancel, E::kDisable}) {
+      SCOPED_TRACE(testing::Message() << toString(stop) << " in " << toString(state));
+      RigIn rig(state);
+      const bool in_job = isInJob(state), ends_job = in_job && stop != E::kHold;
+      const int ended = rig.jobsEnded() + (ends_job ? 1 : 0);
+      const double from = rig.last().command[kY];
+      ASSERT_TRUE(rig.ask(stop).accepted);
+      EXPECT_EQ(rig.last().state, ends_job ? S::kCanceling : state) << "an axis does not stop at once";
+      EXPECT_TRUE(rig.drive.written_drive.enable);
+      rig.runUntil(stop == E::kDisable ? S::kDisabled : in_job && !ends_job ? S::kRetracted : S::kReady);
+      EXPECT_EQ(rig.drive.written_drive.enable, stop != E::kDisable);
+      EXPECT_LE(rig.last().command[kY] - from, kFarthest);
+      const std::size_t rest = rig.log.size() - 1;
+      rig.run(100);
+      EXPECT_TRUE(atRestFrom(rig.log, rest));
+      EXPECT_TRUE(smooth(rig.log));
+      EXPECT_EQ(rig.jobsEnded(), ended);
+      EXPECT_TRUE(!ends_job || rig.loop->status().end == JobEnd::kCanceled);
+      EXPECT_EQ(rig.last().wheel_in_work, state == S::kLifting);
+    }
   }
 }
 
@@ -220,18 +219,6 @@ TEST(Stops, OfAnotherThreadAreNoAnswerToOnesOwn) {
   EXPECT_FALSE(answer->accepted);
 }
 
-TEST(Status, ReportsTheCyclesAndTheMachine) {
-  Rig<SimulatedDrive> rig;
-  rig.startPaper();
-  rig.runToEnd();
-  const LoopStatus status = rig.loop->status();
-  EXPECT_EQ(status.cycles, rig.log.size());
-  EXPECT_DOUBLE_EQ(status.time, rig.last().time);
-  EXPECT_TRUE(status.homed);
-  EXPECT_TRUE(sameBits(toAxes(status.command), rig.last().command));
-  EXPECT_NEAR(status.wheel.clear_y, kClearanceHeight, 1e-15);
-}
-
 TEST(Status, KeepsTheCauseOfAJobsEndUntilTheNextStarts) {
   RigInTheWork rig;
   EXPECT_EQ(rig.last().fault.kind, FaultKind::kNone);
@@ -244,6 +231,16 @@ TEST(Status, KeepsTheCauseOfAJobsEndUntilTheNextStarts) {
   EXPECT_EQ(rig.loop->status().jobs_started, 2u);
   EXPECT_EQ(rig.loop->status().place.move_index, 0u);
   EXPECT_EQ(rig.loop->status().strokes_ended_at, 0u);
+}
+
+TEST(Status, OfAJobThatHasNotBegunHasNoWheelInTheWorkWhereverTheAxesStand) {
+  Rig<FakeDrive> rig;
+  rig.drive.position[kY] = kClearanceHeight - 1e-3;
+  rig.enable();
+  rig.drive.on_read = [](FakeDrive& d) { d.status.spindle_at_speed = false; };
+  ASSERT_TRUE(rig.askToStartPaper().accepted);
+  EXPECT_EQ(rig.run(5).state, S::kStarting);
+  EXPECT_FALSE(rig.last().wheel_in_work);
 }
 
 // Held while it brakes at its end, the stroke rests exactly there, and the retraction enters it again.

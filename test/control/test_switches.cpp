@@ -28,20 +28,6 @@ class Switches : public testing::Test {
   Rig<FakeDrive> rig;
 };
 
-TEST_F(Switches, EachIsSwitchedByItself) {
-  EXPECT_EQ(on(), "") << "the power starts nothing";
-  EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted);
-  EXPECT_EQ(on(), "spindle ");
-  EXPECT_TRUE(rig.ask(E::kCoolantOn).accepted);
-  EXPECT_TRUE(rig.ask(E::kSpindleOn).accepted) << "it is so already";
-  EXPECT_EQ(on(), "spindle coolant");
-  EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted);
-  EXPECT_EQ(on(), "coolant");
-  EXPECT_TRUE(rig.ask(E::kCoolantOff).accepted);
-  EXPECT_TRUE(rig.ask(E::kCoolantOff).accepted);
-  EXPECT_EQ(on(), "");
-}
-
 TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
   Rig<FakeDrive> rig(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
   rig.enable();
@@ -50,7 +36,11 @@ TEST(DriveCapabilities, WhatTheDriveCannotDoIsRefused) {
   EXPECT_EQ(rig.ask(E::kCoolantOn).text, "coolant on refused: the drive does not switch the coolant");
   EXPECT_EQ(rig.last().state, S::kReady);
   EXPECT_FALSE(rig.drive.written_drive.home || rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
-  EXPECT_TRUE(rig.ask(E::kSpindleOff).accepted) << "off is never refused";
+  for (const E off : {E::kSpindleOff, E::kCoolantOff}) EXPECT_TRUE(rig.ask(off).accepted) << "refused in a job alone";
+  ASSERT_NO_FATAL_FAILURE(bringTo(rig, S::kRetracted));
+  EXPECT_EQ(rig.ask(E::kSpindleOff).text, "spindle off refused: the drive does not switch the spindle");
+  EXPECT_EQ(rig.ask(E::kCoolantOff).text, "coolant off refused: the drive does not switch the coolant");
+  ASSERT_TRUE(rig.ask(E::kResume).accepted) << "they are on";
 }
 
 /// And neither the power nor what else ends such a state switches on again.
@@ -109,15 +99,6 @@ TEST_F(Switches, TheyStayOnWhileAnAxisIsJogged) {
   ASSERT_TRUE(rig.ask(E::kDisable).accepted);
   rig.runUntil(S::kDisabled);
   EXPECT_EQ(on(), "");
-}
-
-TEST_F(Switches, AJobThatIsRefusedLeavesThemAsTheyAre) {
-  switchBothOn();
-  SetpointStream job = rig.paperStream();
-  ASSERT_TRUE(rig.jog({kY, false, 0.001, 0.05}).accepted);
-  rig.runUntil(S::kReady);
-  ASSERT_FALSE(rig.askToStart(job).accepted) << "the axes have moved";
-  EXPECT_EQ(on(), "spindle coolant");
 }
 
 TEST(SwitchesInStates, AreAllowedAsTheTableSays) {
@@ -179,68 +160,22 @@ TEST(SwitchesInAJob, WhatIsOffKeepsALiftedWheelFromTheWorkUntilItIsOnAndReady) {
   }
 }
 
-TEST(SwitchesInAJob, WhatIsLostAfterTheResumeTakesTheWheelOffTheWork) {
-  RigIn rig(S::kRetracted);
-  ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
-  ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
-  rig.run(2);
-  ASSERT_TRUE(rig.ask(E::kResume).accepted);
-  rig.run(50);
-  rig.drive.on_read = [](FakeDrive& drive) { drive.status.spindle_at_speed = false; };
-  EXPECT_EQ(rig.cycle().interlock, Interlock::kSpindle);
-  EXPECT_EQ(rig.last().state, S::kHolding);
-}
-
-TEST(SwitchesInAJob, EveryEndOfItLeavesThemOff) {
-  const std::pair<S, std::function<void(Rig<FakeDrive>&)>> ends[]{
-      {S::kReady, [](Rig<FakeDrive>& rig) { EXPECT_TRUE(rig.ask(E::kCancel).accepted); }},
-      {S::kDisabled, [](Rig<FakeDrive>& rig) { EXPECT_TRUE(rig.ask(E::kDisable).accepted); }},
-      {S::kFault, [](Rig<FakeDrive>& rig) { rig.drive.status.emergency_stop = true; }}};
-  for (const auto& [then, end] : ends) {
-    for (const bool on_again : {false, true}) {
-      SCOPED_TRACE(testing::Message() << toString(then) << (on_again ? ", on again" : ""));
-      RigIn rig(S::kRetracted);
-      ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
-      ASSERT_TRUE(rig.ask(E::kCoolantOff).accepted);
-      const std::size_t off = rig.log.size() - 1;
-      if (on_again) {
-        ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
-      }
-      end(rig);
-      if (rig.last().state != then) rig.runUntil(then);
-      rig.run(5);
-      EXPECT_FALSE(rig.drive.written_drive.spindle || rig.drive.written_drive.coolant);
-      EXPECT_EQ(rig.jobsEnded(), 1);
-      EXPECT_TRUE(atRestFrom(rig.log, off)) << "the wheel was off the work already";
-      if (then != S::kReady) continue;
-      rig.stream.reset();
+TEST(SwitchesInAJob, WhatIsLostAfterTheStartOrTheResumeTakesTheWheelOffTheWork) {
+  for (const S state : {S::kReady, S::kRetracted}) {
+    RigIn rig(state);
+    ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
+    ASSERT_TRUE(rig.ask(E::kSpindleOn).accepted);
+    rig.run(2);
+    if (state == S::kReady) {
       ASSERT_NO_FATAL_FAILURE(rig.startPaper());
-      EXPECT_TRUE(rig.drive.written_drive.spindle && rig.drive.written_drive.coolant) << "a job switches them on";
+    } else {
+      ASSERT_TRUE(rig.ask(E::kResume).accepted);
     }
+    rig.run(50);
+    rig.drive.on_read = [](FakeDrive& drive) { drive.status.spindle_at_speed = false; };
+    EXPECT_EQ(rig.cycle().interlock, Interlock::kSpindle);
+    EXPECT_EQ(rig.last().state, S::kHolding);
   }
-}
-
-TEST(SwitchesInAJob, TheSpindleStaysOffWithTheProbeInItsWay) {
-  RigIn rig(S::kRetracted);
-  ASSERT_TRUE(rig.ask(E::kSpindleOff).accepted);
-  rig.drive.status.probe_free = false;
-  rig.cycle();
-  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the measuring probe is in the way");
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
-}
-
-TEST(SwitchesInAJob, WhatTheDriveCannotSwitchOnAgainIsNotSwitchedOff) {
-  Rig<FakeDrive> without(machineConfig(), [](FakeDrive& drive) { drive.can = {}; });
-  ASSERT_NO_FATAL_FAILURE(bringTo(without, S::kRetracted));
-  EXPECT_EQ(without.ask(E::kSpindleOff).text, "spindle off refused: the drive does not switch the spindle");
-  EXPECT_EQ(without.ask(E::kCoolantOff).text, "coolant off refused: the drive does not switch the coolant");
-  ASSERT_TRUE(without.ask(E::kResume).accepted);
-}
-
-TEST(SwitchesInWork, AWheelInTheWorkIsNotStarted) {
-  RigInTheWork rig;
-  EXPECT_EQ(rig.ask(E::kSpindleOn).text, "spindle on refused: the wheel is in the work; lift it first");
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
 
 TEST(DistanceToGo, IsThatOfAJogByADistance) {

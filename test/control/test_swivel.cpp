@@ -23,20 +23,6 @@ void measure(Rig<FakeDrive>& rig, double angle) {
   rig.drive.on_read = [angle](FakeDrive& d) { d.status.swivel = angle; };
 }
 
-TEST(Swivel, IsUnknownAtFirstAndAJobDoesNotStart) {
-  Unconfirmed rig;
-  EXPECT_TRUE(std::isnan(rig.loop->status().swivel.angle));
-  EXPECT_TRUE(std::isnan(rig.last().swivel.angle));
-  const RequestReply answer = rig.askToStartPaper();
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text,
-            "start refused: process.setup.swivel_deg = 31.769 deg: the swivel is not confirmed; set it to 31.769 deg "
-            "and confirm it: grind confirm-swivel 31.769");
-  EXPECT_EQ(rig.last().state, S::kReady);
-  EXPECT_TRUE(rig.setpoints().empty());
-  EXPECT_FALSE(rig.drive.written_drive.spindle);
-}
-
 TEST(Swivel, ConfirmedOrMeasuredLetsAJobStartAndGoOnWithinTheToleranceOnly) {
   for (const auto& [degrees, within] :
        {std::pair(-63.538, false), {-0.0501, false}, {-0.0499, true}, {0.0, true}, {0.0499, true}, {0.0501, false}}) {
@@ -64,15 +50,19 @@ TEST(Swivel, ConfirmedOrMeasuredLetsAJobStartAndGoOnWithinTheToleranceOnly) {
   }
 }
 
-TEST(Swivel, AtAnotherAngleIsAskedForAndToBeConfirmedUnlessItIsMeasured) {
+TEST(Swivel, UnknownOrAtAnotherAngleIsAskedForAndToBeConfirmedUnlessItIsMeasured) {
   const std::string refused = "start refused: process.setup.swivel_deg = 31.769 deg: the swivel ";
-  const std::string remedy = "; allowed: within 0.05 deg of that; set it to 31.769 deg";
+  const std::string angle = "set it to 31.769 deg", confirmation = " and confirm it: grind confirm-swivel 31.769";
+  const std::string remedy = "; allowed: within 0.05 deg of that; " + angle;
   Unconfirmed rig;
+  EXPECT_TRUE(std::isnan(rig.loop->status().swivel.angle));
+  EXPECT_EQ(rig.askToStartPaper().text, refused + "is not confirmed; " + angle + confirmation);
   ASSERT_TRUE(rig.confirm(-20.5 * kDegree).accepted);
-  EXPECT_EQ(rig.askToStartPaper().text,
-            refused + "is confirmed at -20.5 deg" + remedy + " and confirm it: grind confirm-swivel 31.769");
+  EXPECT_EQ(rig.askToStartPaper().text, refused + "is confirmed at -20.5 deg" + remedy + confirmation);
   measure(rig, 32 * kDegree);
   EXPECT_EQ(rig.askToStartPaper().text, refused + "is at 32 deg" + remedy);
+  EXPECT_EQ(rig.last().state, S::kReady);
+  EXPECT_FALSE(rig.drive.written_drive.spindle);
 }
 
 TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
@@ -109,24 +99,16 @@ TEST(Swivel, IsNotTurnedBeforeAJobHasEnded) {
   }
 }
 
-TEST(MeasuredSwivel, IsNotConfirmed) {
-  Rig<FakeDrive> rig;
-  measure(rig, 0.25);
-  rig.cycle();
-  const RequestReply answer = rig.confirm(0.25);
-  EXPECT_FALSE(answer.accepted);
-  EXPECT_EQ(answer.text,
-            "confirm-swivel refused: the drive measures the swivel, which is at 14.3239 deg; nothing is to be "
-            "confirmed");
-}
-
-TEST(MeasuredSwivel, ThatIsLostIsUnknownEvenIfItWasConfirmedBefore) {
+TEST(MeasuredSwivel, IsNotConfirmedAndOnceLostItIsUnknownEvenIfItWasConfirmedBefore) {
   Rig<FakeDrive> rig;
   rig.cycle();
   ASSERT_EQ(rig.last().swivel.angle, kPaperSwivel) << "confirmed";
   for (const double lost : {kNan, HUGE_VAL}) {
-    measure(rig, kPaperSwivel);
+    measure(rig, 0.25);
     EXPECT_TRUE(rig.cycle().swivel.measured);
+    EXPECT_EQ(rig.confirm(0.25).text,
+              "confirm-swivel refused: the drive measures the swivel, which is at 14.3239 deg; nothing is to be "
+              "confirmed");
     measure(rig, lost);
     EXPECT_TRUE(std::isnan(rig.cycle().swivel.angle));
     EXPECT_FALSE(rig.last().swivel.measured);

@@ -37,28 +37,26 @@ bool isSum(double c, double p, double o) {
   return std::abs(static_cast<long double>(c) - sum) <= 0.5L * kUlp * std::abs(sum) + 1e-300L;
 }
 
-bool commandsAreShifted(const std::vector<CycleSample>& log, const Axes& offset) {
-  for (const CycleSample& sample : log) {
-    if (!sample.has_setpoint || sample.job == 0) continue;
-    for (int axis = 0; axis < kAxisCount; ++axis) {
-      if (!isSum(sample.command[axis], sample.setpoint.position[axis], offset[axis])) return false;
-    }
-  }
-  return true;
-}
-
-TEST_P(WithOffsets, SetpointsAreThePlansAndCommandsTheMachines) {
+TEST_P(WithOffsets, SetpointsAreThePlansAndCommandsTheMachinesOfEachJobByItself) {
   Rig<FakeDrive> rig;
   rig.enable();
-  SetpointStream stream = streamAt(offset_, rig.last().command);
-  const std::vector<Setpoint> planned = allSetpoints(stream);
-  rig.start(stream);
-  rig.runToEnd();
-  ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
-  ASSERT_TRUE(sameSetpoints(rig.setpoints(), planned));
-  ASSERT_TRUE(commandsAreShifted(rig.log, offset_));
-  ASSERT_FALSE(rig.last().wheel_in_work);
-  ASSERT_TRUE(((rig.last().command - machineConfig().machine.park).abs() <= 2 * kUlp * (offset_.abs() + 0.15)).all());
+  for (const Axes& offset : {offset_, Axes(-0.05, -0.01, 0.03, -70)}) {
+    SetpointStream stream = streamAt(offset, rig.last().command);
+    const std::vector<Setpoint> planned = allSetpoints(stream);
+    rig.keepLast();
+    rig.start(stream);
+    rig.runToEnd();
+    ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
+    ASSERT_TRUE(sameSetpoints(rig.setpoints(), planned));
+    for (const CycleSample& sample : rig.log) {
+      for (int axis = 0; axis < kAxisCount && sample.has_setpoint; ++axis) {
+        ASSERT_TRUE(isSum(sample.command[axis], sample.setpoint.position[axis], offset[axis]));
+      }
+    }
+    ASSERT_FALSE(rig.last().wheel_in_work);
+    const Axes rounding = 2 * kUlp * (offset.abs() + 0.15);
+    ASSERT_TRUE(((rig.last().command - machineConfig().machine.park).abs() <= rounding).all());
+  }
 }
 
 /// With a part of the job's motion at a limit of the machine: axes that stand there, and a park position there.
@@ -103,42 +101,6 @@ TEST_P(WithOffsets, AJobBeyondALimitOfTheMachineIsRefusedWithTheMachinesFigures)
   ASSERT_TRUE(planJob(paper(), machine, {machine.park, {}, offset_}).good());
 }
 
-TEST(WorkOffsets, TheParkPositionIsTheMachines) {
-  const Axes offset(0, 0.045, 0, 0);
-  const Machine machine = machineConfig().machine;
-  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset});
-  ASSERT_EQ(plan.reasons.size(), 1u);
-  EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kParkInWork);
-  EXPECT_EQ(plan.reasons[0].value, 0.05);
-  EXPECT_NEAR(plan.reasons[0].limit, kClearanceHeight + 0.045, 1e-12);
-}
-
-TEST(WorkOffsets, UnknownOnesAreNoJobs) {
-  for (const double value :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1001.0}) {
-    const Axes offset(0, 0, value, 0);
-    EXPECT_FALSE(planJob(paper(), machineConfig().machine, {machineConfig().machine.park, {}, offset}).good()) << value;
-  }
-}
-
-const Axes kOffset(0.1, 0.0375, -0.02, 7);
-
-/// In the middle of the paper's stroke.
-class InAShiftedStroke : public testing::Test {
- protected:
-  void SetUp() override {
-    rig_.enable();
-    rig_.stream.emplace(streamAt(kOffset, rig_.last().command));
-    ASSERT_NO_FATAL_FAILURE(rig_.start(*rig_.stream));
-    ASSERT_NO_FATAL_FAILURE(rig_.runTo(MoveKind::kStroke));
-    rig_.run(1000);
-    ASSERT_EQ(rig_.last().state, S::kRunning);
-    ASSERT_TRUE(rig_.last().wheel_in_work);
-  }
-
-  Rig<FakeDrive> rig_;
-};
-
 /// In the middle of a job too the limits are the machine's, and the height to which Y may go down with them.
 TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
   Rig<FakeDrive> rig;
@@ -181,54 +143,47 @@ TEST_P(WithOffsets, AJogInAJobEndsExactlyAtALimitAndMayTurnBack) {
   ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
 }
 
-TEST_F(InAShiftedStroke, AfterAFaultTheLoopAndANewOneLiftItWithoutTheOffset) {
-  ASSERT_NO_FATAL_FAILURE(breakDown(rig_));
-  const Wheel wheel = rig_.loop->status().wheel;
+TEST(WorkOffsets, DoNotCountForALiftByTheLoopOrANewOneAfterAFault) {
+  Rig<FakeDrive> rig;
+  rig.enable();
+  rig.stream.emplace(streamAt({0.1, 0.0375, -0.02, 7}, rig.last().command));
+  ASSERT_NO_FATAL_FAILURE(rig.start(*rig.stream));
+  ASSERT_NO_FATAL_FAILURE(rig.runTo(MoveKind::kStroke));
+  rig.run(1000);
+  ASSERT_NO_FATAL_FAILURE(breakDown(rig));
+  const Wheel wheel = rig.loop->status().wheel;
   EXPECT_NEAR(wheel.lift, kLift, 1e-15);
   Rig<FakeDrive> next(machineConfig(), wheel);
   EXPECT_TRUE(next.loop->status().wheel.in_work) << "before the first cycle";
-  next.drive.place(rig_.last().position);
-  next.cycle();
-  EXPECT_TRUE(next.last().wheel_in_work);
+  next.drive.place(rig.last().position);
   next.enable();
-  ASSERT_NO_FATAL_FAILURE(rig_.recover());
-  for (Rig<FakeDrive>* rig : {&rig_, &next}) {
-    const Axes from = rig->last().command;
-    ASSERT_NO_FATAL_FAILURE(rig->lift());
-    EXPECT_TRUE(sameBits(rig->last().command, Axes(from[kX], wheel.clear_y, from[kZ], from[kA])));
-    EXPECT_NEAR(rig->last().command[kY], kClearanceHeight + 0.0375, 1e-15);
-    EXPECT_FALSE(rig->last().wheel_in_work);
+  ASSERT_NO_FATAL_FAILURE(rig.recover());
+  for (Rig<FakeDrive>* one : {&rig, &next}) {
+    const Axes from = one->last().command;
+    EXPECT_TRUE(one->last().wheel_in_work);
+    ASSERT_NO_FATAL_FAILURE(one->lift());
+    EXPECT_TRUE(sameBits(one->last().command, Axes(from[kX], wheel.clear_y, from[kZ], from[kA])));
+    EXPECT_NEAR(one->last().command[kY], kClearanceHeight + 0.0375, 1e-15);
+    EXPECT_FALSE(one->last().wheel_in_work);
   }
 }
 
-TEST(WorkOffsets, TheNextJobMayHaveOthers) {
-  Rig<FakeDrive> rig;
-  rig.enable();
-  for (const Axes& offset : {kOffset, Axes(Axes::Zero()), Axes(-0.05, -0.01, 0.03, -70)}) {
-    const std::size_t before = rig.log.size();
-    SetpointStream stream = streamAt(offset, rig.last().command);
-    ASSERT_NO_FATAL_FAILURE(rig.start(stream));
-    rig.runToEnd();
-    ASSERT_EQ(rig.loop->status().end, JobEnd::kDone);
-    EXPECT_TRUE(commandsAreShifted({rig.log.begin() + static_cast<std::ptrdiff_t>(before), rig.log.end()}, offset));
-  }
+TEST(WorkOffsets, TheParkPositionIsTheMachines) {
+  const Axes offset(0, 0.045, 0, 0);
+  const Machine machine = machineConfig().machine;
+  const JobPlan plan = planJob(paper(), machine, {machine.park, {}, offset});
+  ASSERT_EQ(plan.reasons.size(), 1u);
+  EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kParkInWork);
+  EXPECT_EQ(plan.reasons[0].value, 0.05);
+  EXPECT_NEAR(plan.reasons[0].limit, kClearanceHeight + 0.045, 1e-12);
 }
 
-TEST(WorkOffsets, TheStatusHasThePositionsAsRead) {
-  Rig<FakeDrive> rig;
-  rig.drive.place({0.01, 0.02, 0.03, 4});
-  rig.cycle();
-  EXPECT_TRUE(sameBits(toAxes(rig.loop->status().position), Axes(0.01, 0.02, 0.03, 4)));
-  EXPECT_TRUE(rig.loop->status().position_valid);
-  rig.drive.position[kZ] = std::numeric_limits<double>::quiet_NaN();
-  rig.cycle();
-  EXPECT_FALSE(rig.loop->status().position_valid);
-  rig.drive.position[kZ] = 0;
-  rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
-  rig.cycle();
-  EXPECT_TRUE(rig.loop->status().position_valid) << "as yet";
-  rig.run(3);
-  EXPECT_FALSE(rig.loop->status().position_valid) << "not fresh for 3 periods; 2.5 are allowed";
+TEST(WorkOffsets, UnknownOnesAreNoJobs) {
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1001.0}) {
+    const Axes offset(0, 0, value, 0);
+    EXPECT_FALSE(planJob(paper(), machineConfig().machine, {machineConfig().machine.park, {}, offset}).good()) << value;
+  }
 }
 
 }  // namespace test_work_offsets

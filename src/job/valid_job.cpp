@@ -230,8 +230,8 @@ EndTooth endToothOf(const GrindJob& job, int tooth) {
   EndTooth end{job.cutter.end_diameter / 2, way > 0 ? way : way + units::kTurn, job.cutter.cut};
   if (!job.isShort(next)) return end;
   end.next_from = job.cutter.end_short_from;
-  // As far as the rim passes the axis, it cuts every other edge to it. Behind the only such edge there is none to cut, and
-  // it passes farther, to take that tooth's heel. With two teeth, farther past the axis is less far down.
+  // As far as the rim passes the axis, it cuts every other edge to it. Behind the only such edge there is none to cut,
+  // and it passes farther, to take that tooth's heel. With two teeth, farther past the axis is less far down.
   const bool cuts_edge = job.isShort(tooth) || job.cutter.end_center_teeth > 1;
   end.past_axis = cuts_edge ? kEndGap : end.next_from / (angles.size() > 2 ? 4 : 2);
   return end;

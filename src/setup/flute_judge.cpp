@@ -22,7 +22,7 @@ constexpr double kBeyond = 1e-5;   ///< addition to the overtravel, for the prec
 void measureReach(const FluteTrial& trial, const WheelSweep& longest, JudgedFlute& judged) {
   const double length = trial.cutter().cone().flute_length, tan_cone = trial.cutter().tanCone();
   auto& [end, shank] = judged.overtravel;
-  for (const double x : {0.0, length / 2, length}) {
+  for (const double x : {0.0, length}) {
     const Range reach = trial.reach(longest, x);
     end = std::max(end, -reach.from);
     shank = std::max(shank, reach.to - length);

@@ -22,6 +22,9 @@ namespace {
 
 constexpr int kMaxLengthenings = 4;  ///< maximum number of times that the overtravel is lengthened
 constexpr double kSpare = 2e-5;      ///< addition for the precision of the required overtravel [m]
+/// Tolerances, per asked tolerance, within which set-ups for a correction of Z are sought: for the rake, and for spiral
+/// angle and core. A correction changes core and edge so much that other set-ups may suit it.
+constexpr double kRakeForCorrection = 4, kOthersForCorrection = 0.8;
 
 // Decimals in a file. The rake changes by up to 1/R per height (0.0006 deg for 10 nm at a radius of 1 mm), and by a few
 // times the change of the swivel.
@@ -253,7 +256,14 @@ bool isAccepted(const JudgedFlute& found, const GrindJob& job, std::optional<Set
 
 FoundFlute findFlute(const FluteRequest& request, const GrindJob& job) {
   const auto accepts = [&](const JudgedFlute& found) { return isAccepted(found, job, request.keep); };
-  return findFluteSetup(request, accepts);
+  FoundFlute found = findFluteSetup(request, accepts);
+  if (found.accepted || job.process().z_law == ZLaw::kPublished) return found;
+  FluteRequest wider = request;
+  wider.cutter.rake_tolerance *= kRakeForCorrection;
+  wider.cutter.spiral_tolerance *= kOthersForCorrection;
+  wider.cutter.core_tolerance *= kOthersForCorrection;
+  FoundFlute corrected = findFluteSetup(wider, accepts);
+  return corrected.accepted ? corrected : found;
 }
 
 std::variant<JobSetup, std::string> solveFluteSetup(const GrindJob& job, const Range& swivel,

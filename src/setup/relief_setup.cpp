@@ -31,11 +31,8 @@ constexpr double kAlongStep = 0.025;               ///< step along the rim towar
 constexpr double kWidest = 5;                      ///< maximum width of a rim, per end diameter
 constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
-constexpr int kPlacesOfWall = 12;     ///< intervals in which a flute's wall is straight enough
-constexpr std::size_t kAtOnce = 8;    ///< number of swivels tried at once
-constexpr std::size_t kRefined = 3;   ///< number of the best swivels that are refined
-constexpr int kRefinements = 7;       ///< steps between these swivels and their neighbours
-constexpr double kGolden = 0.618034;  ///< remaining fraction after each step
+constexpr int kPlacesOfWall = 12;   ///< intervals in which a flute's wall is straight enough
+constexpr std::size_t kAtOnce = 8;  ///< number of swivels tried at once
 constexpr int kPlacesOfRim = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -284,22 +281,6 @@ class Trials {
   std::vector<ReliefStart> starts_;   ///< starts of the relief on the lands
 };
 
-/// The best swivel between two others, if one in between is better than both.
-Tried refined(const Trials& trials, double from, double to, Tried best) {
-  for (int i = 0; i < kRefinements; ++i) {
-    const double middle = best.setup.swivel;
-    const bool above = to - middle > middle - from;
-    Tried beside = trials.best(middle + (1 - kGolden) * (above ? to - middle : from - middle));
-    if (beside.slack > best.slack) {
-      (above ? from : to) = middle;
-      best = std::move(beside);
-    } else {
-      (above ? to : from) = beside.setup.swivel;
-    }
-  }
-  return best;
-}
-
 }  // namespace
 
 ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const Range& swivel,
@@ -332,22 +313,12 @@ ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const R
   }
   const Tried nearest = all.front();
   const auto more_slack = [](const Tried& a, const Tried& b) { return a.slack > b.slack; };
-  std::stable_sort(all.begin(), all.end(), more_slack);
-  all.resize(std::min(kRefined, all.size()));
-  onAllCores(all.size(), [&](std::size_t i) {
-    const double middle = all[i].setup.swivel;
-    all[i] =
-        refined(trials, std::max(swivel.from, middle - kSwivelStep), std::min(swivel.to, middle + kSwivelStep), all[i]);
-  });
-  std::stable_sort(all.begin(), all.end(), more_slack);
-  for (Tried& best : all) {
-    if (trials.isConfirmed(best)) return best.setup;
-  }
-  all.resize(swivels.size());
-  onAllCores(all.size(), [&](std::size_t i) { all[i] = trials.anywhere(swivels[i]); });
-  std::stable_sort(all.begin(), all.end(), more_slack);
-  for (Tried& best : all) {
-    if (trials.isConfirmed(best)) return best.setup;
+  for (const bool anywhere : {false, true}) {
+    if (anywhere) onAllCores(all.size(), [&](std::size_t i) { all[i] = trials.anywhere(swivels[i]); });
+    std::stable_sort(all.begin(), all.end(), more_slack);
+    for (Tried& best : all) {
+      if (trials.isConfirmed(best)) return best.setup;
+    }
   }
   return nearest.setup;
 }

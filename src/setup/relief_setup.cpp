@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -21,18 +23,25 @@ namespace {
 
 using units::kDegree;
 
+constexpr double kSameAngle = 1e-9;
 constexpr double kSwivelStep = 2 * kDegree;
 constexpr double kReachMargin = 0.02;            ///< ample margin of the rim beyond the relief's end, per end diameter
 constexpr double kNextEdgeMargin = 1 * kDegree;  ///< ample angle of the wheel from the next edge
-constexpr double kLeastMargin = 0.02;            ///< fraction of the margin that must be left: a file is rounded
-constexpr double kHopeless = -5 * kDegree;       ///< angle from the next edge below which nothing else is measured
+/// The fraction of the margin that must be left, above the rounding of a file, and the fractions that are tried if
+/// there is no room for all of it.
+constexpr double kLeastMargin = 0.02, kLessMargins[] = {0.1, 0.25, 0.5};
+constexpr double kHopeless = -5;                   ///< slack below which nothing else is measured
+constexpr int kCornerHalvings = 5;                 ///< halvings of a corner, a part of which may grind the land's end
 constexpr double kLeastClearance = 0.5 * kDegree;  ///< minimum clearance at the land's end
 constexpr double kAlongStep = 0.025;               ///< step along the rim toward the land's end, per end diameter
 constexpr double kWidest = 5;                      ///< maximum width of a rim, per end diameter
 constexpr int kHalvings = 40;
 constexpr int kSectionsOfFlute = 3;
-constexpr int kPlacesOfWall = 12;   ///< intervals in which a flute's wall is straight enough
-constexpr std::size_t kAtOnce = 8;  ///< number of swivels tried at once
+constexpr int kPlacesOfWall = 12;     ///< intervals in which a flute's wall is straight enough
+constexpr std::size_t kAtOnce = 8;    ///< number of swivels tried at once
+constexpr std::size_t kRefined = 3;   ///< number of the best swivels that are refined
+constexpr int kRefinements = 7;       ///< steps between these swivels and their neighbours
+constexpr double kGolden = 0.618034;  ///< remaining fraction after each step
 constexpr int kPlacesOfRim = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -52,12 +61,18 @@ struct Land {
   }
 };
 
-/// One of the teeth of each kind of land.
 std::vector<std::size_t> unlikeTeeth(const GroundCutter& cutter) {
+  const auto& teeth = cutter.teeth();
+  std::vector<std::tuple<std::size_t, std::size_t, double>> seen;
   std::vector<std::size_t> unlike;
-  for (std::size_t i = 0; i < cutter.teeth().size(); ++i) {
-    const auto alike = [&](std::size_t other) { return cutter.landsAreAlike(i, other); };
-    if (std::none_of(unlike.begin(), unlike.end(), alike)) unlike.push_back(i);
+  for (std::size_t i = 0; i < teeth.size(); ++i) {
+    for (const std::size_t next : {(i + 1) % teeth.size(), (i + teeth.size() - 1) % teeth.size()}) {
+      const double turn = std::remainder(teeth[next].angle - teeth[i].angle, units::kTurn);
+      const auto tooth = std::make_tuple(teeth[i].flute, teeth[next].flute, std::round(turn / kSameAngle));
+      if (std::find(seen.begin(), seen.end(), tooth) != seen.end()) continue;
+      seen.push_back(tooth);
+      if (unlike.empty() || unlike.back() != i) unlike.push_back(i);
+    }
   }
   return unlike;
 }
@@ -108,6 +123,8 @@ std::optional<double> reachTo(const ReliefPath& path, double x, double diameter,
 struct Tried {
   ReliefSetup setup;
   double slack = -kInfinity;  ///< minimum of its margins, relative to ample ones; 0 or less if it is refused
+  double next_edge_slack = -kInfinity;
+  bool has_heel = false;
 };
 
 /// Tries set-ups of a relief.
@@ -131,12 +148,16 @@ class Trials {
     best.setup.swivel = swivel;
     try {
       const Needs needs = needsAt(swivel);
+      const double whole = kReachMargin * job_.cutter.end_diameter;
       const auto take = [&](Tried tried) {
         if (tried.slack > best.slack) best = std::move(tried);
       };
-      take(at(swivel, needs, 1));
+      take(at(swivel, needs, whole, whole));
       if (best.slack >= 1) return best;
-      take(at(swivel, needs, kLeastMargin));
+      const double least = leastMargin(swivel, needs, whole);
+      take(at(swivel, needs, least, whole));
+      if (!(best.slack > 0)) return best;
+      for (const double part : kLessMargins) take(at(swivel, needs, least + part * whole, whole));
     } catch (const std::invalid_argument& error) {
       if (best.setup.refused.empty()) best.setup.refused = error.what();
     }
@@ -156,9 +177,10 @@ class Trials {
         wheel.height = tried.setup.height = ReliefPath::heightFor(teeth_[0], starts_[0], wheel, along);
         tried.setup.width = ReliefPath(teeth_[0], starts_[0], wheel).reach();
         measure(tried, 1, true);
-        if (tried.slack > best.slack) best = std::move(tried);
-      } catch (const std::invalid_argument&) {  // an edge is not on the rim
+      } catch (const std::invalid_argument&) {
+        continue;  // an edge is not on the rim
       }
+      if (tried.slack > best.slack) best = std::move(tried);
     }
     return best;
   }
@@ -186,6 +208,7 @@ class Trials {
     for (std::size_t i = 0; i < lands_.size(); ++i) {
       const Land& land = lands_[i];
       ReliefWheel wide = wheelAt(swivel);
+      wide.width = 2 * kWidest * diameter;
       wide.corner_radius = {};
       wide.height = ReliefPath::heightFor(teeth_[i], starts_[i], wide, 0);
       const ReliefPath path(teeth_[i], starts_[i], wide);
@@ -211,12 +234,50 @@ class Trials {
     return wheel;
   }
 
-  /// @param margin margin of the rim beyond the lands' ends, relative to an ample one.
-  Tried at(double swivel, const Needs& needs, double margin) const {
+  /// A height with which the rim reaches over every land, and its reach over the land that needs most.
+  std::pair<double, double> heightAt(double swivel, const Needs& needs, double margin) const {
+    ReliefWheel wheel = wheelAt(swivel);
+    const auto reaches = [&](double height) {
+      wheel.height = height;
+      for (std::size_t i = 0; i < lands_.size(); ++i) {
+        if (!(ReliefPath(teeth_[i], starts_[i], wheel).reach() >= needs.reach[i] + margin - kSameReach)) return false;
+      }
+      return true;
+    };
+    // The teeth of one helix need the same height for the same reach.
+    std::vector<std::size_t> by_need(lands_.size());
+    std::iota(by_need.begin(), by_need.end(), 0);
+    std::stable_sort(by_need.begin(), by_need.end(),
+                     [&](std::size_t a, std::size_t b) { return needs.reach[a] > needs.reach[b]; });
+    for (const std::size_t i : by_need) {
+      const double reach = std::max(0.0, needs.reach[i] + margin);
+      const double height = ReliefPath::heightForReach(teeth_[i], starts_[i], wheel, reach);
+      if (reaches(height)) return {height, reach};
+    }
+    throw std::invalid_argument("no height has every edge on the rim, and the rim over every land");
+  }
+
+  /// The minimum margin of the rim with which the relief reaches every heel. Negative if a corner of the wheel grinds
+  /// the land's end.
+  double leastMargin(double swivel, const Needs& needs, double whole) const {
+    const double rounding = kLeastMargin * whole;
+    const double corner = std::max(job_.process().wheel_corner_radius_lower, job_.process().wheel_corner_radius_upper);
+    if (land_ > 0 || corner == 0) return rounding;
+    double low = -corner, high = rounding;
+    if (!(at(swivel, needs, low, whole).next_edge_slack > 0)) return rounding;
+    for (int i = 0; i < kCornerHalvings; ++i) {
+      const double middle = (low + high) / 2;
+      (at(swivel, needs, middle, whole).has_heel ? high : low) = middle;
+    }
+    return high + rounding;
+  }
+
+  /// @param margin margin of the rim beyond the lands' ends [m].
+  /// @param whole ample margin [m].
+  Tried at(double swivel, const Needs& needs, double margin, double whole) const {
     Tried tried;
     tried.setup.swivel = swivel;
-    const auto land = std::max_element(needs.reach.begin(), needs.reach.end());
-    const double whole = kReachMargin * job_.cutter.end_diameter, most = *land + margin * whole;
+    const double most = *std::max_element(needs.reach.begin(), needs.reach.end()) + margin;
     const ReliefWheel wheel = wheelAt(swivel);
     const double rim = wheel.width - wheel.corner_radius[0] - wheel.corner_radius[1];
     if (most > rim) {
@@ -225,12 +286,9 @@ class Trials {
                             figure(rim, Unit::kMetre);
       return tried;
     }
-    // The teeth of one helix need the same height for the same reach.
-    const auto i = static_cast<std::size_t>(land - needs.reach.begin());
-    tried.setup.height = ReliefPath::heightForReach(teeth_[i], starts_[i], wheel, most);
-    tried.setup.width = most;
+    std::tie(tried.setup.height, tried.setup.width) = heightAt(swivel, needs, margin);
     tried.setup.land_end_clearance = needs.clearance;
-    measure(tried, margin);
+    measure(tried, margin / whole);
     return tried;
   }
 
@@ -239,13 +297,14 @@ class Trials {
   void measure(Tried& tried, double margin, bool good_only = false) const {
     const GroundCutter cutter = groundCutterOf(jobWith(tried.setup));
     const CutterGeometry& c = job_.cutter;
-    bool has_heel = true;
-    double next_edge = kInfinity, core_slack = kInfinity;
+    tried.has_heel = true;
+    tried.next_edge_slack = kInfinity;
+    double core_slack = kInfinity;
     for (const Land& land : lands_) {
       const ReliefSection relief = measureRelief(cutter, land.section, land.tooth, cutter.reliefs(land.tooth));
-      has_heel = has_heel && (land_ > 0 || relief.heel);
-      next_edge = std::min(next_edge, relief.next_edge);
-      if (next_edge < (good_only ? 0 : kHopeless) || (good_only && !has_heel)) break;
+      tried.has_heel = tried.has_heel && (land_ > 0 || relief.heel);
+      tried.next_edge_slack = std::min(tried.next_edge_slack, relief.next_edge / kNextEdgeMargin);
+      if (tried.next_edge_slack < (good_only ? 0 : kHopeless) || (good_only && !tried.has_heel)) break;
       const double core = 2 * relief.core_radius, least = askedCore(c, land.section.x) - c.core_tolerance;
       const double slack = (core - least) / c.core_tolerance;
       if (core >= std::min(least, 2 * land.section.core_radius) || slack >= core_slack) continue;
@@ -254,14 +313,16 @@ class Trials {
                             " at X = " + figure(land.section.x, Unit::kMetre) + "; allowed: from " +
                             figure(least, Unit::kMetre);
     }
-    tried.setup.next_edge = next_edge;
-    tried.slack = std::min(next_edge / kNextEdgeMargin, core_slack);
-    if (next_edge <= 0) {
-      tried.setup.refused = "the wheel reaches " + figure(-next_edge, Unit::kRadian) + " beyond the next edge";
-    } else if (!has_heel) {
+    tried.setup.next_edge = tried.next_edge_slack * kNextEdgeMargin;
+    tried.slack = std::min(tried.next_edge_slack, core_slack);
+    if (tried.setup.next_edge <= 0) {
+      tried.setup.refused =
+          "the wheel reaches " + figure(-tried.setup.next_edge, Unit::kRadian) + " beyond the next edge";
+    } else if (!tried.has_heel) {
       tried.setup.refused = "the relief ends on the land";
     }
-    tried.slack = std::min(tried.slack, has_heel ? margin : -kLeastMargin);
+    // Where a corner grinds the land's end, the margin is the part above the minimum.
+    tried.slack = std::min(tried.slack, tried.has_heel ? std::max(margin, kLeastMargin) : -kLeastMargin);
   }
 
   ValidJob jobWith(const ReliefSetup& setup) const {
@@ -272,6 +333,8 @@ class Trials {
     return ValidJob(std::move(job)).withEdges(flutes_, edges_);
   }
 
+  static constexpr double kSameReach = 1e-12;  ///< [m]
+
   const GrindJob& job_;
   const ValidJob& flutes_;
   const std::vector<EdgeHelix> edges_;
@@ -280,6 +343,22 @@ class Trials {
   std::vector<ConicalCutter> teeth_;  ///< teeth of the lands
   std::vector<ReliefStart> starts_;   ///< starts of the relief on the lands
 };
+
+/// The best swivel between two others, if one in between is better than both.
+Tried refined(const Trials& trials, double from, double to, Tried best) {
+  for (int i = 0; i < kRefinements; ++i) {
+    const double middle = best.setup.swivel;
+    const bool above = to - middle > middle - from;
+    Tried beside = trials.best(middle + (1 - kGolden) * (above ? to - middle : from - middle));
+    if (beside.slack > best.slack) {
+      (above ? from : to) = middle;
+      best = std::move(beside);
+    } else {
+      (above ? to : from) = beside.setup.swivel;
+    }
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -313,12 +392,22 @@ ReliefSetup findReliefSetup(const GrindJob& job, const ValidJob& flutes, const R
   }
   const Tried nearest = all.front();
   const auto more_slack = [](const Tried& a, const Tried& b) { return a.slack > b.slack; };
-  for (const bool anywhere : {false, true}) {
-    if (anywhere) onAllCores(all.size(), [&](std::size_t i) { all[i] = trials.anywhere(swivels[i]); });
-    std::stable_sort(all.begin(), all.end(), more_slack);
-    for (Tried& best : all) {
-      if (trials.isConfirmed(best)) return best.setup;
-    }
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  all.resize(std::min(kRefined, all.size()));
+  onAllCores(all.size(), [&](std::size_t i) {
+    const double middle = all[i].setup.swivel;
+    all[i] =
+        refined(trials, std::max(swivel.from, middle - kSwivelStep), std::min(swivel.to, middle + kSwivelStep), all[i]);
+  });
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  for (Tried& best : all) {
+    if (trials.isConfirmed(best)) return best.setup;
+  }
+  all.resize(swivels.size());
+  onAllCores(all.size(), [&](std::size_t i) { all[i] = trials.anywhere(swivels[i]); });
+  std::stable_sort(all.begin(), all.end(), more_slack);
+  for (Tried& best : all) {
+    if (trials.isConfirmed(best)) return best.setup;
   }
   return nearest.setup;
 }

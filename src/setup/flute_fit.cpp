@@ -15,7 +15,6 @@ constexpr double kMost = 0.9;          ///< fraction of a tolerance beyond which
 constexpr double kPull = 0.1;          ///< weight of an error within its tolerance
 constexpr double kPullOfChord = 0.01;  ///< a chord may differ from the tangent: the rake at the edge comes first
 constexpr double kLand = 0.01;         ///< land below which it counts as an error, as a fraction of the end diameter
-constexpr double kExact = 1e-6;        ///< errors at which a fit ends
 constexpr double kNoGain = 1e-2;       ///< relative gain of a step below which a fit ends
 /// Step of a numerical derivative, per unit of the figure: large enough that the positions of extrema, known to 1e-8,
 /// cause no noise in a difference.
@@ -46,7 +45,7 @@ class Fit {
     Eigen::VectorXd errors = residuals(trial_, point, sections_);
     if (!errors.allFinite()) return std::nullopt;
     double damping = kDamping;
-    for (int i = 0; i < most && errors.cwiseAbs().maxCoeff() > kExact; ++i) {
+    for (int i = 0; i < most; ++i) {
       const double before = errors.norm();
       if (!step(point, errors, damping) || errors.norm() > (1 - kNoGain) * before) break;
     }
@@ -85,9 +84,6 @@ class Fit {
     for (;;) {
       Eigen::MatrixXd squares = by_figure.transpose() * by_figure;
       squares.diagonal() *= 1 + damping;
-      for (Eigen::Index k = 0; k < count(); ++k) {
-        if (squares(k, k) == 0) squares(k, k) = 1;
-      }
       const Eigen::VectorXd all = step + squares.ldlt().solve(-by_figure.transpose() * errors);
       bool stays = true;
       for (Eigen::Index k = 0; k < count() && stays; ++k) {

@@ -10,8 +10,7 @@ namespace grinder {
 
 namespace {
 
-constexpr double kFormedByFace = 0.2;  ///< fraction of the rake face's depth that the wheel's face or edge should form
-constexpr double kBelowEdge = 0.998;   ///< fraction of the radius at which the rake face still has the edge's rake
+constexpr double kBelowEdge = 0.998;  ///< fraction of the radius at which the rake face still has the edge's rake
 constexpr double kSameFace = 2 * units::kDegree;
 constexpr double kSameError = 0.2;  ///< difference of equal errors, per tolerance
 constexpr double kSameChord = 0.25;
@@ -22,7 +21,7 @@ constexpr double kBeyond = 1e-5;   ///< addition to the overtravel, for the prec
 void measureReach(const FluteTrial& trial, const WheelSweep& longest, JudgedFlute& judged) {
   const double length = trial.cutter().cone().flute_length, tan_cone = trial.cutter().tanCone();
   auto& [end, shank] = judged.overtravel;
-  for (const double x : {0.0, length / 2, length}) {
+  for (const double x : {0.0, length}) {
     const Range reach = trial.reach(longest, x);
     end = std::max(end, -reach.from);
     shank = std::max(shank, reach.to - length);
@@ -58,7 +57,6 @@ JudgedFlute judge(const FluteTrial& trial, const SetupPoint& point) {
   for (int i = 0; i <= kFluteSections; ++i) {
     const double x = c.flute_length * i / kFluteSections;
     judged.is_facet = judged.is_facet || isFacet(sweep, x, trial.cutter().radius(x));
-    judged.formed_by_face = std::min(judged.formed_by_face, trial.formedByFace(sweep, x));
   }
   measureReach(trial, sweep, judged);
   return judged;
@@ -66,8 +64,8 @@ JudgedFlute judge(const FluteTrial& trial, const SetupPoint& point) {
 
 bool isBetter(const JudgedFlute& a, const JudgedFlute& b) {
   const auto order = [](const JudgedFlute& j) {
-    return std::tuple(!(j.land > 0), j.cut_short, j.is_facet, !(j.formed_by_face >= kFormedByFace),
-                      std::floor(j.error / kSameError), std::floor(j.chord / kSameChord), j.away);
+    return std::tuple(!(j.land > 0), j.cut_short, j.is_facet, std::floor(j.error / kSameError),
+                      std::floor(j.chord / kSameChord), j.away);
   };
   return order(a) < order(b);
 }

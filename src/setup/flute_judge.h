@@ -16,7 +16,6 @@ struct JudgedFlute {
   double error = 0;                    ///< maximum error over the flute but of the chord, per tolerance
   double land = 0;                     ///< minimum land over the flute, per end diameter
   double chord = 0;                    ///< maximum error of the chordal rake, per tolerance
-  double formed_by_face = 1;           ///< minimum over the flute, as a fraction of the rake face's depth
   double away = 0;                     ///< angle between swivel and spiral angle [rad], plus depth per radius
 };
 
@@ -25,9 +24,9 @@ constexpr int kFluteSections = 8;  ///< intervals between the sections in which 
 /// @param point a set-up that gives a tool.
 JudgedFlute judge(const FluteTrial& trial, const SetupPoint& point);
 
-/// Whether one set-up is better than another: with a land, a complete flute, no facet, a rake face that the wheel's
-/// face or edge forms, nearer to the asked values, then shallower and with the swivel nearer to the spiral angle.
-/// Differences that cannot be measured on the tool do not count.
+/// Whether one set-up is better than another: with a land, a complete flute, no facet, nearer to the asked values, then
+/// shallower and with the swivel nearer to the spiral angle. Differences that cannot be measured on the tool do not
+/// count.
 bool isBetter(const JudgedFlute& a, const JudgedFlute& b);
 
 }  // namespace grinder

@@ -178,30 +178,11 @@ class Search {
   std::vector<SetupPoint> seen_;  ///< set-ups that were judged
 };
 
-/// Starts near the set-up without the figure that stays, but with that figure set.
-std::vector<SetupPoint> startsBesideFree(FluteRequest request) {
-  const auto keep = std::exchange(request.keep, std::nullopt);
-  if (!keep) return {};
-  const FluteTrial trial(request);
-  Search search(trial, [](const JudgedFlute&) { return true; });
-  search.findFrom(startsOf(trial, kFirstSwivels, kHeights));
-  const FoundFlute found = std::move(search).result();
-  if (!found.best) return {};
-  SetupPoint point = found.best->point;
-  switch (*keep) {
-    case SetupFigure::kSwivel: point.swivel = request.kept.swivel; break;
-    case SetupFigure::kHeight: point.height = request.kept.height; break;
-    case SetupFigure::kDepth: point.depth = request.kept.depth; break;
-  }
-  return {point};
-}
-
 /// @param everywhere whether to start from all swivels and heights if the first ones fail.
 FoundFlute found(const FluteRequest& request, const AcceptsFlute& accepts, bool everywhere) {
   const FluteTrial trial(request);
   Search search(trial, accepts);
-  if (!search.findFrom(startsBesideFree(request)) && !search.findFrom(startsOf(trial, kFirstSwivels, kHeights)) &&
-      everywhere) {
+  if (!search.findFrom(startsOf(trial, kFirstSwivels, kHeights)) && everywhere) {
     std::vector<SetupPoint> starts = startsOf(trial, kFirstSwivels, kMoreHeights);
     for (const SetupPoint& start : startsOf(trial, kOtherSwivels, kHeights)) starts.push_back(start);
     search.findFrom(starts);

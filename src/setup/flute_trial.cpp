@@ -12,13 +12,11 @@ namespace {
 constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
 constexpr double kOfApex = 0.98;   ///< fraction of the way to the apex that the stroke may go
 constexpr double kShortOf = 0.01;  ///< fraction of the way to where a flute is spoilt, by which a stroke ends earlier
-constexpr int kWallRings = 10;     ///< rings of a wall on which its forming surface is determined
 constexpr int kRingsOfReach = 6;
 constexpr double kFloor = 1e-5;  ///< fraction of the depth at which a wall passes into the floor
 constexpr double kCylinder = 1e-6;
 constexpr double kMinSpiral = 1e-3;  ///< spiral angle below whose tangent a shift along X has no effect
 constexpr double kMinDepth = 1e-6;   ///< minimum depth of a job [m]
-constexpr double kOnFace = 1e-8;     ///< distance below the edge that still counts as the edge [m]
 
 Eigen::ArrayXd arrayOf(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
@@ -109,15 +107,6 @@ FluteErrors FluteTrial::errors(const SetupPoint& p, int sections) const {
     x_before = x;
   }
   return {arrayOf(asked), arrayOf(chords), arrayOf(lands)};
-}
-
-double FluteTrial::formedByFace(const WheelSweep& sweep, double x) const {
-  const double r = cutter_.radius(x), depth = r - sweep.minRadius(x, r), from = request_.wheel.maxPlace().to - kOnFace;
-  for (int i = 0; i < kWallRings; ++i) {
-    const auto wall = sweep.wall(x, r - depth * i / kWallRings, true);
-    if (!wall || wall->w < from) return static_cast<double>(i) / kWallRings;
-  }
-  return 1;
 }
 
 Range FluteTrial::reach(const WheelSweep& sweep, double x) const {

@@ -75,10 +75,6 @@ class FluteTrial {
   /// @param sections intervals between sections; a cylinder has one section.
   FluteErrors errors(const SetupPoint& point, int sections) const;
 
-  /// The fraction of the rake face's depth that the wheel's upper face and edge form in a section, from the outer
-  /// circle inward.
-  double formedByFace(const WheelSweep& sweep, double x) const;
-
   /// The range of the stroke in which a section's walls are formed [m].
   Range reach(const WheelSweep& sweep, double x) const;
 

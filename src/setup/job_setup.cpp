@@ -22,7 +22,6 @@ namespace {
 
 constexpr int kMaxLengthenings = 4;  ///< maximum number of times that the overtravel is lengthened
 constexpr double kSpare = 2e-5;      ///< addition for the precision of the required overtravel [m]
-constexpr double kRoom = 0.02;       ///< additional overtravel for a law of Z, as a fraction of the flute's length
 /// Tolerances, per asked tolerance, within which set-ups for a correction of Z are sought: for the rake, and for spiral
 /// angle and core. A correction changes core and edge so much that other set-ups may suit it.
 constexpr double kRakeForCorrection = 4, kOthersForCorrection = 0.8;
@@ -39,18 +38,10 @@ double rounded(double value, double scale, int decimals) {
   return std::round(value / scale * unit) / unit * scale;
 }
 
-/// A number as written to a file, without trailing zeros.
-std::string textOf(double value, double scale, int decimals) {
-  std::string number = format("%.*f", decimals, value / scale);
-  number.erase(number.find_last_not_of('0') + 1);
-  if (number.back() == '.') number.pop_back();
-  return number == "-0" ? "0" : number;
-}
-
 /// What would make the tool possible, for the operator.
 std::string textOf(const FluteRemedy& remedy, const GrindProcess& p) {
   const auto figure = [](const char* path, double value) {
-    return fieldName(path) + " = " + textOf(value, units::kMillimetre, 3);
+    return fieldName(path) + " = " + format("%g", std::round(value / units::kMicrometre) / 1000);
   };
   const auto& [core, end] = remedy.core_diameter;
   if (remedy.less_diameter > 0) return figure("process.wheel_diameter", p.wheel_diameter - remedy.less_diameter);
@@ -123,19 +114,9 @@ void take(const JudgedFlute& found, std::optional<SetupFigure> keep, JobSetup& s
   if (keep != SetupFigure::kSwivel) p.setup_swivel = rounded(hand * point.swivel, units::kDegree, kAngleDecimals);
   if (keep != SetupFigure::kHeight) p.setup_height = millimetres(hand * point.height);
   // A flute of constant depth needs no depth at its end.
-  if (p.depth_end > 0 || point.taper != 0) {
-    p.depth_end = millimetres(point.depth - point.taper * setup.job.cutter.flute_length);
-  }
+  p.depth_end = point.taper == 0 ? 0 : millimetres(point.depth - point.taper * setup.job.cutter.flute_length);
   p.setup_x_shift = millimetres(point.x_shift);
   setup.overtravel = found.overtravel;
-  takeOvertravel(setup);
-}
-
-/// Lengthens the overtravel by more than a law of Z needs: an incomplete flute may have no such law.
-void giveRoom(JobSetup& setup) {
-  for (double& beyond : setup.overtravel) {
-    if (beyond > 0) beyond += kRoom * setup.job.cutter.flute_length;
-  }
   takeOvertravel(setup);
 }
 
@@ -259,13 +240,7 @@ JobSetup setupWith(const JudgedFlute& found, const GrindJob& job, std::optional<
   setup.job = job;
   take(found, keep, setup);
   for (int i = 0;; ++i) {
-    try {
-      setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
-    } catch (const ReasonError&) {  // no law of Z
-      if (i > 0) throw;
-      giveRoom(setup);
-      continue;
-    }
+    setup.check = checkGroundCutter(withLaws(ValidJob(setup.job)));
     if (i == kMaxLengthenings || !lengthenOvertravel(found, setup)) return setup;
   }
 }

@@ -17,24 +17,19 @@ using units::kMillimetre;
 constexpr Range kSwivel{-60 * kDegree, 60 * kDegree};
 constexpr double kNarrow = 2;  ///< rim that reaches no heel: the wheel's face takes the rest [mm]
 
-/// The flutes of a job with a primary relief, and with a secondary one if a land is given.
+/// The flutes of a job with a primary relief.
 struct Tool {
   GrindJob job;
 
   /// @param clearance [deg]. @param width of the reliefs' wheel [mm].
-  Tool(const std::string& file, double clearance, double width, double land = 0, double second_clearance = 0)
-      : job(readJobFile(file)) {
+  Tool(const std::string& file, double clearance, double width) : job(readJobFile(file)) {
     job.cutter.clearance = clearance * kDegree;
     job.cutter.clearance_tolerance = 0.5 * kDegree;
-    job.cutter.land = land * kMillimetre;
-    job.cutter.second_clearance = second_clearance * kDegree;
     GrindProcess relief;
     relief.kind = OperationKind::kPrimaryRelief;
     relief.feed = 5e-3, relief.infeed = 0.1e-3, relief.clearance = 4e-3;
     relief.wheel_diameter = 100 * kMillimetre, relief.wheel_width = width * kMillimetre;
     job.operations.push_back(relief);
-    relief.kind = OperationKind::kSecondaryRelief;
-    if (land > 0) job.operations.push_back(relief);
     job = job.ofOperation(1);
   }
 
@@ -69,8 +64,8 @@ TEST(ReliefSetup, ReachesEveryHeelAndNoNextEdge) {
     EXPECT_EQ(setup.land_end_clearance.has_value(), width > kNarrow);
     tool.take(setup);
     const GroundCutter relieved = tool.relieved();
-    for (int i = 0; i <= 10; ++i) {
-      const GroundSection section = relieved.section(tool.job.cutter.flute_length * i / 10);
+    for (int i = 0; i <= 4; ++i) {
+      const GroundSection section = relieved.section(tool.job.cutter.flute_length * i / 4);
       for (const ToothSection& tooth : section.teeth) {
         const ReliefSection& relief = tooth.relief.value();
         ASSERT_TRUE(relief.heel) << section.x;
@@ -87,6 +82,7 @@ TEST(ReliefSetup, TakesTheSwivelNearestToTheFlutes) {
   const Tool easy("jobs/roughing_d10_t4.yaml", 10, 6);
   const double near = easy.flutes()->process().setup_swivel;
   EXPECT_EQ(easy.find().swivel, near);
+  EXPECT_LE(findReliefSetup(easy.job, easy.flutes(), {10 * kDegree, 20 * kDegree}, {}).swivel, 20 * kDegree);
 
   const Tool far("jobs/taper_d6_t6.yaml", 10, 3);
   const double near_far = far.flutes()->process().setup_swivel;
@@ -94,6 +90,19 @@ TEST(ReliefSetup, TakesTheSwivelNearestToTheFlutes) {
   ASSERT_EQ(setup.refused, "");
   EXPECT_LT(setup.swivel, near_far - 2 * kDegree);
   EXPECT_NE(far.find(near_far).refused, "");
+  const std::string refused = Tool("jobs/taper_d6_t6.yaml", 10, 5).find(near_far).refused;
+  EXPECT_NE(refused.find("beyond the next edge"), std::string::npos) << refused;
+  EXPECT_EQ(refused.find('-'), std::string::npos) << refused;
+
+  GrindJob mirrored = far.job;
+  mirrored.cutter.cut = CutDirection::kLeftHand;
+  mirrored.cutter.spiral_angle *= -1;
+  for (GrindProcess& p : mirrored.operations) p.setup_swivel *= -1, p.setup_height *= -1;
+  mirrored = mirrored.ofOperation(1);
+  const ValidJob left = withLaws(ValidJob(mirrored.ofOperation(0)));
+  const ReliefSetup other = findReliefSetup(mirrored, left, kSwivel, {});
+  EXPECT_NEAR(other.swivel, -setup.swivel, 1e-9);
+  EXPECT_NEAR(other.height, -setup.height, 1e-9);
 }
 
 TEST(ReliefSetup, SaysWhatIsInTheWay) {
@@ -109,17 +118,18 @@ TEST(ReliefSetup, KeepsTheCore) {
   Tool good = tool;
   good.take(setup);
   const GroundCutter relieved = good.relieved();
-  for (int i = 0; i <= 10; ++i) {
-    EXPECT_GT(2 * relieved.section(tool.job.cutter.flute_length * i / 10).core_radius, least);
+  for (int i = 0; i <= 4; ++i) {
+    EXPECT_GT(2 * relieved.section(tool.job.cutter.flute_length * i / 4).core_radius, least);
   }
   const ReliefSetup other = tool.find(tool.flutes()->process().setup_swivel - 4 * kDegree);
   EXPECT_NE(other.refused.find("the wheel leaves a core of 4."), std::string::npos) << other.refused;
   EXPECT_NE(other.refused.find("allowed: from 6.79 mm"), std::string::npos) << other.refused;
 }
 
-// A second relief goes on where the first is as wide as asked.
+// A second relief goes on where the first is as wide as asked, up to the heel, whatever follows.
 TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
-  Tool tool("jobs/roughing_d10_t4.yaml", 10, 6, 0.4, 20);
+  Tool tool("jobs/roughing_d10_t4.yaml", 10, 6);
+  tool.job = readJobFile("jobs/end_mill_d10_t4.yaml", "primary");
   const ReliefSetup first = tool.find();
   ASSERT_EQ(first.refused, "");
   tool.take(first);
@@ -128,7 +138,7 @@ TEST(ReliefSetup, OfTwoReliefsTheFirstIsAsWideAsAsked) {
   ASSERT_EQ(second.refused, "");
   tool.take(second);
   const GroundCutter relieved = tool.relieved();
-  for (const double x : {0.0, 10e-3, 22e-3}) {
+  for (const double x : {0.0, 10e-3, tool.job.cutter.flute_length}) {
     const ReliefSection relief = relieved.section(x).teeth[0].relief.value();
     EXPECT_NEAR(*relief.land, 0.4 * kMillimetre, 1e-6);
     EXPECT_NEAR(*relief.clearance / kDegree, 10, 0.02);

@@ -131,10 +131,11 @@ TEST_F(WrittenSetup, IsOneOfEachOperationInTurn) {
   write("primary");
   write("secondary");
   for (const char* operation : {"gash", "end_primary", "end_secondary", "chamfer"}) write(operation);
-  for (const OperationRow& row : kOperationKinds) {
-    const std::string operation = row.name;
-    const GrindProcess written = readJobFile(job_, operation).process();
-    const GrindProcess shipped = readJobFile("jobs/end_mill_d10_t4.yaml", operation).process();
+  const GrindJob all = readJobFile(job_, "1"), all_shipped = readJobFile("jobs/end_mill_d10_t4.yaml", "1");
+  ASSERT_EQ(all.operations.size(), std::size(kOperationKinds));
+  for (std::size_t i = 0; i < all.operations.size(); ++i) {
+    const GrindProcess &written = all.operations[i], &shipped = all_shipped.operations[i];
+    const char* const operation = toString(written.kind);
     EXPECT_EQ(written.setup_swivel, shipped.setup_swivel) << operation;
     EXPECT_EQ(written.setup_height, shipped.setup_height) << operation;
     EXPECT_EQ(written.depth, shipped.depth) << operation;

@@ -93,6 +93,7 @@ TEST(StraightSetup, HasTheSwivelOfThePlaneAndZeroAtTheEnd) {
     const JobSetup setup = solved(endJob(kind));
     const double swivel = swivels[static_cast<int>(kind) - static_cast<int>(OperationKind::kGash)] * kDegree;
     EXPECT_NEAR(setup.job.process().setup_swivel, swivel, kAngleRounding);
+    EXPECT_NEAR(std::remainder(setup.job.process().setup_swivel, 1e-4 * kDegree), 0, 1e-12);  // as in a file
     const ValidJob job = withLaws(ValidJob(setup.job));
     for (const double z : zOfTeeth(job)) EXPECT_NEAR(z, 0, kLengthRounding);
     EXPECT_EQ(setup.straight.value().last.to[kZ], zOfTeeth(job)[0]);
@@ -253,7 +254,7 @@ TEST(StraightSetup, IsOnTheSheet) {
          {"swivel           81.760 deg", "first tooth      A ", "last stroke      from X ", "passes           7 of",
           "0.967 mm across the plane", "The lower face grinds: X and Z are touched off with it.",
           "for D = 10 mm, 0.1 mm longer than the tool",
-          "rim              ends 1.397 mm past the cutter's axis, at Y -6.397 mm",
+          "rim              ends 1.397 mm past the cutter's axis, at Y -6.397 mm\n", "periphery taken  0.000 mm",
           "next tooth       0.05 mm from the rim", "swivel           8.240 deg from the end"});
   expect(
       sheet(OperationKind::kGash),

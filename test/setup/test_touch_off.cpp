@@ -208,7 +208,8 @@ TEST(TouchOff, ZCountsWhatTheSwivelLowersTheWheel) {
   }
 }
 
-TEST(TouchOff, WithoutAWheelFileTheWheelsPlaceIsNotKnown) {
+TEST(TouchOff, WithoutAWheelFileOrItsFlangeTheWheelsPlaceIsNotKnown) {
+  EXPECT_FALSE(wheelAboveSwivel(WheelFile{}, paper(), machine()));
   EXPECT_FALSE(wheelAboveSwivel(std::nullopt, paper(), machine()));
 }
 

@@ -78,13 +78,16 @@ TEST_F(Preparation, ComesBeforeThePowerAndOutsideTheLoop) {
 }
 
 TEST_F(Preparation, ThatFailsSaysWhyAndLeavesThePowerOff) {
-  std::atomic<int> failures{1};
+  std::atomic<int> calls{0};
   make(kForEver, [&] {
-    if (failures-- > 0) throw std::runtime_error("the brake does not open");
+    if (++calls == 1) throw std::runtime_error("the brake does not open");
+    if (calls == 2) throw 7;
   });
-  EXPECT_EQ(enable(), "enable refused: the drive is not ready: the brake does not open");
-  rig().runUnseen(100);
-  EXPECT_FALSE(isPowerOn());
+  for (const char* why : {"the brake does not open", "an exception that is no std::exception"}) {
+    EXPECT_EQ(enable(), std::string("enable refused: the drive is not ready: ") + why);
+    rig().runUnseen(100);
+    EXPECT_FALSE(isPowerOn());
+  }
   EXPECT_EQ(enable(), "accepted");
 }
 

@@ -146,7 +146,9 @@ TEST(ControlLoopFault, OfAThrowingWriteEndsTheJobInTheNextCycle) {
 TEST(ControlLoopFault, OfADriveThatThrowsWithoutPowerRefusesThePower) {
   Rig<FakeDrive> rig;
   rig.drive.on_read = [](FakeDrive&) { throw Thrown("no answer"); };
-  rig.run(3);
+  rig.cycle();
+  EXPECT_FALSE(rig.loop->status().position_valid);
+  rig.run(2);
   EXPECT_EQ(rig.drive.writes, 0) << "before the first reading 0 is no position";
   EXPECT_EQ(rig.last().state, S::kDisabled);
   EXPECT_EQ(rig.last().drive.fault_text.text(), "no answer (thrown by its read())");

@@ -40,6 +40,7 @@ TEST(InTheWork, LiftGoesStraightUpUntilItIsClear) {
     ASSERT_TRUE(sameBits(sample.command, Axes(from[kX], sample.command[kY], from[kZ], from[kA])));
     ASSERT_GE(sample.command[kY], rig.log[rig.log.size() - 2].command[kY]);
     ASSERT_FALSE(rig.drive.written_drive.spindle);
+    ASSERT_NEAR(sample.distance_to_go[kY], rig.loop->status().wheel.clear_y - sample.position[kY], 1e-12);
     rig.cycle();
   }
   EXPECT_EQ(rig.last().state, S::kReady);

@@ -204,6 +204,7 @@ TEST(DistanceToGo, OfAJobEndsWithEachMove) {
   int cycles = 0;
   while (rig.last().setpoint.move_index == stroke) {
     // This drive reaches each command in the next cycle.
+    ASSERT_EQ(rig.loop->status().place.move_index, (rig.log.end() - 2)->setpoint.move_index);
     const Axes expected = moves[rig.loop->status().place.move_index].to - rig.last().position;
     ASSERT_TRUE(((rig.last().distance_to_go - expected).abs() < 1e-12).all());
     ++cycles;

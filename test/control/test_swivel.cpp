@@ -80,6 +80,18 @@ TEST(Swivel, IsNotConfirmedAtAnAngleThatItCannotHave) {
   EXPECT_TRUE(std::isnan(loop.status().swivel.angle)) << "the refused request came back to life";
 }
 
+TEST(Swivel, IsConfirmedByTheStartOfAJobUnlessItIsMeasured) {
+  for (const bool measured : {false, true}) {
+    Unconfirmed rig;
+    if (measured) measure(rig, 32 * kDegree);
+    rig.cycle();
+    rig.stream.emplace(rig.paperStream());
+    ASSERT_TRUE(rig.loop->startJob({&*rig.stream, wheelOf(rig.stream->program()), true, true}));
+    EXPECT_EQ(rig.answerOf([&] { return rig.loop->startJobReply(); }).accepted, !measured);
+    EXPECT_EQ(rig.loop->status().swivel.angle, measured ? 32 * kDegree : kPaperSwivel);
+  }
+}
+
 TEST(Swivel, IsNotTurnedBeforeAJobHasEnded) {
   for (const S state :
        {S::kStarting, S::kRunning, S::kHolding, S::kHeld, S::kRetracting, S::kRetracted, S::kResuming, S::kCanceling}) {

@@ -116,6 +116,7 @@ TEST_P(JogFrom, AStepBeyondALimitIsRefusedWithTheLimit) {
   rig_.run(10);
   EXPECT_TRUE(atRestFrom(rig_.log, before_));
   EXPECT_EQ(rig_.last().state, GetParam());
+  EXPECT_TRUE(rig_.jog(on(kX, 0.01)).accepted) << "a refused step is no button that was pressed";
 }
 
 TEST_P(JogFrom, SpeedAndAxisAreChecked) {

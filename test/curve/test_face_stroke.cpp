@@ -226,11 +226,12 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
       if (passes) {
         EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, past, 1e-9);
       }
-      // The next edge, and what is under it on the plane, are outside a rim, or within a cup's.
+      // The next edge, or its place a half turn on, and what is under it on the plane, are outside a rim, or within a
+      // cup's.
       double nearest = right ? 1 : 0;
       for (int k = 0; k <= 500; ++k) {
         const double begin = passes ? from : 0, r = begin + (radius - begin) * k / 500;
-        const double turn = flankPose(normal, cut).tooth + hand * pitch;
+        const double turn = flankPose(normal, cut).tooth + hand * (passes ? std::min(pitch, kPi) : pitch);
         Vector3d place = turned({(radius - r) * std::tan(dish), r, 0}, turn, cut);
         for (int under = 0; under < 2; ++under) {
           const double beside = (place - face).cross(spindle).norm();

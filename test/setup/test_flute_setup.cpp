@@ -13,6 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <functional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -239,6 +242,42 @@ TEST(FluteSetup, WhatCannotBeHadComesWithThePlansReasonsAndAToolThatCan) {
   EXPECT_EQ(core_end, core);
   job.cutter.core_diameter = job.cutter.core_diameter_end = core * kMillimetre;
   expectWithinTolerances(solved(job, SetupFigure::kDepth).job);
+}
+
+GrindJob randomJob(int i, const std::function<double(double, double)>& uniform) {
+  Shop shop;
+  shop.diameter = uniform(3, 20);
+  shop.cone = i % 4 == 0 ? 0 : uniform(-2, 10);
+  shop.length = uniform(1, 3) * shop.diameter;
+  if (shop.cone < 0) shop.length = std::min(shop.length, -0.4 * shop.diameter / 2 / std::tan(shop.cone * kDegree));
+  shop.rake = uniform(0, 15);
+  shop.cut = uniform(0, 1) < 0.5 ? CutDirection::kRightHand : CutDirection::kLeftHand;
+  shop.spiral = uniform(5, 45) * (shop.cut == CutDirection::kRightHand ? 1 : -1);
+  shop.depth = uniform(0.15, 0.5) * shop.diameter / 2;
+  shop.wheel = uniform(50, 125);
+  shop.width = uniform(0.1, 0.5) * shop.diameter;
+  GrindJob job = jobFor(shop, 1 + static_cast<int>(uniform(0, 4)));
+  job.cutter.core_tolerance = 0.2 * shop.diameter * kMillimetre;
+  GrindProcess& p = job.process();
+  p.wheel_corner_radius_lower = uniform(0, 0.2) * p.wheel_width;
+  p.wheel_corner_radius_upper = uniform(0, 0.2) * p.wheel_width;
+  if (i % 5 < 2) p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
+  if (i % 5 == 3) p.wheel_profile = WheelShape::kAngled, p.wheel_angle = uniform(1, 30) * kDegree;
+  if (i % 5 == 4) {
+    p.wheel_profile = WheelShape::kFullRadius;
+    p.wheel_corner_radius_lower = p.wheel_corner_radius_upper = 0;
+  }
+  return job;
+}
+
+TEST(FluteSetup, RandomToolsAreSetWhereTheyCanBeHad) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  const int cases = std::min(test_support::randomCases(8), 12);  // for these there is a set-up
+  for (int i = 0; i < cases; ++i) {
+    SCOPED_TRACE(i);
+    expectWithinTolerances(solved(randomJob(i, uniform)).job);
+  }
 }
 
 }  // namespace test_flute_setup

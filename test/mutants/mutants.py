@@ -83,14 +83,16 @@ def configure():
 
 
 def arguments_of(module):
-    """The compiler's, of a module's sources."""
+    """The compiler's, of all of a module's sources together: some have definitions of their own."""
+    arguments = []
     for entry in json.loads((BUILD / 'compile_commands.json').read_text()):
         if '/src/%s/' % module in entry['file']:
             words = shlex.split(entry['command'])[1:]
-            resources = subprocess.run(['clang', '-print-resource-dir'], check=True, stdout=subprocess.PIPE)
-            return [w for w in words[:words.index('-o')] if re.match(r'-[ID]|-isystem|-std|/', w)] + \
-                ['-resource-dir', resources.stdout.decode().strip()]
-    raise SystemExit('no module ' + module)
+            arguments += [w for w in words[:words.index('-o')] if re.match(r'-[ID]|-isystem|-std|/', w)]
+    if not arguments:
+        raise SystemExit('no module ' + module)
+    resources = subprocess.run(['clang', '-print-resource-dir'], check=True, stdout=subprocess.PIPE)
+    return arguments + ['-resource-dir', resources.stdout.decode().strip()]
 
 
 def build_with(finder):

@@ -82,7 +82,10 @@ TEST(ClearOfWork, AWheelThatIndexesInAShankIsRefused) {
     EXPECT_EQ(reason.value, 0);
     EXPECT_EQ(reason.low, 0.5e-3);
     EXPECT_EQ(reason.limit, 0.25e-3);
-    EXPECT_EQ(reason.move, plan.program.moves().at(plan.closest->leg).kind);
+    const Move& move = plan.program.moves().at(plan.closest->leg);
+    EXPECT_EQ(reason.move, move.kind);
+    EXPECT_EQ(reason.tooth, move.tooth);
+    EXPECT_EQ(reason.pass, move.pass);
     EXPECT_FALSE(isAtFeed(reason.move));
   }
 }

@@ -166,10 +166,14 @@ TEST(CollisionCheck, RefusesWhatIsNoFigureAndAMachineThatDoesNotHoldTheCutter) {
   broken([&](CollisionJob& job) { job.shank_from = nan; });
   broken([&](CollisionJob& job) { job.stroke_end[kY] = nan; });
   broken([&](CollisionJob& job) { job.clearance = -1; });
+  broken([&](CollisionJob& job) { job.work_clearance = nan; });
+  broken([&](CollisionJob& job) { job.x_offset = nan; });
   broken([&](CollisionJob& job) { job.cutter.end_diameter = nan; });
   const CollisionCheck check(machine, plainJob());
   EXPECT_THROW(check.closest({}), std::invalid_argument);
   EXPECT_THROW(check.closest({axes(0, 0), axes(nan, 0)}), std::invalid_argument);
+  EXPECT_THROW(check.tooCloseToWork({axes(0, 0), axes(nan, 0)}, {true}), std::invalid_argument);
+  EXPECT_THROW(check.tooCloseToWork({axes(0, 0), axes(1e-3, 0)}, {}), std::invalid_argument);
   SmallMachine without_holder;
   without_holder.cutter = "";
   EXPECT_THROW(CollisionCheck(shapesOf(without_holder.urdf()), plainJob()), std::invalid_argument);

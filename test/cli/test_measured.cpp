@@ -6,6 +6,7 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
+#include "flute_grinder/record/correction.h"
 #include "flute_grinder/record/measured.h"
 #include "flute_grinder/tool/ground_job.h"
 #include "flute_grinder/tool/z_law.h"
@@ -17,6 +18,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace grinder {
@@ -187,14 +189,39 @@ TEST_F(MeasuredTools, SetNothingByAWrongEntry) {
 }
 
 TEST_F(MeasuredTools, NeedSomethingMeasuredOfTheFlutes) {
-  const auto refused = [&](const char* job, const char* operation) {
+  const auto refused = [&](const char* job, const char* operation, std::uint64_t since = 0) {
     return test_support::refusalOf<std::invalid_argument>(
-        [&] { grinder::correct("grinder", asking(job, operation, 0, false)); });
+        [&] { grinder::correct("grinder", asking(job, operation, since, false)); });
   };
   EXPECT_EQ(refused(kJob, ""), "no tool of this job and set-up is in the records");
   keep(1);
   EXPECT_EQ(refused(kJob, "").find("no tool has been measured since its zero points were found"), 0U);
+  EXPECT_EQ(refused(kJob, "", 2), "--since 2; allowed: up to 1, the last tool");
   EXPECT_EQ(refused("jobs/end_mill_d10_t4.yaml", "gash").find("operation = gash; allowed: flute, primary,"), 0U);
+}
+
+TEST_F(MeasuredTools, WearTheWheelThoughNobodyMeasuresThem) {
+  for (const int number : {1, 2, 3, 4}) grind(number, 4 * number, 0);
+  for (const int number : {5, 6, 7, 8}) keep(number);
+  EXPECT_NEAR(correct(0)["turn"]["y_mm"], -9 * 0.004, 0.006);
+}
+
+TEST(SettingsText, HasTheTurnOfTheSwivelByHand) {
+  SetupFindings found;
+  found.measured = 1;
+  found.last.offset = Turns::Zero();
+  Correction turns;
+  turns.by_swivel = true;
+  for (const auto& [turn, by] :
+       {std::pair(SetupTurn::kY, 12e-6), {SetupTurn::kZ, -4e-6}, {SetupTurn::kSwivel, -0.25 * units::kDegree}}) {
+    turns.turn[indexOf(turn)] = by;
+  }
+  EXPECT_EQ(
+      settingsText(found, turns),
+      "work offset of Y: +0.0120 mm, to 0.0120 mm\nwork offset of Z: -0.0040 mm, to -0.0040 mm\n"
+      "turn the swivel by -0.250 deg, at its scale or stop, and confirm the job's angle again; then use 'grind correct "
+      "--since'");
+  EXPECT_NEAR(mostTurns({1, 2, 3, 4})[indexOf(SetupTurn::kSwivel)], units::kDegree, 1e-12);
 }
 
 }  // namespace test_cli_measured

@@ -45,6 +45,7 @@ GrindJob shortJob() {
   job.process().depth_end = 0.8e-3;
   job.process().setup_x_shift = -15e-3;
   job.process().infeed = 0.6e-3;
+  job.process().wheel_wear = 0.01e-3;
   job.tooth_angles = {0, 3.1};
   job.spiral_angles = {job.cutter.spiral_angle, job.cutter.spiral_angle * 0.9};
   return job;
@@ -269,13 +270,20 @@ TEST_F(JobRecordTest, HoldsAndOverridesAreThoseOfTheCycles) {
 
 TEST_F(JobRecordTest, ReportsJobMachinePlanAndLateCycles) {
   makeCycles();
-  const Json record = recorded();
+  JobRecord made(plan_, kNames, {}, false);
+  give(made);
+  made.addLost(3);
+  made.conclude({"done", "", 5});
+  EXPECT_EQ(made.record("/grinder", kMachine, kTolerances).head.strokes, 4U);
+  const Json record = documentOf(made);
   Json expected = Json::parse(R"({
-    "grinder": "/grinder", "job": "short.yaml", "wheel": "wheel.yaml", "dressed": "2026-11-20", "passes": 4,
-    "outcome": "done", "omitted": 0})");
+    "grinder": "/grinder", "job": "short.yaml", "wheel": "wheel.yaml", "dressed": "2026-11-20", "wear_mm": 0.01,
+    "tool": "D 10 mm, cone 5 deg, spiral 30 deg, rake 8 deg, 2 teeth", "passes": 4, "lost": 3,
+    "outcome": "done", "omitted": 0, "not_ground": ""})");
   expected["digest"] = jobDigest(job_);
   expected["started"] = utcText(cycles_.front().sample.time);
   expected["ended"] = utcText(cycles_.back().sample.time);
+  expected["duration_s"] = std::round((timeOf(expected["ended"]) - timeOf(expected["started"])) * 1e3) / 1e3;
   const Json machine = Json::parse(R"({"name": "mill", "software": "1.2.3", "drive": "some/Drive", "period_ms": 1})"),
              planned = Json::parse(R"({"setpoints": 4321, "duration_s": 4.32, "max_deviation_um": 0.5})");
   for (const auto& [part, figures] :

@@ -20,6 +20,9 @@ Record record() {
   record.head.outcome = "done";
   record.head.strokes = 4;
   record.head.duration = 12.5;
+  record.head.holds = 3;
+  record.head.setpoints = 12500;
+  record.head.lost = 2;
   record.head.verdict = "incomplete";
   record.head.because = {"rake: not measured", "core \x1b"};
   record.body = {{"criteria", Json::array()}, {"not_ground", "by \x1b"}};
@@ -58,6 +61,9 @@ TEST_F(RecordFile, IsReadAsItWasWrittenAndIsOneObjectForOtherReaders) {
   EXPECT_EQ(toJson(readHead(path_)), toJson(read.head));
   EXPECT_EQ(read.head.strokes, 4U);
   EXPECT_EQ(read.head.duration, 12.5);
+  EXPECT_EQ(read.head.holds, 3U);
+  EXPECT_EQ(read.head.setpoints, 12500U);
+  EXPECT_EQ(read.head.lost, 2U);
   const Json whole = Json::parse(text(record()));
   EXPECT_EQ(whole["record"], 2);
   EXPECT_EQ(whole["head"]["outcome"], "done");
@@ -101,6 +107,7 @@ TEST_F(RecordFile, HeadThatLacksAFieldOrHasAnotherTypeNamesIt) {
 
 TEST_F(RecordFile, IsJudgedAgainByOtherTolerances) {
   Record kept = record();
+  kept.head.lost = 0;
   Criterion land{"land", "mm", true, 3, 0.05, {}, 0.3, false, "tooth 1", ""};
   Criterion rake{"rake", "deg", true, 3, 8, 0.5, 8.4, false, "tooth 1", ""};
   kept.body["criteria"] = toJson({land, rake});

@@ -195,7 +195,9 @@ TEST(GroundJob, FlutesThatMeetBelowTheLandAreRefused) {
     // Whichever way it is to the next tooth.
     for (const double narrow : {20.0, 340.0}) {
       job.tooth_angles = {0, narrow * kDegree};
-      EXPECT_NEAR(reasonOf(checked(job), ReasonKind::kLand).limit, 20 * kDegree, 1e-12);
+      const Reason of_two = reasonOf(checked(job), ReasonKind::kLand);
+      EXPECT_NEAR(of_two.limit, 20 * kDegree, 1e-12);
+      EXPECT_EQ(of_two.tooth, (cut == CutDirection::kRightHand) == (narrow < 180) ? 0 : 1);
     }
   }
 }

@@ -1,5 +1,6 @@
 #include "flute_grinder/curve/face_stroke.h"
 
+#include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 
 #include <Eigen/Geometry>
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 
 namespace grinder {
 
@@ -14,7 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kFaceSteps = 8;  ///< steps to the centre of a face, each of which finds it more exactly
+constexpr int kFaceSteps = 8;      ///< steps to the centre of a face, each of which finds it more exactly
+constexpr int kTurnHalvings = 60;  ///< halvings of the range of a centre's angle about the axis
+constexpr double kOnRim = 1e-9;    ///< tolerance for the place of a rim [m]
 /// Angle behind a tooth beyond which its flank ends even before the next tooth, unless its edge goes to the axis: where
 /// the next one is opposite, a rim that came to it would be far past the axis.
 constexpr double kWidestFlank = 140 * units::kDegree;
@@ -70,17 +74,24 @@ double distance(const std::array<InFace, 2>& line, const InFace& place) {
   return (place - line[0] - part * way).norm();
 }
 
+/// How far a place is from what the rim about it may not touch: the nearest of the next tooth, or for a cup, whose rim
+/// goes round that tooth, the farthest.
+double toNext(const NextTooth& next, const InFace& place, bool round) {
+  if (!round) return std::min(distance(next.lines[0], place), distance(next.lines[1], place));
+  double farthest = 0;
+  for (const auto& line : next.lines) {
+    for (const InFace& end : line) farthest = std::max(farthest, (end - place).norm());
+  }
+  return farthest;
+}
+
 /// The centre of the face of a wheel whose rim is outside the next tooth, as near to the axis as that allows.
 /// @param rim radius of the wheel, with the gap [m].
 InFace besideNext(const NextTooth& next, double rim) {
   const auto& [inner, outer] = next.lines[1];
   const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
   InFace centre = inner + rim * toward;
-  for (int i = 0; i < kFaceSteps; ++i) {
-    double nearest = rim;
-    for (const auto& line : next.lines) nearest = std::min(nearest, distance(line, centre));
-    centre += (rim - nearest) * toward;
-  }
+  for (int i = 0; i < kFaceSteps; ++i) centre += std::max(0.0, rim - toNext(next, centre, false)) * toward;
   return centre;
 }
 
@@ -91,13 +102,7 @@ InFace roundNext(const NextTooth& next, double rim) {
   const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
   const double half = (outer - inner).norm() / 2;
   InFace centre = (inner + outer) / 2 + std::sqrt(rim * rim - half * half) * toward;
-  for (int i = 0; i < kFaceSteps; ++i) {
-    double farthest = rim;
-    for (const auto& line : next.lines) {
-      for (const InFace& end : line) farthest = std::max(farthest, (end - centre).norm());
-    }
-    centre -= (farthest - rim) * toward;
-  }
+  for (int i = 0; i < kFaceSteps; ++i) centre -= std::max(0.0, toNext(next, centre, true) - rim) * toward;
   return centre;
 }
 
@@ -108,21 +113,14 @@ InFace roundNext(const NextTooth& next, double rim) {
 /// @param round whether that tooth is within the rim.
 InFace pastAxis(const NextTooth& next, double from_axis, double rim, bool round) {
   const InFace outward = (next.lines[1][1] - next.lines[1][0]).normalized();
-  Eigen::Rotation2Dd turn(std::atan2(-outward[0], outward[1]));
-  const auto nearer = [&](const InFace& a, const InFace& b) {
-    const InFace centre = next.axis + turn * InFace(from_axis, 0);
-    return ((a - centre).norm() < (b - centre).norm()) != round;
-  };
-  for (int i = 0; i < kFaceSteps; ++i) {
-    InFace place = next.lines[0][0];
-    for (const auto& line : next.lines) {
-      for (const InFace& end : line) place = nearer(end, place) ? end : place;
-    }
-    const InFace centre = next.axis + turn * InFace(from_axis, 0), way = centre - place;
-    const double per_turn = (turn * InFace(0, from_axis)).dot(way) / way.norm();
-    turn.angle() += (rim - way.norm()) / per_turn;
+  const auto at = [&](double turn) { return InFace(next.axis + from_axis * (Eigen::Rotation2Dd(-turn) * outward)); };
+  // The farther the centre is turned away from the next tooth, the farther it is from all of that.
+  double near = 0, far = units::kTurn / 2;
+  for (int i = 0; i < kTurnHalvings; ++i) {
+    const double turn = (near + far) / 2;
+    (toNext(next, at(turn), round) < rim ? near : far) = turn;
   }
-  return next.axis + turn * InFace(from_axis, 0);
+  return at(far);
 }
 
 /// A stroke that only ends, at the centre of the lower face in its plane.
@@ -177,7 +175,7 @@ OnTooth chamferNormal(double angle, double clearance, double dish, double tan_ra
 }
 
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
-                     double gap, double clear) noexcept {
+                     double gap, double clear) {
   const FacePose pose = flankPose(normal, tooth.cut);
   const Vector3d spindle = spindleAt(pose.swivel), place = inMachine(through, pose.tooth, tooth.cut);
   const bool right = tooth.cut == CutDirection::kRightHand;
@@ -187,6 +185,12 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
   const InFace centre = tooth.past_axis > 0 ? pastAxis(next, from_axis, rim, !right)
                         : right             ? besideNext(next, rim)
                                             : roundNext(next, rim);
+  const double off = std::abs(toNext(next, centre, !right) - rim);
+  if (!(off <= kOnRim)) {
+    constexpr double kMm = units::kMillimetre;
+    throw std::invalid_argument(format(
+        "the rim's end is %.3g mm off where it clears the next tooth; allowed: up to %g mm", off / kMm, kOnRim / kMm));
+  }
   FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   if (right) {
     stroke.from[kY] = clear + wheel.radius - wheel.nominal_radius;

@@ -79,6 +79,7 @@ FaceWheel faceWheelOf(const GrindProcess& p, double wear) noexcept {
 
 /// The stroke of the last pass of an operation on the end, for a tooth at angle 0.
 /// @param wear of the pass, see JobPass [m].
+/// @throw std::invalid_argument as endStroke().
 FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
   const GrindProcess& p = job.process();
   const FaceWheel wheel = faceWheelOf(p, wear);
@@ -91,6 +92,15 @@ FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
     }
     case OperationKind::kChamfer: return chamferStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
     default: return endStroke(end, plane.normal, plane.through, wheel, kEndGap, p.clearance);
+  }
+}
+
+/// @throw InvalidJob if no stroke grinds a tooth; none does later, since the wear of its face does not move the rim.
+void requireFaceStroke(const GrindJob& job, int tooth) {
+  try {
+    lastFaceStroke(job, tooth, 0);
+  } catch (const std::invalid_argument& error) {
+    throw InvalidJob({otherReason("flank of tooth " + std::to_string(tooth + 1) + ": " + error.what())});
   }
 }
 
@@ -220,7 +230,11 @@ GashBottom gashBottomOf(const GrindJob& job, int tooth) {
   return {p.gash_short_angle > 0 ? p.gash_short_angle : p.gash_angle, p.gash_short_past};
 }
 
-double swivelOfPlane(const GrindJob& job) { return lastFaceStroke(job, 0, 0).swivel; }
+double swivelOfPlane(const GrindJob& job) {
+  const OnTooth normal = endPlaneOf(job).normal;
+  const bool by_gash = job.process().kind == OperationKind::kGash;
+  return (by_gash ? gashPose : flankPose)(normal, job.cutter.cut).swivel;
+}
 
 EndTooth endToothOf(const GrindJob& job, int tooth) {
   const std::vector<double>& angles = job.tooth_angles;
@@ -253,6 +267,7 @@ ValidJob::ValidJob(GrindJob job) {
   } else if (grinder::isStraight(job.process().kind)) {
     requireSwivelOfPlane(job);
     for (int tooth = 0; tooth < static_cast<int>(job.tooth_angles.size()); ++tooth) {
+      requireFaceStroke(job, tooth);
       content.deepest = std::max(content.deepest, endStockOf(job, tooth));
     }
     content.job = std::move(job);

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <vector>
 
 namespace grinder {
@@ -187,6 +188,62 @@ TEST(FaceStroke, LeavesTheOtherEdgesOfAnyEnd) {
   }
 }
 
+/// The rim passes the axis as asked, and the next tooth's edge, or its place a half turn on, and what is under it on
+/// the plane, are outside a rim or within a cup's, by the gap. Also of secondary flanks far behind the edge, whose
+/// planes are in front of it near the axis.
+TEST(FaceStroke, PassesTheAxisBesideAnyShortTooth) {
+  auto between = test_support::numbers(7);
+  for (int i = 0; i < 4000; ++i) {
+    const CutDirection cut = kHands[i % 2];
+    const bool right = cut == CutDirection::kRightHand;
+    const double radius = between(2, 10) * kMillimetre, from = between(0.05, 0.9) * radius;
+    const double clearance = between(1, 20) * kDegree, dish = between(0, 10) * kDegree;
+    const double second = clearance + between(0.5, 25) * kDegree, land = i % 3 > 0 ? between(0.02, 0.7) * radius : 0;
+    const double past = i % 4 < 2 ? kGap : from / 4;
+    FaceWheel wheel;
+    wheel.nominal_radius = wheel.radius = between(25, 75) * kMillimetre;
+    wheel.width = 10 * kMillimetre;
+    if (!right) wheel.inner_radius = wheel.radius - radius - 1 * kMillimetre;
+    const EndTooth tooth{radius, between(40, 320) * kDegree, cut, from, past};
+    const OnTooth normal = endNormal(land > 0 ? second : clearance, dish);
+    const OnTooth through = OnTooth(0, radius, 0) + land * OnTooth(std::tan(clearance), 0, 1);
+    const FaceStroke stroke = endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre);
+    const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
+    const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
+    const double off = (Vector3d(normal.dot(through) / normal[0], 0, 0) - face).norm();
+    EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, past, 1e-9) << i;
+    double nearest = right ? 1 : 0;
+    for (int k = 0; k <= 200; ++k) {
+      const double r = from + (radius - from) * k / 200, turn = right ? 1 : -1;
+      Vector3d place = turned({(radius - r) * std::tan(dish), r, 0},
+                              flankPose(normal, cut).tooth + turn * std::min(tooth.pitch, kPi), cut);
+      for (int under = 0; under < 2; ++under) {
+        const double beside = (place - face).cross(spindle).norm();
+        nearest = right ? std::min(nearest, beside) : std::max(nearest, beside);
+        place[0] -= (place - face).dot(spindle) / spindle[0];
+      }
+    }
+    EXPECT_NEAR(nearest, right ? wheel.radius + kGap : wheel.inner_radius - kGap, 1e-7) << i;
+  }
+}
+
+/// A cup that passes the axis by 0.05 mm has within its rim, by the gap, only what is 0.1 mm off the axis. Seen along
+/// the spindle, the next tooth's edge begins at 0.0788 mm.
+TEST(FaceStroke, RefusesACupThatCannotGoRoundTheNextTooth) {
+  const FaceWheel wheel{50 * kMillimetre, 50 * kMillimetre, 10 * kMillimetre, 0, 0, 40 * kMillimetre};
+  const OnTooth normal = endNormal(8 * kDegree, 2 * kDegree), through(0, 5 * kMillimetre, 0);
+  EndTooth tooth{5 * kMillimetre, kPi / 2, CutDirection::kLeftHand, 0.11 * kMillimetre, kGap};
+  EXPECT_NO_THROW(endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre));
+  tooth.next_from = 0.08 * kMillimetre;
+  try {
+    endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre);
+    ADD_FAILURE();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "the rim's end is 0.0212 mm off where it clears the next tooth; allowed: up to 1e-06 mm");
+  }
+}
+
 /// Two of an even number of teeth go to the axis, or one of any, at any pitch: where the next tooth is short, the rim
 /// passes the axis.
 TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
@@ -207,6 +264,8 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
     wheel.width = 10 * kMillimetre;
     if (!right) wheel.inner_radius = wheel.radius - radius - 1 * kMillimetre;
     const OnTooth normal = endNormal(clearance, dish), through(0, radius, 0);
+    const OnTooth behind = through + 0.08 * radius * OnTooth(std::tan(clearance), 0, 1);
+    const bool secondary = i % 2 == 0;
     const auto is_short = [&](int tooth) { return tooth % (teeth / center) != 0; };
     const auto angle = [&](int tooth) { return angles[static_cast<std::size_t>(tooth)]; };
     BruteForce tool(wheel, radius, true);
@@ -219,32 +278,15 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
       const EndTooth end{radius, pitch, cut, passes ? from : 0, passes ? past : 0};
       const FaceStroke stroke = endStroke(end, normal, through, wheel, kGap, 1 * kMillimetre);
       tool.grind(stroke, angle(tooth), right ? 60 : 1);
-      const Vector3d centre(stroke.to[kX], radius + wheel.nominal_radius + stroke.to[kY], stroke.to[kZ]);
-      const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
-      // Of the face, whose plane meets the axis at the edge's end.
-      const double off = (Vector3d(radius * std::tan(dish), 0, 0) - face).norm();
-      if (passes) {
-        EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, past, 1e-9);
+      if (secondary) {
+        tool.grind(endStroke(end, endNormal(clearance + 10 * kDegree, dish), behind, wheel, kGap, 1 * kMillimetre),
+                   angle(tooth), right ? 60 : 1);
       }
-      // The next edge, or its place a half turn on, and what is under it on the plane, are outside a rim, or within a
-      // cup's.
-      double nearest = right ? 1 : 0;
-      for (int k = 0; k <= 500; ++k) {
-        const double begin = passes ? from : 0, r = begin + (radius - begin) * k / 500;
-        const double turn = flankPose(normal, cut).tooth + hand * (passes ? std::min(pitch, kPi) : pitch);
-        Vector3d place = turned({(radius - r) * std::tan(dish), r, 0}, turn, cut);
-        for (int under = 0; under < 2; ++under) {
-          const double beside = (place - face).cross(spindle).norm();
-          nearest = right ? std::min(nearest, beside) : std::max(nearest, beside);
-          place[0] -= (place - face).dot(spindle) / spindle[0];
-        }
-      }
-      EXPECT_NEAR(nearest, right ? wheel.radius + kGap : wheel.inner_radius - kGap, 1e-7);
     }
-    const double behind = hand * 1e-6, slope = std::tan(dish);
+    const double slope = std::tan(dish);
     for (int tooth = 0; tooth < teeth; ++tooth) {
       for (double r = is_short(tooth) ? from : 3 * kGap; r < radius; r += 0.05 * kMillimetre) {
-        EXPECT_NEAR(tool.top(r, angle(tooth) + behind), (radius - r) * slope, 1e-7) << tooth << ' ' << r;
+        EXPECT_NEAR(tool.top(r, angle(tooth) + hand * 1e-6), (radius - r) * slope, 1e-7) << tooth << ' ' << r;
       }
     }
     EXPECT_GE(tool.top(1e-9, angle(0)), radius * slope - 1e-9);  // without a nib

@@ -85,8 +85,9 @@ struct FaceStroke {
 /// @param gap least distance of the rim from the next tooth's edge; with `past_axis`, gap and `past_axis` together
 ///        less than `next_from` [m].
 /// @param clear distance of the wheel from the blank at the beginning [m].
+/// @throw std::invalid_argument if the rim cannot end there.
 FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth& through, const FaceWheel& wheel,
-                     double gap, double clear) noexcept;
+                     double gap, double clear);
 
 /// The outward normal of the flank of a chamfer between end and periphery.
 /// @param angle between chamfer and axis [rad].

@@ -19,11 +19,23 @@ using Eigen::Vector3d;
 constexpr int kFaceSteps = 8;      ///< steps to the centre of a face, each of which finds it more exactly
 constexpr int kTurnHalvings = 60;  ///< halvings of the range of a centre's angle about the axis
 constexpr double kOnRim = 1e-9;    ///< tolerance for the place of a rim [m]
-/// Angle behind a tooth beyond which its flank ends even before the next tooth, unless its edge goes to the axis: where
-/// the next one is opposite, a rim that came to it would be far past the axis.
-constexpr double kWidestFlank = 140 * units::kDegree;
-/// The same where the rim passes the axis: beyond it, the plane of the flank is in front of the end.
-constexpr double kWidestPastAxis = units::kTurn / 2;
+/// How far behind its edge a flank ends if the next tooth is far, before which the gash takes the rest [rad].
+struct FlankEnd {
+  double least, most;
+  double left;  ///< what a gash takes, between least and most
+};
+/// A rim that came to an opposite tooth would be far past the axis, and would not come up to the axis.
+constexpr FlankEnd kFlankEnd{140 * units::kDegree, 160 * units::kDegree, 40 * units::kDegree};
+/// The same where the rim passes the axis; farther only as far as it leaves nothing of its own edge.
+constexpr FlankEnd kEndPastAxis{180 * units::kDegree, 180 * units::kDegree, 10 * units::kDegree};
+
+/// How far behind its edge a flank ends: at the next tooth, or before it.
+double endOfFlank(const EndTooth& tooth) {
+  const bool passes = tooth.past_axis > 0;
+  const FlankEnd& end = passes ? kEndPastAxis : kFlankEnd;
+  const double turned = passes ? std::asin(std::min(1.0, tooth.past_axis / tooth.next_from)) : 0;
+  return std::min(tooth.pitch, std::clamp(tooth.pitch - end.left, end.least, end.most + turned / 2));
+}
 
 /// A place of a tooth in the machine, while the tooth stands at an angle.
 Vector3d inMachine(const OnTooth& place, double tooth, CutDirection cut) {
@@ -55,7 +67,7 @@ struct NextTooth {
 
   /// @param place a place on the plane.
   NextTooth(const EndTooth& tooth, const OnTooth& normal, const FacePose& pose, const Vector3d& place) {
-    const double pitch = std::min(tooth.pitch, tooth.past_axis > 0 ? kWidestPastAxis : kWidestFlank);
+    const double pitch = endOfFlank(tooth);
     const double turn = tooth.cut == CutDirection::kRightHand ? pitch : -pitch;
     const double y = tooth.radius * std::cos(pose.tooth + turn), z = tooth.radius * std::sin(pose.tooth + turn);
     const double sin = std::sin(pose.swivel), cos = std::cos(pose.swivel);

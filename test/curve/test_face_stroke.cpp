@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -212,11 +213,12 @@ TEST(FaceStroke, PassesTheAxisBesideAnyShortTooth) {
     const Vector3d spindle = upperFaceNormal(stroke.swivel), face = centre - wheel.width / 2 * spindle;
     const double off = (Vector3d(normal.dot(through) / normal[0], 0, 0) - face).norm();
     EXPECT_NEAR(right ? wheel.radius - off : off - wheel.inner_radius, past, 1e-9) << i;
+    const double turn = std::clamp(tooth.pitch - 10 * kDegree, kPi, kPi + std::asin(past / from) / 2);
+    const double behind = flankPose(normal, cut).tooth + (right ? 1 : -1) * std::min(tooth.pitch, turn);
     double nearest = right ? 1 : 0;
     for (int k = 0; k <= 200; ++k) {
-      const double r = from + (radius - from) * k / 200, turn = right ? 1 : -1;
-      Vector3d place = turned({(radius - r) * std::tan(dish), r, 0},
-                              flankPose(normal, cut).tooth + turn * std::min(tooth.pitch, kPi), cut);
+      const double r = from + (radius - from) * k / 200;
+      Vector3d place = turned({(radius - r) * std::tan(dish), r, 0}, behind, cut);
       for (int under = 0; under < 2; ++under) {
         const double beside = (place - face).cross(spindle).norm();
         nearest = right ? std::min(nearest, beside) : std::max(nearest, beside);
@@ -254,7 +256,7 @@ TEST(FaceStroke, GrindsTeethToTheCentreBesideShortOnes) {
     const bool right = cut == CutDirection::kRightHand;
     const double hand = right ? 1 : -1;
     std::vector<double> angles;
-    for (int tooth = 0; tooth < teeth; ++tooth) angles.push_back((tooth + between(-0.05, 0.05)) * 2 * kPi / teeth);
+    for (int tooth = 0; tooth < teeth; ++tooth) angles.push_back((tooth + between(-0.08, 0.08)) * 2 * kPi / teeth);
     const double radius = between(3, 8) * kMillimetre, from = between(0.15, 0.4) * radius;
     const double clearance = between(5, 20) * kDegree, dish = between(0, 3) * kDegree;
     SCOPED_TRACE(testing::Message() << center << " of " << teeth << " teeth, hand " << hand << ", R " << radius

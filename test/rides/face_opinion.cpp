@@ -115,12 +115,20 @@ struct NextTooth {
   std::array<Real, 2> at_axis{};                   ///< what of the plane is on the axis
 };
 
-/// The next tooth, or a line before it 140 deg behind the edge, or 180 deg where the rim passes the axis, as seen along
-/// the spindle: (across, Y).
+/// How far behind its edge a flank ends: at the next tooth, or 40 deg before, from 140 to 160 deg; where the rim passes
+/// the axis 10 deg before, from 180 deg to half of what it turns by so passing.
+Real endOfFlank(const Face& f) {
+  const Real deg = std::acos(Real(-1)) / 180;
+  if (f.past_axis == 0) return std::min(f.pitch, std::clamp(f.pitch - 40 * deg, 140 * deg, 160 * deg));
+  const Real most = 180 * deg + std::asin(f.past_axis / f.behind_from) / 2;
+  return std::min(f.pitch, std::clamp(f.pitch - 10 * deg, 180 * deg, most));
+}
+
+/// The next tooth, or a line before it where the flank ends, as seen along the spindle: (across, Y).
 NextTooth nextTooth(const Face& f, const Plane& plane, const Pose& pose) {
   const Vector axis{f.radius * std::tan(f.dish), 0, 0};
   const Vector inner{(f.radius - f.behind_from) * std::tan(f.dish), f.behind_from, 0};
-  const Real turn = std::min(f.pitch, (f.past_axis > 0 ? 9 : 7) * std::acos(Real(-1)) / 9);
+  const Real turn = endOfFlank(f);
   const auto ofNext = [&](const Vector& place) {
     return inMachine(f, place, pose.tooth + (f.left_hand ? -turn : turn));
   };

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -249,6 +250,55 @@ TEST(EndCheck, RefusesShortTeethThatBeginTooFarOut) {
       checked(centerCutting("chamfer", [](GrindJob& job) { gashOf(job).gash_short_past = -1.5 * kMillimetre; }));
   const std::string why = text(check.reasons);
   EXPECT_NE(why.find("the beginning of the short edge of tooth 2 is 1.6"), std::string::npos) << why;
+}
+
+/// With one of two teeth to the centre.
+CutterCheck slotDrill(double second, double short_past = -0.5) {
+  GrindJob job = readJobFile("jobs/slot_drill_d8_t2.yaml", "chamfer");
+  ofTeeth({0, second})(job);
+  gashOf(job).gash_short_past = short_past * kMillimetre;
+  return checked(job);
+}
+
+/// Behind a wide pitch the flank goes on, and the gash takes the rest.
+TEST(EndCheck, ASlotDrillMayHaveUnequalPitches) {
+  for (const double second : {160, 165, 172, 180, 190, 200}) {
+    SCOPED_TRACE(second);
+    const CutterCheck check = slotDrill(second);
+    EXPECT_EQ(text(check.reasons), "");
+    EXPECT_EQ(largest(check, ToolFigure::kUncutDiameter), 0);
+    EXPECT_LT(largest(check, ToolFigure::kHeelDrag), 1e-6);
+    const GroundFigure* from = find(check.figures, ToolFigure::kShortFrom);
+    ASSERT_TRUE(from);
+    EXPECT_EQ(from->largest.tooth, 1);
+    EXPECT_GT(from->least.value, 0.6 * kMillimetre);  // by which the rim of the other passes the axis
+  }
+}
+
+/// Between flank and gash the blank's end stays, in front of an edge with a dish.
+TEST(EndCheck, TheHeelOfASlotDrillDragsIfAPitchIsTooWide) {
+  for (const double second : {120, 210}) {
+    SCOPED_TRACE(second);
+    const CutterCheck check = slotDrill(second);
+    const GroundFigure* drag = find(check.figures, ToolFigure::kHeelDrag);
+    ASSERT_TRUE(drag);
+    EXPECT_GT(drag->largest.value, 0.05 * kMillimetre);
+    EXPECT_NEAR(drag->largest.value, (4 * kMillimetre - drag->largest.x) * std::tan(2 * kDegree), 1e-6);
+    EXPECT_NE(text(check.reasons).find("the heel drag of tooth 1 is "), std::string::npos) << text(check.reasons);
+  }
+}
+
+/// The bottom of the short tooth's gash rises from the end at 35 deg, and from the face by the wheel's 45 deg.
+TEST(EndCheck, TheShortGashOfASlotDrillCutsTheLongEdgeIfItPassesTheAxis) {
+  const double off = 15 * kDegree, rise = std::tan(2 * kDegree) * std::tan(35 * kDegree);
+  for (const double past : {0.3, 0.5, 0.8}) {
+    SCOPED_TRACE(past);
+    const CutterCheck check = slotDrill(165, past);
+    const double reach = (past * kMillimetre - 4 * kMillimetre * rise) /
+                         (std::cos(off) - rise + std::sin(off) * std::tan(45 * kDegree) / std::cos(35 * kDegree));
+    EXPECT_NEAR(largest(check, ToolFigure::kUncutDiameter), 2 * reach, 0.015 * kMillimetre);
+    EXPECT_NE(text(check.reasons).find("the uncut diameter of tooth 1 is "), std::string::npos) << text(check.reasons);
+  }
 }
 
 /// The plan of a gash tells which edges it spoils, once the flank that follows can be planned.

@@ -16,6 +16,8 @@ using Eigen::Vector2d;
 
 constexpr double kStraight = 1e-8;  ///< distance up to which a corner is on the line of its neighbours [m]
 constexpr double kSliver = 1e-11;   ///< area up to which an outline is that of slivers [m^2]
+/// Length up to which a line between rake face and flank is no edge: near the axis, other rims cut through both [m].
+constexpr double kNoEdge = 50e-6;
 constexpr SolidResolution kResolution{24, 24, 144};
 
 /// A corner by its place: corners that coincide are exactly equal.
@@ -168,6 +170,7 @@ std::vector<EndEdge> edgesOf(const Faces& faces) {
   for (auto& [tooth, chains] : of_teeth) {
     while (!chains.empty()) {
       EndPolyline line = projected(take(chains, beginOf(chains)));
+      if ((line.front() - line.back()).norm() <= kNoEdge) continue;
       if (line.front().norm() > line.back().norm()) std::reverse(line.begin(), line.end());
       edges.push_back({tooth, std::move(line)});
     }

@@ -1,5 +1,7 @@
 #include "tool/seams.h"
 
+#include "flute_grinder/base/format.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +9,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -17,22 +20,25 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSamePoint = 1e-9;  ///< distance up to which corners are one, and one is on an edge [m]
-constexpr int kRounds = 4;           ///< an edge that is divided may come to lie on others
+/// Distances up to which corners are one, and one is on an edge [m]: the least with which the solid closes. The
+/// rounding of a corner is the larger, the more nearly parallel its planes are.
+constexpr double kSamePoint[] = {1e-9, 1e-8, 1e-7, 1e-6};
+constexpr int kRounds = 4;  ///< an edge that is divided may come to lie on others
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 /// Finds the first of the points that are one.
 class Welder {
  public:
-  explicit Welder(std::size_t points) { first_.reserve(points); }
+  /// @param same distance up to which points are one [m].
+  Welder(std::size_t points, double same) : same_(same), cell_(64 * same) { first_.reserve(points); }
 
   std::uint32_t add(const Vector3d& point) {
     const std::array<std::int64_t, 3> cell = cellOf(point);
     // A point of another cell can be the same only beyond the nearer side of each axis.
     std::array<std::int64_t, 3> side{};
     for (std::size_t i = 0; i < 3; ++i) {
-      const double place = point[static_cast<Eigen::Index>(i)] / kCell - static_cast<double>(cell[i]);
-      side[i] = place < kSamePoint / kCell ? -1 : place > 1 - kSamePoint / kCell ? 1 : 0;
+      const double place = point[static_cast<Eigen::Index>(i)] / cell_ - static_cast<double>(cell[i]);
+      side[i] = place < same_ / cell_ ? -1 : place > 1 - same_ / cell_ ? 1 : 0;
     }
     for (int corner = 0; corner < 8; ++corner) {
       std::array<std::int64_t, 3> other = cell;
@@ -56,12 +62,10 @@ class Welder {
   std::vector<Vector3d> take() { return std::move(points_); }
 
  private:
-  static constexpr double kCell = 64 * kSamePoint;
-
-  static std::array<std::int64_t, 3> cellOf(const Vector3d& point) {
-    return {static_cast<std::int64_t>(std::floor(point[0] / kCell)),
-            static_cast<std::int64_t>(std::floor(point[1] / kCell)),
-            static_cast<std::int64_t>(std::floor(point[2] / kCell))};
+  std::array<std::int64_t, 3> cellOf(const Vector3d& point) const {
+    return {static_cast<std::int64_t>(std::floor(point[0] / cell_)),
+            static_cast<std::int64_t>(std::floor(point[1] / cell_)),
+            static_cast<std::int64_t>(std::floor(point[2] / cell_))};
   }
   static std::uint64_t keyOf(const std::array<std::int64_t, 3>& cell) {
     std::uint64_t key = 0;
@@ -72,11 +76,12 @@ class Welder {
   std::uint32_t find(const std::array<std::int64_t, 3>& cell, const Vector3d& point) const {
     const auto found = first_.find(keyOf(cell));
     for (std::uint32_t i = found == first_.end() ? kNoVertex : found->second; i != kNoVertex; i = next_[i]) {
-      if ((points_[i] - point).cwiseAbs().maxCoeff() <= kSamePoint) return i;
+      if ((points_[i] - point).cwiseAbs().maxCoeff() <= same_) return i;
     }
     return kNoVertex;
   }
 
+  double same_, cell_;
   std::vector<Vector3d> points_;
   std::unordered_map<std::uint64_t, std::uint32_t> first_;  ///< last point of each cell
   std::vector<std::uint32_t> next_;                         ///< the point before of the same cell
@@ -120,7 +125,8 @@ std::vector<Edge> openEdges(const CutterSolid& solid) {
 /// The corners that lie on open edges.
 class Dividers {
  public:
-  Dividers(const CutterSolid& solid, const std::vector<Edge>& open) : at_(solid.vertices) {
+  /// @param same distance up to which a corner is on an edge [m].
+  Dividers(const CutterSolid& solid, const std::vector<Edge>& open, double same) : at_(solid.vertices), same_(same) {
     for (const Edge& edge : open) {
       corners_.push_back(edge.first);
       corners_.push_back(edge.second);
@@ -135,8 +141,8 @@ class Dividers {
     const Vector3d& from = at_[edge.first];
     const Vector3d way = at_[edge.second] - from;
     const double length = way.norm();
-    const double least = std::min(from.x(), from.x() + way.x()) - kSamePoint;
-    const double most = std::max(from.x(), from.x() + way.x()) + kSamePoint;
+    const double least = std::min(from.x(), from.x() + way.x()) - same_;
+    const double most = std::max(from.x(), from.x() + way.x()) + same_;
     std::vector<std::pair<double, std::uint32_t>> found;
     auto i = std::lower_bound(corners_.begin(), corners_.end(), least,
                               [&](std::uint32_t corner, double x) { return at_[corner].x() < x; });
@@ -144,7 +150,7 @@ class Dividers {
       const Vector3d off = at_[*i] - from;
       const double along = off.dot(way) / length;
       if (*i == edge.first || *i == edge.second || !(along > 0 && along < length)) continue;
-      if ((off - along / length * way).norm() <= kSamePoint) found.emplace_back(along, *i);
+      if ((off - along / length * way).norm() <= same_) found.emplace_back(along, *i);
     }
     std::sort(found.begin(), found.end());
     std::vector<std::uint32_t> corners;
@@ -154,6 +160,7 @@ class Dividers {
 
  private:
   const std::vector<Vector3d>& at_;
+  const double same_;
   std::vector<std::uint32_t> corners_;  ///< by X
 };
 
@@ -164,10 +171,8 @@ void push(std::vector<SolidTriangle>& all, const SolidTriangle& like, const std:
 
 /// Divides triangles at the corners on their open edges, one edge of each.
 /// @return whether there was any.
-bool divide(CutterSolid& solid) {
-  const std::vector<Edge> open = openEdges(solid);
-  if (open.empty()) return false;
-  const Dividers dividers(solid, open);
+bool divide(CutterSolid& solid, const std::vector<Edge>& open, double same) {
+  const Dividers dividers(solid, open, same);
   std::vector<std::vector<std::uint32_t>> on(open.size());
   for (std::size_t i = 0; i < open.size(); ++i) on[i] = dividers.on(open[i]);
   std::vector<SolidTriangle> divided;
@@ -220,10 +225,9 @@ void dropChips(CutterSolid& solid) {
   solid.triangles.erase(std::remove_if(solid.triangles.begin(), solid.triangles.end(), is_chip), solid.triangles.end());
 }
 
-}  // namespace
-
-void closeSeams(CutterSolid& solid) {
-  Welder welder(solid.vertices.size());
+/// Makes one corner of those that are the same.
+void weld(CutterSolid& solid, double same) {
+  Welder welder(solid.vertices.size(), same);
   std::vector<std::uint32_t> index(solid.vertices.size(), kNoVertex);
   std::vector<SolidTriangle> triangles;
   triangles.reserve(solid.triangles.size());
@@ -238,9 +242,26 @@ void closeSeams(CutterSolid& solid) {
   }
   solid.vertices = welder.take();
   solid.triangles = std::move(triangles);
-  for (int i = 0; i < kRounds && divide(solid); ++i) {
+}
+
+/// Joins what is the same.
+/// @return how many edges stay open.
+std::size_t join(CutterSolid& solid, double same) {
+  weld(solid, same);
+  std::vector<Edge> open = openEdges(solid);
+  for (int i = 0; i < kRounds && !open.empty() && divide(solid, open, same); ++i) open = openEdges(solid);
+  return open.size();
+}
+
+}  // namespace
+
+void closeSeams(CutterSolid& solid) {
+  std::size_t open = 0;
+  for (const double same : kSamePoint) {
+    open = join(solid, same);
+    if (open == 0) return dropChips(solid);
   }
-  dropChips(solid);
+  throw std::invalid_argument(format("the solid of the end has %zu open edges; allowed: 0", open));
 }
 
 }  // namespace grinder

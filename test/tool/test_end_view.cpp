@@ -115,6 +115,26 @@ TEST(EndView, EdgesRunFromTheUncutDiameterToTheCorners) {
   }
 }
 
+/// One that goes to the axis ends by the gap before it, at the rim of the opposite flank; the only one crosses it.
+TEST(EndView, AnEdgeToTheCentreIsOneLine) {
+  for (const char* name : {"center_cutting_d10_t4", "slot_drill_d8_t2"}) {
+    SCOPED_TRACE(name);
+    const Shipped& tool = shipped(name);
+    ASSERT_EQ(tool.view.edges.size(), tool.job->tooth_angles.size());
+    for (std::size_t k = 0; k < tool.view.edges.size(); ++k) {
+      const double begin = tool.onTooth(k, tool.view.edges[k].line.front()).x();
+      EXPECT_EQ(tool.view.edges[k].tooth, k);
+      if (tool.job->isShort(static_cast<int>(k))) {
+        EXPECT_GT(begin, kFrom);
+      } else if (tool.cutter.end_center_teeth > 1) {
+        EXPECT_NEAR(begin, kEndGap, kExact);
+      } else {
+        EXPECT_LT(begin, 0);
+      }
+    }
+  }
+}
+
 /// How far behind the radius a line is at a distance along it.
 double behindAt(const Shipped& tool, const EndEdge& edge, double along) {
   std::size_t i = 1;

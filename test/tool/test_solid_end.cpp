@@ -8,14 +8,17 @@
 #include "flute_grinder/tool/z_law.h"
 #include "tool/face_sweep.h"
 #include "tool/open_edges.h"
+#include "tool/seams.h"
 #include "tool/solid_cases.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -191,6 +194,27 @@ TEST(SolidEnd, OfAJobHasTheFacesOfItsOperations) {
     EXPECT_EQ(count, faces);
     EXPECT_EQ(end.blank_x, 0);
   }
+}
+
+/// A corner of a tetrahedron, on one of its faces.
+CutterSolid tetrahedron(const Vector3d& corner) {
+  CutterSolid solid;
+  const Vector3d one(1e-3, 0, 0), other(0, 1e-3, 0), top(0, 0, 1e-3);
+  solid.vertices = {Vector3d::Zero(), one, other, top, corner};
+  for (const std::array<std::uint32_t, 3>& v : {std::array<std::uint32_t, 3>{0, 2, 1}, {0, 1, 4}, {1, 2, 3}, {2, 0, 3}})
+    solid.triangles.push_back({v, SurfaceKind::kGash, 0});
+  return solid;
+}
+
+TEST(SolidEnd, ASeamClosesUpToAMicrometreOrIsRefused) {
+  for (const double off : {0.5e-9, 5e-9, 0.5e-6}) {
+    CutterSolid solid = tetrahedron({off, 0, 1e-3});
+    closeSeams(solid);
+    EXPECT_EQ(openEdges(solid), 0u) << off;
+    EXPECT_EQ(solid.triangles.size(), 4u);
+  }
+  CutterSolid open = tetrahedron({5e-6, 0, 1e-3});
+  EXPECT_THROW(closeSeams(open), std::invalid_argument);
 }
 
 TEST(SolidEnd, AChipThatIsCutOffIsNotShown) {

@@ -348,6 +348,7 @@ Json toJson(const GroundTool& tool, const EndView& view) {
   return {{"diameter_mm", tool.job->cutter.end_diameter / kMillimetre},
           {"edge_deg", (tool.job->tooth_angles.front() + tool.job.edges().front().at_end) / kDegree},
           {"uncut_diameter_mm", tool.job->cutter.end_uncut_diameter / kMillimetre},
+          {"short_from_mm", tool.job->cutter.end_short_from / kMillimetre},
           {"regions", regions},
           {"edges", edges}};
 }

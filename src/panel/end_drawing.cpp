@@ -47,7 +47,14 @@ void legendLine(QPainter& painter, QRectF& free, const QString& name, const std:
   free.setTop(free.top() + height);
 }
 
-void paintLegend(QPainter& painter, QRectF free, const EndView& end, double uncut) {
+/// A circle about the axis that limits edges.
+struct Limit {
+  double diameter;  ///< 0: none [m]
+  const char* words;
+  Qt::PenStyle style;
+};
+
+void paintLegend(QPainter& painter, QRectF free, const EndView& end, const std::vector<Limit>& limits) {
   const auto filled = [&](const QColor& colour) {
     return [&painter, colour](const QRectF& square) {
       painter.setBrush(colour);
@@ -68,17 +75,20 @@ void paintLegend(QPainter& painter, QRectF free, const EndView& end, double uncu
     };
   };
   if (!end.edges.empty()) legendLine(painter, free, "edge", line(QPen(kLine, 2)));
-  if (uncut > 0) {
-    legendLine(painter, free, "uncut D " + QString::number(uncut / units::kMillimetre),
-               line(QPen(kLine, 1, Qt::DashLine)));
+  for (const Limit& limit : limits) {
+    if (!(limit.diameter > 0)) continue;
+    legendLine(painter, free, limit.words + QString::number(limit.diameter / units::kMillimetre),
+               line(QPen(kLine, 1, limit.style)));
   }
 }
 
 }  // namespace
 
 void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const EndView& end) {
-  const double uncut = job->cutter.end_uncut_diameter, radius = job->cutter.end_diameter / 2;
-  paintLegend(painter, sheet, end, uncut);
+  const double radius = job->cutter.end_diameter / 2;
+  const std::vector<Limit> limits{{job->cutter.end_uncut_diameter, "uncut D ", Qt::DashLine},
+                                  {2 * job->cutter.end_short_from, "short D ", Qt::DotLine}};
+  paintLegend(painter, sheet, end, limits);
   const double legend = kSwatch + 2 * kGap + painter.fontMetrics().horizontalAdvance("uncut D 0.00");
   const QRectF place = sheet.adjusted(legend, 0, 0, 0);
   const double scale = 0.97 * std::min(place.width(), place.height()) / 2 / radius;
@@ -107,8 +117,10 @@ void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const
   painter.setBrush(Qt::NoBrush);
   painter.setPen(QPen(kLine, 2));
   for (const EndEdge& line : end.edges) painter.drawPolyline(polygon(line.line));
-  painter.setPen(QPen(kLine, 1, Qt::DashLine));
-  if (uncut > 0) circle(uncut / 2);
+  for (const Limit& limit : limits) {
+    painter.setPen(QPen(kLine, 1, limit.style));
+    if (limit.diameter > 0) circle(limit.diameter / 2);
+  }
 }
 
 }  // namespace grinder

@@ -9,7 +9,7 @@
 namespace grinder {
 
 /// Draws the end of a tool, seen along its axis and turned until the first tooth's edge is at the top, with a legend of
-/// its faces. The dashed circle is the uncut diameter that the job allows.
+/// its faces. The dashed circle is the uncut diameter that the job allows, the dotted one where short edges begin.
 void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const EndView& end);
 
 }  // namespace grinder

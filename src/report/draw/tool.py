@@ -76,7 +76,7 @@ def draw_end(axes, view, legend_place):
         y, z = np.array(line).T
         return np.column_stack([-y * cos - z * sin, -y * sin + z * cos])
 
-    radius, uncut = view['diameter_mm'] / 2, view['uncut_diameter_mm'] / 2
+    radius = view['diameter_mm'] / 2
     circle = np.linspace(0, 2 * np.pi, 181)
     axes.fill(radius * np.cos(circle), radius * np.sin(circle), facecolor=FLUTE, edgecolor=INK, linewidth=0.6)
     for region in view['regions']:
@@ -90,9 +90,11 @@ def draw_end(axes, view, legend_place):
     legend.append(Patch(facecolor=FLUTE, edgecolor=INK, linewidth=0.3, label='flute'))
     if view['edges']:
         legend.append(Line2D([], [], color=INK, linewidth=2, label='cutting edge'))
-    if uncut > 0:
-        axes.plot(uncut * np.cos(circle), uncut * np.sin(circle), color=INK, linestyle='--')
-        legend.append(Line2D([], [], color=INK, linestyle='--', label='uncut Ø %g' % (2 * uncut)))
+    for diameter, style, words in ((view['uncut_diameter_mm'], '--', 'uncut Ø %g'),
+                                   (2 * view['short_from_mm'], ':', 'short edges from Ø %g')):
+        if diameter > 0:
+            axes.plot(diameter / 2 * np.cos(circle), diameter / 2 * np.sin(circle), color=INK, linestyle=style)
+            legend.append(Line2D([], [], color=INK, linestyle=style, label=words % diameter))
     axes.legend(handles=legend, fontsize=8, title='The end, Ø %g mm' % (2 * radius), title_fontsize=8, **legend_place)
     axes.set(aspect='equal', anchor='S', xlim=(-1.05 * radius, 1.05 * radius), ylim=(-1.05 * radius, 1.05 * radius))
     axes.set_axis_off()

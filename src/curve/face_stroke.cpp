@@ -17,7 +17,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kFaceSteps = 8;      ///< steps to the centre of a face, each of which finds it more exactly
-constexpr int kTurnHalvings = 60;  ///< halvings of the range of a centre's angle about the axis
+constexpr int kTurnSteps = 90;     ///< steps of a whole turn, to where a rim comes near the next tooth
+constexpr int kTurnHalvings = 60;  ///< halvings of such a step
 constexpr double kOnRim = 1e-9;    ///< tolerance for the place of a rim [m]
 /// How far behind its edge a flank ends if the next tooth is far, before which the gash takes the rest [rad].
 struct FlankEnd {
@@ -126,11 +127,15 @@ InFace roundNext(const NextTooth& next, double rim) {
 InFace pastAxis(const NextTooth& next, double from_axis, double rim, bool round) {
   const InFace outward = (next.lines[1][1] - next.lines[1][0]).normalized();
   const auto at = [&](double turn) { return InFace(next.axis + from_axis * (Eigen::Rotation2Dd(-turn) * outward)); };
+  const auto is_nearer = [&](double turn) { return toNext(next, at(turn), round) < rim; };
   // The farther the centre is turned away from the next tooth, the farther it is from all of that.
-  double near = 0, far = units::kTurn / 2;
+  constexpr double kStep = units::kTurn / kTurnSteps;
+  double far = 0.75 * units::kTurn;
+  for (int i = 0; i < kTurnSteps && (is_nearer(far) || !is_nearer(far - kStep)); ++i) far -= kStep;
+  double near = far - kStep;
   for (int i = 0; i < kTurnHalvings; ++i) {
     const double turn = (near + far) / 2;
-    (toNext(next, at(turn), round) < rim ? near : far) = turn;
+    (is_nearer(turn) ? near : far) = turn;
   }
   return at(far);
 }

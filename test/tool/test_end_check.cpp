@@ -288,6 +288,26 @@ TEST(EndCheck, TheHeelOfASlotDrillDragsIfAPitchIsTooWide) {
   }
 }
 
+/// By so steep a plane, the next tooth's edge is seen to begin 0.13 mm from the axis, which the rim passes by 0.1 mm.
+TEST(EndCheck, RefusesARimThatCannotPassBetweenAxisAndNextTooth) {
+  GrindJob job = readJobFile("jobs/slot_drill_d8_t2.yaml", "end_secondary");
+  ofTeeth({0, 90})(job);
+  job.cutter.end_short_from = 0.2 * kMillimetre;
+  job.cutter.end_land = 0.02 * kMillimetre;
+  const auto planned = [&](double second_clearance) {
+    job.cutter.end_second_clearance = second_clearance * kDegree;
+    job.process().setup_swivel = swivelOfPlane(job);
+    return ValidJob(job);
+  };
+  EXPECT_NO_THROW(planned(30));
+  try {
+    planned(60);
+    ADD_FAILURE();
+  } catch (const InvalidJob& error) {
+    EXPECT_NE(std::string(error.what()).find("flank of tooth 1: the rim's end is "), std::string::npos) << error.what();
+  }
+}
+
 /// The bottom of the short tooth's gash rises from the end at 35 deg, and from the face by the wheel's 45 deg.
 TEST(EndCheck, TheShortGashOfASlotDrillCutsTheLongEdgeIfItPassesTheAxis) {
   const double off = 15 * kDegree, rise = std::tan(2 * kDegree) * std::tan(35 * kDegree);

@@ -293,8 +293,8 @@ class TestGoal(CommandLine):
 class TestOutput(CommandLine):
     """What is written and printed: into files, onto a terminal, onto a disk that is full, and into a pipe that nobody reads."""
 
-    def shown(self, kind, *arguments):
-        """What a command draws on a terminal of this kind."""
+    def shown(self, kind, *arguments, status=0):
+        """What a command that ends with a status draws on a terminal of this kind."""
         reader, writer = pty.openpty()
         self.addCleanup(os.close, reader)
         done = subprocess.run([gc.program('grind'), *arguments], env=dict(os.environ, TERM=kind), stdout=subprocess.DEVNULL,
@@ -304,7 +304,7 @@ class TestOutput(CommandLine):
         while not shown.endswith(end):
             shown += os.read(reader, 1000)
         os.close(writer)
-        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.returncode, status)
         return shown[:-1].decode()
 
     def test_terminal_shows_what_takes_long_and_then_nothing_of_it(self):
@@ -314,6 +314,9 @@ class TestOutput(CommandLine):
             self.assertIn('\r\x1b[K' + what, shown)
         self.assertTrue(shown.endswith('\r\x1b[K'), shown)
         self.assertEqual(self.shown('dumb', *simulate), '')
+        record = self.write('0000000001_20261122T170413.123Z.json', '')
+        said = 'measuring and judging tools ...\r\x1b[K%s: is no record of a job' % record
+        self.assertIn(said, self.shown('xterm', 'history', '--from', self.folder, '--judge-again', status=2))
 
     def test_no_file_that_a_command_reads_is_written(self):
         job, table = self.job_with_wheel(), self.path('table.csv')

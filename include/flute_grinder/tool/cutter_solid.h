@@ -41,9 +41,8 @@ struct CutterSolid {
 /// The ground cutter as a closed surface through sections. Between them, layers are interpolated along the helix, so
 /// the facets' error does not grow with the twist.
 /// @param removed volumes to take out of it.
-/// @throw std::invalid_argument like sectionOutline(), if the extent or the resolution is not usable, and if what is
-/// left
-///        does not close.
+/// @throw std::invalid_argument like sectionOutline(), for an unusable extent or resolution, and for a rest that does
+/// not close.
 CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution = {},
                         const std::vector<RemovedVolume>& removed = {});
 

@@ -331,16 +331,16 @@ Read readOne(const Listed& record, const std::optional<Tolerances>& tolerances, 
   }
 }
 
-/// Reads records on all cores, and forgets their paths. @param slowly what a user is shown meanwhile; nothing if it is
+/// Reads records on all cores, and forgets their paths. @param shown what a terminal says meanwhile; nothing if it is
 /// quick. @param read reads a record. @param take takes each result, in order.
 template <typename ReadOne, typename Take>
-void readAll(std::vector<Listed> records, const std::string& slowly, const ReadOne& read, const Take& take) {
+void readAll(std::vector<Listed> records, const std::string& shown, const ReadOne& read, const Take& take) {
   constexpr std::size_t block = 1024;  // bounds the memory
   std::vector<Read> done;
   for (std::size_t begin = 0; begin < records.size(); begin += block) {
     done.assign(std::min(block, records.size() - begin), {});
     std::optional<Working> working;
-    if (!slowly.empty()) working.emplace(slowly);
+    if (!shown.empty()) working.emplace(shown);
     onAllCores(done.size(), [&](std::size_t i) {
       done[i] = read(records[begin + i]);
       records[begin + i].path = {};
@@ -436,9 +436,9 @@ int printHistory(const std::string& node, const HistoryOptions& options) {
   for (const Listed& record : records) {
     if (!options.csv.empty()) requireRegularFile(record.path);
   }
-  const char* slowly = tolerances ? "measuring and judging tools" : "";
+  const char* shown = tolerances ? "measuring and judging tools" : "";
   readAll(
-      std::move(records), slowly, [&](const Listed& record) { return readOne(record, tolerances, filter, listing); },
+      std::move(records), shown, [&](const Listed& record) { return readOne(record, tolerances, filter, listing); },
       [&](Read& read) {
         if (read.lines) listing.add(std::move(*read.lines));
         if (read.error.empty()) return;

@@ -353,7 +353,7 @@ Json toJson(const GroundTool& tool, const EndView& view) {
           {"edges", edges}};
 }
 
-/// The view of the end; null for a tool whose end is the blank's, or whose core is cut through.
+/// The view of the end; null for a tool whose end is the blank's, or that has no solid, as with a core cut through.
 Json endViewOf(const GroundTool& tool) {
   try {
     return toJson(tool, endView(tool.cutter, tool.end));

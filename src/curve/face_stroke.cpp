@@ -16,26 +16,28 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kFaceSteps = 8;      ///< steps to the centre of a face, each of which finds it more exactly
-constexpr int kTurnSteps = 90;     ///< steps of a whole turn, to where a rim comes near the next tooth
-constexpr int kTurnHalvings = 60;  ///< halvings of such a step
-constexpr double kOnRim = 1e-9;    ///< tolerance for the place of a rim [m]
-/// How far behind its edge a flank ends if the next tooth is far, before which the gash takes the rest [rad].
+constexpr int kFaceSteps = 2000;     ///< most steps to the centre of a face, each of which finds it more exactly
+constexpr double kLastStep = 1e-13;  ///< length of a step after which the next is lost in rounding [m]
+constexpr int kTurnSteps = 90;       ///< steps of a whole turn, to where a rim comes near the next tooth
+constexpr int kTurnHalvings = 60;    ///< halvings of such a step
+constexpr double kOnRim = 1e-9;      ///< tolerance for the place of a rim [m]
+/// Where a flank ends if the next tooth is far: `before` that tooth, but from `least` to `most` behind its own edge
+/// [rad]. The gash takes the rest.
 struct FlankEnd {
-  double least, most;
-  double left;  ///< what a gash takes, between least and most
+  double before, least, most;
 };
-/// A rim that came to an opposite tooth would be far past the axis, and would not come up to the axis.
-constexpr FlankEnd kFlankEnd{140 * units::kDegree, 160 * units::kDegree, 40 * units::kDegree};
-/// The same where the rim passes the axis; farther only as far as it leaves nothing of its own edge.
-constexpr FlankEnd kEndPastAxis{180 * units::kDegree, 180 * units::kDegree, 10 * units::kDegree};
+/// A rim that came to an opposite tooth would end beyond the axis.
+constexpr FlankEnd kFlankEnd{40 * units::kDegree, 140 * units::kDegree, 160 * units::kDegree};
+/// The same where the rim passes the axis; `most` is without what the rim turns by in doing so.
+constexpr FlankEnd kEndPastAxis{10 * units::kDegree, 180 * units::kDegree, 180 * units::kDegree};
 
 /// How far behind its edge a flank ends: at the next tooth, or before it.
 double endOfFlank(const EndTooth& tooth) {
   const bool passes = tooth.past_axis > 0;
   const FlankEnd& end = passes ? kEndPastAxis : kFlankEnd;
-  const double turned = passes ? std::asin(std::min(1.0, tooth.past_axis / tooth.next_from)) : 0;
-  return std::min(tooth.pitch, std::clamp(tooth.pitch - end.left, end.least, end.most + turned / 2));
+  // Half of it keeps the rim off its own edge.
+  const double turned = passes ? std::asin(std::min(1.0, tooth.past_axis / tooth.next_from)) / 2 : 0;
+  return std::min(tooth.pitch, std::clamp(tooth.pitch - end.before, end.least, end.most + turned));
 }
 
 /// A place of a tooth in the machine, while the tooth stands at an angle.
@@ -104,7 +106,11 @@ InFace besideNext(const NextTooth& next, double rim) {
   const auto& [inner, outer] = next.lines[1];
   const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
   InFace centre = inner + rim * toward;
-  for (int i = 0; i < kFaceSteps; ++i) centre += std::max(0.0, rim - toNext(next, centre, false)) * toward;
+  double step = rim;
+  for (int i = 0; i < kFaceSteps && step > kLastStep; ++i) {
+    step = rim - toNext(next, centre, false);
+    centre += std::max(0.0, step) * toward;
+  }
   return centre;
 }
 
@@ -114,8 +120,12 @@ InFace roundNext(const NextTooth& next, double rim) {
   const auto& [inner, outer] = next.lines[1];
   const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
   const double half = (outer - inner).norm() / 2;
-  InFace centre = (inner + outer) / 2 + std::sqrt(rim * rim - half * half) * toward;
-  for (int i = 0; i < kFaceSteps; ++i) centre -= std::max(0.0, toNext(next, centre, true) - rim) * toward;
+  InFace centre = (inner + outer) / 2 + std::sqrt(std::max(0.0, rim * rim - half * half)) * toward;
+  double step = rim;
+  for (int i = 0; i < kFaceSteps && step > kLastStep; ++i) {
+    step = toNext(next, centre, true) - rim;
+    centre -= std::max(0.0, step) * toward;
+  }
   return centre;
 }
 
@@ -128,7 +138,7 @@ InFace pastAxis(const NextTooth& next, double from_axis, double rim, bool round)
   const InFace outward = (next.lines[1][1] - next.lines[1][0]).normalized();
   const auto at = [&](double turn) { return InFace(next.axis + from_axis * (Eigen::Rotation2Dd(-turn) * outward)); };
   const auto is_nearer = [&](double turn) { return toNext(next, at(turn), round) < rim; };
-  // The farther the centre is turned away from the next tooth, the farther it is from all of that.
+  // Turned away from the next tooth, the centre comes farther from both of its lines.
   constexpr double kStep = units::kTurn / kTurnSteps;
   double far = 0.75 * units::kTurn;
   for (int i = 0; i < kTurnSteps && (is_nearer(far) || !is_nearer(far - kStep)); ++i) far -= kStep;
@@ -204,9 +214,10 @@ FaceStroke endStroke(const EndTooth& tooth, const OnTooth& normal, const OnTooth
                                             : roundNext(next, rim);
   const double off = std::abs(toNext(next, centre, !right) - rim);
   if (!(off <= kOnRim)) {
-    constexpr double kMm = units::kMillimetre;
-    throw std::invalid_argument(format(
-        "the rim's end is %.3g mm off where it clears the next tooth; allowed: up to %g mm", off / kMm, kOnRim / kMm));
+    throw std::invalid_argument(
+        format("the wheel's rim cannot end clear of the next tooth, by %.3g mm; allowed: a flank "
+               "and a wheel with which it can",
+               off / units::kMillimetre));
   }
   FaceStroke stroke = flankStroke(tooth, pose, place, centre, wheel);
   if (right) {

@@ -95,8 +95,10 @@ FaceStroke lastFaceStroke(const GrindJob& job, int tooth, double wear) {
   }
 }
 
-/// @throw InvalidJob if no stroke grinds a tooth; none does later, since the wear of its face does not move the rim.
+/// @throw InvalidJob if no stroke grinds a tooth's flank; none does later, since the wear of the wheel's face does not
+/// move the rim.
 void requireFaceStroke(const GrindJob& job, int tooth) {
+  if (!isEndFlank(job.process().kind)) return;
   try {
     lastFaceStroke(job, tooth, 0);
   } catch (const std::invalid_argument& error) {

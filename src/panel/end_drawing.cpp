@@ -87,9 +87,9 @@ void paintLegend(QPainter& painter, QRectF free, const EndView& end, const std::
 void paintEnd(QPainter& painter, const QRectF& sheet, const ValidJob& job, const EndView& end) {
   const double radius = job->cutter.end_diameter / 2;
   const std::vector<Limit> limits{{job->cutter.end_uncut_diameter, "uncut D ", Qt::DashLine},
-                                  {2 * job->cutter.end_short_from, "short D ", Qt::DotLine}};
+                                  {2 * job->cutter.end_short_from, "short from D ", Qt::DotLine}};
   paintLegend(painter, sheet, end, limits);
-  const double legend = kSwatch + 2 * kGap + painter.fontMetrics().horizontalAdvance("uncut D 0.00");
+  const double legend = kSwatch + 2 * kGap + painter.fontMetrics().horizontalAdvance("short from D 0.00");
   const QRectF place = sheet.adjusted(legend, 0, 0, 0);
   const double scale = 0.97 * std::min(place.width(), place.height()) / 2 / radius;
   const double edge = job->tooth_angles.front() + job.edges().front().at_end - units::kPi / 2;

@@ -88,7 +88,7 @@ std::optional<ValidJob> flankAfter(const ValidJob& job) {
   if (!follows) return std::nullopt;
   try {
     return job.ofOperation(job->operation + 1);
-  } catch (const InvalidJob&) {  // it is not set up yet, and says so when it is planned
+  } catch (const InvalidJob&) {  // it is not set up yet, or cannot be ground, and says so when it is planned
     return std::nullopt;
   }
 }

@@ -16,7 +16,8 @@ using Eigen::Vector2d;
 
 constexpr double kStraight = 1e-8;  ///< distance up to which a corner is on the line of its neighbours [m]
 constexpr double kSliver = 1e-11;   ///< area up to which an outline is that of slivers [m^2]
-/// Length up to which a line between rake face and flank is no edge: near the axis, other rims cut through both [m].
+/// Distance of a line's ends up to which it is no edge: near the axis, the rims of other flanks, which pass it by as
+/// much, cut through rake face and flank [m].
 constexpr double kNoEdge = 50e-6;
 constexpr SolidResolution kResolution{24, 24, 144};
 

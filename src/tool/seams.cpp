@@ -1,7 +1,5 @@
 #include "tool/seams.h"
 
-#include "flute_grinder/base/format.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -245,23 +242,24 @@ void weld(CutterSolid& solid, double same) {
 }
 
 /// Joins what is the same.
-/// @return how many edges stay open.
-std::size_t join(CutterSolid& solid, double same) {
+void join(CutterSolid& solid, double same) {
   weld(solid, same);
   std::vector<Edge> open = openEdges(solid);
   for (int i = 0; i < kRounds && !open.empty() && divide(solid, open, same); ++i) open = openEdges(solid);
-  return open.size();
 }
 
 }  // namespace
 
 void closeSeams(CutterSolid& solid) {
-  std::size_t open = 0;
+  CutterSolid whole;
   for (const double same : kSamePoint) {
-    open = join(solid, same);
-    if (open == 0) return dropChips(solid);
+    join(solid, same);
+    whole = solid;  // a chip may be what only the next distance joins
+    dropChips(whole);
+    whole.open_edges = openEdges(whole).size();
+    if (whole.open_edges == 0) break;
   }
-  throw std::invalid_argument(format("the solid of the end has %zu open edges; allowed: 0", open));
+  solid = std::move(whole);
 }
 
 }  // namespace grinder

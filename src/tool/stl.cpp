@@ -6,6 +6,7 @@
 #include <boost/endian/conversion.hpp>
 
 #include <cstring>
+#include <stdexcept>
 #include <string>
 
 namespace grinder {
@@ -32,6 +33,10 @@ void append(std::string& bytes, const Eigen::Vector3f& v) {
 }  // namespace
 
 void writeStl(std::ostream& out, const CutterSolid& solid) {
+  if (solid.open_edges > 0) {
+    throw std::invalid_argument("the solid has " + std::to_string(solid.open_edges) +
+                                " open edges; allowed: 0 in an STL file");
+  }
   std::string bytes;
   bytes.reserve(solid.triangles.size() * kTriangleSize);
   std::uint32_t count = 0;

@@ -102,7 +102,7 @@ class TestSimulate(CommandLine):
         view = self.json(0, 'simulate', drill, '--operation', 'end_primary', '--at', '1', '--svg', self.path('end.svg'))[0]['end_view']
         self.assertEqual((view['uncut_diameter_mm'], view['short_from_mm'], len(view['edges'])), (0.15, 1.2, 2))
         text = pathlib.Path(self.path('end.svg')).read_text()
-        self.assertTrue('>uncut Ø 0.15<' in text and '>short edges from Ø 2.4<' in text)
+        self.assertTrue('>uncut Ø 0.15<' in text and '>short from Ø 2.4<' in text)
 
     def test_what_is_refused(self):
         for at in ('-1', '1,1000', 'nan'):

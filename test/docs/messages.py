@@ -30,6 +30,8 @@ MESSAGES = {
     'src/cli/run.cpp': ('canceling: waiting for the stop', 'setpoints in', 'the feed override is'),
     'src/cli/waiting.cpp': (),
     'src/check/machine_shapes.cpp': (),
+    'src/curve/face_stroke.cpp': (),
+    'src/tool/stl.cpp': ('flute_grinder, lengths in mm',),
     'src/network/master_watch.cpp': (),
     'src/control/loop_requests.cpp': (),
     'src/control/loop_thread.cpp': (),

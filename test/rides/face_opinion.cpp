@@ -116,7 +116,7 @@ struct NextTooth {
 };
 
 /// How far behind its edge a flank ends: at the next tooth, or 40 deg before, from 140 to 160 deg; where the rim passes
-/// the axis 10 deg before, from 180 deg to half of what it turns by so passing.
+/// the axis 10 deg before, from 180 deg to asin(past / from) / 2 more.
 Real endOfFlank(const Face& f) {
   const Real deg = std::acos(Real(-1)) / 180;
   if (f.past_axis == 0) return std::min(f.pitch, std::clamp(f.pitch - 40 * deg, 140 * deg, 160 * deg));

@@ -304,7 +304,10 @@ TEST(EndCheck, RefusesARimThatCannotPassBetweenAxisAndNextTooth) {
     planned(60);
     ADD_FAILURE();
   } catch (const InvalidJob& error) {
-    EXPECT_NE(std::string(error.what()).find("flank of tooth 1: the rim's end is "), std::string::npos) << error.what();
+    EXPECT_NE(
+        std::string(error.what()).find("flank of tooth 1: the wheel's rim cannot end clear of the next tooth, by "),
+        std::string::npos)
+        << error.what();
   }
 }
 

@@ -5,7 +5,9 @@
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/job_file.h"
 #include "flute_grinder/tool/end_volumes.h"
+#include "flute_grinder/tool/stl.h"
 #include "flute_grinder/tool/z_law.h"
+#include "refusal.h"
 #include "tool/face_sweep.h"
 #include "tool/open_edges.h"
 #include "tool/seams.h"
@@ -18,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -206,7 +209,7 @@ CutterSolid tetrahedron(const Vector3d& corner) {
   return solid;
 }
 
-TEST(SolidEnd, ASeamClosesUpToAMicrometreOrIsRefused) {
+TEST(SolidEnd, ASeamClosesUpToAMicrometreAndAnOpenOneMakesNoStlFile) {
   for (const double off : {0.5e-9, 5e-9, 0.5e-6}) {
     CutterSolid solid = tetrahedron({off, 0, 1e-3});
     closeSeams(solid);
@@ -214,7 +217,24 @@ TEST(SolidEnd, ASeamClosesUpToAMicrometreOrIsRefused) {
     EXPECT_EQ(solid.triangles.size(), 4u);
   }
   CutterSolid open = tetrahedron({5e-6, 0, 1e-3});
-  EXPECT_THROW(closeSeams(open), std::invalid_argument);
+  closeSeams(open);
+  EXPECT_EQ(open.open_edges, openEdges(open));
+  EXPECT_GT(open.open_edges, 0u);
+  std::ostringstream file;
+  EXPECT_EQ(test_support::refusalOf<std::invalid_argument>([&] { writeStl(file, open); }).find("the solid has "), 0u);
+  EXPECT_EQ(file.str(), "");
+}
+
+TEST(SolidEnd, CornersOfAClosedSolidStayApart) {
+  CutterSolid solid;
+  const double near = 0.5e-6;  // the length of its shortest edge
+  solid.vertices = {{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}, {near, 0, 1e-3}};
+  for (const std::array<std::uint32_t, 3>& v :
+       {std::array<std::uint32_t, 3>{0, 2, 1}, {0, 1, 4}, {0, 4, 3}, {1, 2, 4}, {2, 3, 4}, {2, 0, 3}})
+    solid.triangles.push_back({v, SurfaceKind::kGash, 0});
+  closeSeams(solid);
+  EXPECT_EQ(solid.open_edges, 0u);
+  EXPECT_EQ(solid.vertices.size(), 5u);
 }
 
 TEST(SolidEnd, AChipThatIsCutOffIsNotShown) {

@@ -77,10 +77,9 @@ struct FaceStroke {
 
 /// The stroke that grinds a flank of an end tooth. For a right-hand tool the wheel comes down along Y until its rim has
 /// passed the axis by as much as the next tooth's edge allows, or as is asked. For a left-hand one a cup comes along X,
-/// the inner edge of its rim round the next tooth. A flank ends 140 deg behind its edge even if the next tooth is
-/// farther, or 40 deg before that tooth, up to 160 deg; with `past_axis` a half turn behind it, or 10 deg before, up to
-/// half the angle more at which the rim passes the axis as seen from `next_from`. What is left of the heel is the
-/// gash's. Stock is normal to the flank.
+/// the inner edge of its rim round the next tooth. Before a far tooth a flank ends earlier, and what is left of the
+/// heel is the gash's: 40 deg before that tooth, but from 140 to 160 deg behind its own edge. With `past_axis` it ends
+/// 10 deg before, but from 180 deg to 180 deg + asin(past_axis / next_from) / 2. Stock is normal to the flank.
 /// @param normal outward, from endNormal().
 /// @param through a place on the flank.
 /// @param gap least distance of the rim from the next tooth's edge; with `past_axis`, gap and `past_axis` together

@@ -30,10 +30,12 @@ struct SolidTriangle {
   std::uint16_t tooth;  ///< tooth of the rake face, flute, land, gash or flank
 };
 
-/// A closed surface. Coincident points are exactly equal, and no triangle has two of them.
+/// A closed surface, but for cracks that only rounding explains. Coincident points are exactly equal, and no triangle
+/// has two of them.
 struct CutterSolid {
   std::vector<Eigen::Vector3d> vertices;  ///< vertices in the cutter's frame at A = 0 [m]
   std::vector<SolidTriangle> triangles;
+  std::size_t open_edges = 0;  ///< edges along such cracks; 0 if nothing is removed
 
   double volume() const;  ///< enclosed volume [m^3]
 };
@@ -41,8 +43,7 @@ struct CutterSolid {
 /// The ground cutter as a closed surface through sections. Between them, layers are interpolated along the helix, so
 /// the facets' error does not grow with the twist.
 /// @param removed volumes to take out of it.
-/// @throw std::invalid_argument like sectionOutline(), for an unusable extent or resolution, and for a rest that does
-/// not close.
+/// @throw std::invalid_argument like sectionOutline(), and for an unusable extent or resolution.
 CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution = {},
                         const std::vector<RemovedVolume>& removed = {});
 

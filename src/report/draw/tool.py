@@ -91,7 +91,7 @@ def draw_end(axes, view, legend_place):
     if view['edges']:
         legend.append(Line2D([], [], color=INK, linewidth=2, label='cutting edge'))
     for diameter, style, words in ((view['uncut_diameter_mm'], '--', 'uncut Ø %g'),
-                                   (2 * view['short_from_mm'], ':', 'short edges from Ø %g')):
+                                   (2 * view['short_from_mm'], ':', 'short from Ø %g')):
         if diameter > 0:
             axes.plot(diameter / 2 * np.cos(circle), diameter / 2 * np.sin(circle), color=INK, linestyle=style)
             legend.append(Line2D([], [], color=INK, linestyle=style, label=words % diameter))

@@ -1,10 +1,10 @@
 #include "flute_grinder/tool/cutter_solid.h"
 
-#include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
 #include "tool/seams.h"
 #include "tool/solid_cut.h"
+#include "tool/solid_layers.h"
 
 #include <Eigen/Geometry>
 
@@ -16,14 +16,6 @@ namespace grinder {
 
 namespace {
 
-constexpr double kNoStep = 1e-9;           ///< [m]
-constexpr std::size_t kShankSections = 8;  ///< sections computed at once, until one is whole
-
-struct Layer {
-  double x;
-  std::vector<PolarPoint> outline;
-};
-
 OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution) {
   const std::vector<GroundTooth>& teeth = cutter.teeth();
   double widest = teeth.empty() ? 0 : units::kTurn + teeth.front().angle - teeth.back().angle;
@@ -31,62 +23,6 @@ OutlineGrid gridOf(const GroundCutter& cutter, const SolidResolution& resolution
   const double columns = std::ceil(widest / units::kTurn * static_cast<double>(resolution.around));
   return {teeth.size(), resolution.rings, std::max<std::size_t>(1, static_cast<std::size_t>(columns)),
           !cutter.reliefs(0).empty()};
-}
-
-/// The sections of cone and shank, and the layers between them.
-std::vector<Layer> layersOf(const GroundCutter& cutter, const SolidExtent& extent, const SolidResolution& resolution,
-                            const OutlineGrid& grid) {
-  std::vector<Layer> layers;
-  const LogCurve curve(cutter.cutter());
-  const auto add = [&](double x, std::vector<PolarPoint> outline) {
-    Layer next{x, std::move(outline)};
-    if (!layers.empty() && x > layers.back().x) {
-      const Layer last = layers.back();
-      const double twist = std::abs(curve.a(x) - curve.a(last.x));
-      const double parts = std::ceil(twist / units::kTurn * static_cast<double>(resolution.around));
-      for (double part = 1; part < parts; ++part) {
-        Layer& layer = layers.emplace_back(Layer{last.x + part / parts * (x - last.x), last.outline});
-        for (std::size_t i = 0; i < layer.outline.size(); ++i) {
-          layer.outline[i] = between(last.outline[i], next.outline[i], part / parts);
-        }
-      }
-    }
-    layers.push_back(std::move(next));
-  };
-  const double step = (extent.to - extent.from) / static_cast<double>(resolution.sections - 1);
-  const auto at = [&](std::size_t i) {
-    return i + 1 == resolution.sections ? extent.to : extent.from + static_cast<double>(i) * step;
-  };
-  const auto outlines = [&](std::size_t count, const auto& x_of, const auto& radius_of) {
-    std::vector<std::vector<PolarPoint>> all(count);
-    onAllCores(count, [&](std::size_t i) { all[i] = sectionOutline(cutter, x_of(i), radius_of(x_of(i)), grid); });
-    return all;
-  };
-  auto of_cone = outlines(resolution.sections, at, [&](double x) { return cutter.cutter().radius(x); });
-  for (std::size_t i = 0; i < of_cone.size(); ++i) add(at(i), std::move(of_cone[i]));
-  if (!(extent.shank_to > extent.to)) return layers;
-  const double shank = extent.shank_diameter / 2;
-  const auto is_whole = [&] {
-    const auto& outline = layers.back().outline;
-    return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == shank; });
-  };
-  // Without a step there must be no ring between cone and shank: it would appear as a line of slivers.
-  const bool is_step = std::abs(shank - cutter.cutter().radius(extent.to)) > kNoStep;
-  const std::size_t first = is_step ? 0 : 1;
-  const auto shank_x = [&](std::size_t i) {
-    return std::min(extent.shank_to, extent.to + static_cast<double>(i) * step);
-  };
-  std::vector<std::vector<PolarPoint>> of_shank;
-  for (std::size_t i = first; shank_x(i) < extent.shank_to && (i == 0 || !is_whole()); ++i) {
-    const std::size_t next = (i - first) % kShankSections;
-    if (next == 0) {
-      of_shank = outlines(
-          kShankSections, [&](std::size_t k) { return shank_x(i + k); }, [&](double) { return shank; });
-    }
-    add(shank_x(i), std::move(of_shank[next]));
-  }
-  add(extent.shank_to, sectionOutline(cutter, extent.shank_to, shank, grid));
-  return layers;
 }
 
 /// Corners of a triangle, as indices of vertices.
@@ -157,7 +93,7 @@ class Joiner {
       : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), cut_(cut) {}
 
   /// @param with_inside whether the points inside are needed.
-  void add(const Layer& layer, bool with_inside) {
+  void add(const SolidLayer& layer, bool with_inside) {
     sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>((end_ - begin_) * cut_.volumes()));
     begin_ = end_;
     end_ = static_cast<std::uint32_t>(solid_.vertices.size());
@@ -276,9 +212,9 @@ class Joiner {
 };
 
 /// The box about a solid.
-Box boxOf(const std::vector<Layer>& layers) {
+Box boxOf(const std::vector<SolidLayer>& layers) {
   double radius = 0;
-  for (const Layer& layer : layers) {
+  for (const SolidLayer& layer : layers) {
     for (const PolarPoint& p : layer.outline) radius = std::max(radius, p.radius);
   }
   return {{layers.front().x, -radius, -radius}, {layers.back().x, radius, radius}};
@@ -308,7 +244,7 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
                         const std::vector<RemovedVolume>& removed) {
   check(extent, resolution);
   const OutlineGrid grid = gridOf(cutter, resolution);
-  const std::vector<Layer> layers = layersOf(cutter, extent, resolution, grid);
+  const std::vector<SolidLayer> layers = solidLayers(cutter, extent, resolution, grid);
   const bool turns_on = layers.front().outline.front().turns < layers.back().outline.front().turns;
   const SolidCut cut(removed, boxOf(layers));
   Joiner joiner(grid, cutter.direction(), turns_on, cut);

@@ -317,8 +317,9 @@ class Outliner {
 
 }  // namespace
 
-PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part) noexcept {
-  return {from.radius + part * (to.radius - from.radius), from.turns + roundedTurns(part * (to.turns - from.turns))};
+PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part, double bend) noexcept {
+  return {from.radius + part * (to.radius - from.radius),
+          from.turns + roundedTurns(part * (to.turns - from.turns) + bend)};
 }
 
 SurfaceKind OutlineGrid::kind(std::size_t point, CutDirection direction) const noexcept {

@@ -166,23 +166,25 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
   const auto sin_at_face = [&](double w) { return (p.z + (w + p.dx * sin_) / cos_) / r; };
   const double sin_min = sin_at_face(wheel_.lowerFace()), sin_max = sin_at_face(wheel_.upperFace());
   if (!(std::max(-sin_open, sin_min) < std::min(sin_open, sin_max))) return std::nullopt;
-  const double open = std::acos(cos_open);
-  const double min = -sin_open < sin_min ? std::asin(sin_min) : -open;
-  const double max = sin_max < sin_open ? std::asin(sin_max) : open;
+  const auto lowEnd = [&] { return -sin_open < sin_min ? std::asin(sin_min) : -std::acos(cos_open); };
+  const auto highEnd = [&] { return sin_max < sin_open ? std::asin(sin_max) : std::acos(cos_open); };
 
   // From the end inward to the first point in the wheel.
-  const double end = high ? max : min;
-  const double step = ((high ? min : max) - end) / kAnglesPerPose;
-  const double cos_step = std::cos(step), sin_step = std::sin(step);
-  double y = r * std::cos(end), z = r * std::sin(end);
+  const double end = high ? highEnd() : lowEnd();
+  const double sin_end = high ? std::min(sin_open, sin_max) : std::max(-sin_open, sin_min);
+  double y = r * std::sqrt(1 - sin_end * sin_end), z = r * sin_end;
   double closest = kInfinite;  // distance to the spindle's axis
   const auto placeAt = [&](double theta) {
     const FromWheel from = fromWheel(p, y, z);
     closest = std::min(closest, from.spindle);
     return PlaceOnCircle{theta, from.outside};
   };
-  PlaceOnCircle before = placeAt(end), nearest = before;
-  if (before.outside <= 0) return end;
+  const PlaceOnCircle first = placeAt(end);
+  if (first.outside <= 0) return end;
+  const double min = high ? lowEnd() : end, max = high ? end : highEnd();
+  const double step = ((high ? min : max) - end) / kAnglesPerPose;
+  const double cos_step = std::cos(step), sin_step = std::sin(step);
+  PlaceOnCircle before = first, nearest = first;
   for (int i = 1; i <= kAnglesPerPose; ++i) {
     std::tie(y, z) = std::make_tuple(y * cos_step - z * sin_step, z * cos_step + y * sin_step);
     const PlaceOnCircle here = placeAt(end + i * step);
@@ -198,7 +200,7 @@ std::optional<double> WheelSweep::endAt(const Pose& p, double r, bool high) cons
   const auto [theta, value] = boost::math::tools::brent_find_minima(f, std::max(min, nearest.theta - way),
                                                                     std::min(max, nearest.theta + way), 26, steps);
   if (!(value <= 0)) return std::nullopt;
-  return endBetween(p, r, {theta, value}, {end, f(end)});
+  return endBetween(p, r, {theta, value}, first);
 }
 
 double WheelSweep::endBetween(const Pose& p, double r, PlaceOnCircle in, PlaceOnCircle out) const noexcept {

@@ -76,6 +76,34 @@ TEST(CutterSolid, IsClosedAndHasTheVolumeOfTheSectionsAlsoInAnStlFile) {
   }
 }
 
+/// Sections that are left out, and layers between sections, are where a wheel has been.
+TEST(CutterSolid, KeepsToTheWallsOfTheFlutesBetweenItsSections) {
+  for (const SolidCase& c : test_support::solidCases()) {
+    if (c.name != "paper" && c.name != "left hand" && c.name != "back taper") continue;
+    SCOPED_TRACE(c.name);
+    std::size_t walls = 0;
+    for (const Eigen::Vector3d& v : cutterSolid(c.ground, {c.from, c.to}, {60, 8, 60}).vertices) {
+      const double x = v.x(), r = v.tail<2>().norm(), blank = c.ground.cutter().radius(x);
+      if (!(x > c.from && x < c.to && r < 0.999 * blank)) continue;
+      double nearest = blank;
+      for (const GroundTooth& tooth : c.ground.teeth()) {
+        const Flute& flute = c.ground.flutes()[tooth.flute];
+        // Beside a floor the angle says nothing.
+        if (r < leastRadius(flute, x, blank) + 0.02 * blank) nearest = 0;
+        const auto arc = nearest > 0 ? c.ground.arc(flute, x, r) : std::nullopt;
+        if (!arc) continue;
+        for (const double end : {arc->low, arc->high}) {
+          const double off = std::remainder(std::atan2(v.z(), v.y()) - tooth.angle - end, 2 * units::kPi);
+          nearest = std::min(nearest, r * std::abs(off));
+        }
+      }
+      walls += nearest > 0;
+      EXPECT_LT(nearest, 1e-4 * blank) << x << ' ' << r;
+    }
+    EXPECT_GT(walls, 500u);
+  }
+}
+
 TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
   Case c = cylinder();
   c.to = 15;

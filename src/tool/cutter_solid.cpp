@@ -1,5 +1,6 @@
 #include "flute_grinder/tool/cutter_solid.h"
 
+#include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/require.h"
 #include "flute_grinder/base/units.h"
 #include "tool/seams.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace grinder {
@@ -85,83 +87,114 @@ class SectionMesh {
   std::vector<std::uint16_t> tooth_;  ///< tooth of each body
 };
 
-/// Joins layers into a solid, less what a cut removes.
-class Joiner {
- public:
-  /// @param turns_on whether the outlines turn toward higher indices from layer to layer.
-  Joiner(const OutlineGrid& grid, CutDirection direction, bool turns_on, const SolidCut& cut)
-      : grid_(grid), direction_(direction), turns_on_(turns_on), mesh_(grid, direction), cut_(cut) {}
+/// The corners of a solid, and what joins them.
+struct Frame {
+  Frame(const OutlineGrid& grid, CutDirection direction, const std::vector<SolidLayer>& layers, const SolidCut& cut)
+      : grid(grid),
+        direction(direction),
+        turns_on(layers.front().outline.front().turns < layers.back().outline.front().turns),
+        mesh(grid, direction),
+        cut(cut) {
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      const double x = layers[i].x;
+      is_step.push_back(i > 0 && x == layers[i - 1].x);
+      is_cut.push_back(layers[i > 0 ? i - 1 : 0].x <= cut.reach());
+      begin.push_back(static_cast<std::uint32_t>(vertices.size()));
+      const bool with_inside = is_cut.back() || i == 0 || i + 1 == layers.size();
+      for (const PolarPoint& p : with_inside ? mesh.points(layers[i].outline) : layers[i].outline) {
+        const double angle = units::kTurn * (p.turns - std::floor(p.turns));
+        vertices.emplace_back(x, p.radius * std::cos(angle), p.radius * std::sin(angle));
+      }
+    }
+    begin.push_back(static_cast<std::uint32_t>(vertices.size()));
+  }
 
-  /// @param with_inside whether the points inside are needed.
-  void add(const SolidLayer& layer, bool with_inside) {
-    sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>((end_ - begin_) * cut_.volumes()));
-    begin_ = end_;
-    end_ = static_cast<std::uint32_t>(solid_.vertices.size());
-    for (const PolarPoint& p : with_inside ? mesh_.points(layer.outline) : layer.outline) {
-      const double angle = units::kTurn * (p.turns - std::floor(p.turns));
-      solid_.vertices.emplace_back(layer.x, p.radius * std::cos(angle), p.radius * std::sin(angle));
-      sides_.resize(sides_.size() + cut_.volumes());
-      cut_.findSides(solid_.vertices.back(), sides_.data() + sides_.size() - cut_.volumes());
+  OutlineGrid grid;
+  CutDirection direction;
+  bool turns_on;  ///< whether the outlines turn toward higher indices from layer to layer
+  SectionMesh mesh;
+  const SolidCut& cut;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::uint32_t> begin;  ///< first vertex of each layer, and the end of all
+  std::vector<bool> is_step;         ///< whether a layer is at the X of the one before
+  std::vector<bool> is_cut;          ///< whether the cut reaches from the layer before to this one
+};
+
+/// The part of a solid between two layers, or at one end, less what a cut removes.
+class Piece {
+ public:
+  /// @param first,last layers: that of an end, or one and the next.
+  Piece(const Frame& frame, std::size_t first, std::size_t last)
+      : frame_(frame), is_cut_(frame.is_cut[last]), begin_(frame.begin[first]), end_(frame.begin[last]) {
+    if (is_cut_) findSides(frame.begin[last + 1]);
+    if (first == last) {
+      close(first > 0);
+    } else {
+      join(frame.is_step[last]);
     }
   }
 
-  /// Joins the two layers added last.
-  /// @param is_step whether they are at the same X.
-  /// @param with_inside whether volumes are removed between them.
-  void joinLayers(bool is_step, bool with_inside) {
-    const auto n = static_cast<std::uint32_t>(grid_.size());
+  /// Adds it to a solid that begins with the frame's vertices.
+  void addTo(CutterSolid& solid) const {
+    const auto first = static_cast<std::uint32_t>(solid.vertices.size());
+    solid.vertices.insert(solid.vertices.end(), cut_part_.vertices.begin(), cut_part_.vertices.end());
+    solid.triangles.insert(solid.triangles.end(), triangles_.begin(), triangles_.end());
+    for (SolidTriangle t : cut_part_.triangles) {
+      for (std::uint32_t& v : t.vertices) v += first;
+      solid.triangles.push_back(t);
+    }
+  }
+
+ private:
+  void findSides(std::uint32_t end) {
+    const std::size_t volumes = frame_.cut.volumes();
+    sides_.resize((end - begin_) * volumes);
+    for (std::uint32_t v = begin_; v < end; ++v) {
+      frame_.cut.findSides(frame_.vertices[v], sides_.data() + (v - begin_) * volumes);
+    }
+  }
+
+  void join(bool is_step) {
+    const OutlineGrid& grid = frame_.grid;
+    const auto n = static_cast<std::uint32_t>(grid.size());
     for (std::uint32_t i = 0; i < n; ++i) {
       const std::uint32_t next = (i + 1) % n;
-      const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid_.kind(i, direction_);
-      const auto tooth = static_cast<std::uint16_t>(grid_.tooth(i, direction_));
+      const SurfaceKind kind = is_step ? SurfaceKind::kEndFace : grid.kind(i, frame_.direction);
+      const auto tooth = static_cast<std::uint16_t>(grid.tooth(i, frame_.direction));
       // The diagonal runs against the turn, as in the tetrahedra: the other diagonal would roughen a land.
-      const bool up = (i < next) != turns_on_;
+      const bool up = (i < next) != frame_.turns_on;
       const std::uint32_t from = up ? i : next, to = up ? next : i;
       addTriangle({begin_ + i, begin_ + next, end_ + to}, kind, tooth);
       addTriangle({begin_ + from, end_ + next, end_ + i}, kind, tooth);
     }
-    if (!with_inside) return;
-    for (const Triangle& t : mesh_.triangles()) addPrism(t);
+    if (!is_cut_) return;
+    for (const Triangle& t : frame_.mesh.triangles()) addPrism(t);
   }
 
-  /// Closes the solid at the layer added last.
   void close(bool toward_shank) {
-    for (std::size_t i = 0; i < mesh_.triangles().size(); ++i) {
-      auto [a, b, c] = mesh_.triangles()[i];
+    const SectionMesh& mesh = frame_.mesh;
+    for (std::size_t i = 0; i < mesh.triangles().size(); ++i) {
+      auto [a, b, c] = mesh.triangles()[i];
       if (!toward_shank) std::swap(b, c);
-      addTriangle({end_ + a, end_ + b, end_ + c}, SurfaceKind::kEndFace, mesh_.toothOf(i));
+      addTriangle({end_ + a, end_ + b, end_ + c}, SurfaceKind::kEndFace, mesh.toothOf(i));
     }
   }
 
-  CutterSolid take() {
-    if (cut_.isEmpty()) return std::move(solid_);
-    const auto first = static_cast<std::uint32_t>(solid_.vertices.size());
-    for (SolidTriangle& t : cut_part_.triangles) {
-      for (std::uint32_t& v : t.vertices) v += first;
-    }
-    const auto append = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
-    append(solid_.vertices, cut_part_.vertices);
-    append(solid_.triangles, cut_part_.triangles);
-    closeSeams(solid_);
-    return std::move(solid_);
-  }
-
- private:
-  /// Cuts the prism between a triangle of the last layer but one and the same triangle of the last layer. The diagonals
-  /// of its sides all run from the lower index to the higher, or all the other way, so that they match the neighbours'
-  /// diagonals.
+  /// Cuts the prism between a triangle of one layer and the same triangle of the next. The diagonals of its sides all
+  /// run from the lower index to the higher, or all the other way, so that they match the neighbours' diagonals.
   void addPrism(Triangle t) {
-    const bool odd = isOdd(t) != turns_on_;
+    const bool odd = isOdd(t) != frame_.turns_on;
     std::sort(t.begin(), t.end());
-    if (turns_on_) std::reverse(t.begin(), t.end());
+    if (frame_.turns_on) std::reverse(t.begin(), t.end());
     const auto [a, b, c] = t;
-    const auto touched = cut_.touched({sidesOf(begin_ + a), sidesOf(begin_ + b), sidesOf(begin_ + c), sidesOf(end_ + a),
-                                       sidesOf(end_ + b), sidesOf(end_ + c)});
+    const auto touched = frame_.cut.touched({sidesOf(begin_ + a), sidesOf(begin_ + b), sidesOf(begin_ + c),
+                                             sidesOf(end_ + a), sidesOf(end_ + b), sidesOf(end_ + c)});
     if (!touched || touched->empty()) return;
     std::vector<CutFace> faces;
     const auto cut = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
       if (odd) std::swap(i, j);
-      cut_.addFaces(*touched, {solid_.vertices[i], solid_.vertices[j], solid_.vertices[k], solid_.vertices[l]}, faces);
+      const auto& at = frame_.vertices;
+      frame_.cut.addFaces(*touched, {at[i], at[j], at[k], at[l]}, faces);
     };
     cut(begin_ + a, begin_ + b, begin_ + c, end_ + c);
     cut(begin_ + a, begin_ + b, end_ + c, end_ + b);
@@ -176,9 +209,8 @@ class Joiner {
     return !(a == b || b == c || c == a);
   }
 
-  /// Of a vertex of the two layers added last.
   const std::uint64_t* sidesOf(std::uint32_t vertex) const {
-    return sides_.data() + (vertex - begin_) * cut_.volumes();
+    return sides_.data() + (vertex - begin_) * frame_.cut.volumes();
   }
 
   void append(const Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
@@ -191,24 +223,21 @@ class Joiner {
   }
 
   void addTriangle(const Triangle& v, SurfaceKind kind, std::uint16_t tooth) {
-    if (!hasArea(solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]])) return;
-    const auto touched = cut_.touched({sidesOf(v[0]), sidesOf(v[1]), sidesOf(v[2])});
+    const Eigen::Vector3d &a = frame_.vertices[v[0]], &b = frame_.vertices[v[1]], &c = frame_.vertices[v[2]];
+    if (!hasArea(a, b, c)) return;
+    if (!is_cut_) return triangles_.push_back({v, kind, tooth});
+    const auto touched = frame_.cut.touched({sidesOf(v[0]), sidesOf(v[1]), sidesOf(v[2])});
     if (!touched) return;
-    if (touched->empty()) return solid_.triangles.push_back({v, kind, tooth});
-    for (const Polygon& p :
-         cut_.outside(*touched, {solid_.vertices[v[0]], solid_.vertices[v[1]], solid_.vertices[v[2]]}))
-      append(p, kind, tooth);
+    if (touched->empty()) return triangles_.push_back({v, kind, tooth});
+    for (const Polygon& p : frame_.cut.outside(*touched, {a, b, c})) append(p, kind, tooth);
   }
 
-  OutlineGrid grid_;
-  CutDirection direction_;
-  bool turns_on_;
-  SectionMesh mesh_;
-  const SolidCut& cut_;
-  CutterSolid solid_;                  ///< of the points of the layers
-  CutterSolid cut_part_;               ///< the pieces of what is cut
-  std::vector<std::uint64_t> sides_;   ///< SolidCut::findSides() of the two layers added last
-  std::uint32_t begin_ = 0, end_ = 0;  ///< first points of the two layers added last
+  const Frame& frame_;
+  bool is_cut_;
+  std::uint32_t begin_, end_;             ///< first vertices of the two layers; of an end both the same
+  std::vector<std::uint64_t> sides_;      ///< SolidCut::findSides() of both layers where the cut reaches
+  std::vector<SolidTriangle> triangles_;  ///< those of the frame's vertices
+  CutterSolid cut_part_;                  ///< the pieces of what is cut
 };
 
 /// The box about a solid.
@@ -245,18 +274,16 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
   check(extent, resolution);
   const OutlineGrid grid = gridOf(cutter, resolution);
   const std::vector<SolidLayer> layers = solidLayers(cutter, extent, resolution, grid);
-  const bool turns_on = layers.front().outline.front().turns < layers.back().outline.front().turns;
   const SolidCut cut(removed, boxOf(layers));
-  Joiner joiner(grid, cutter.direction(), turns_on, cut);
-  joiner.add(layers.front(), true);
-  joiner.close(false);
-  for (std::size_t i = 1; i < layers.size(); ++i) {
-    const bool is_cut = layers[i - 1].x <= cut.reach();
-    joiner.add(layers[i], is_cut || i + 1 == layers.size());
-    joiner.joinLayers(layers[i].x == layers[i - 1].x, is_cut);
-  }
-  joiner.close(true);
-  return joiner.take();
+  Frame frame(grid, cutter.direction(), layers, cut);
+  const std::size_t last = layers.size() - 1;
+  std::vector<std::optional<Piece>> pieces(last + 2);  // one end, what is between two layers, the other end
+  onAllCores(pieces.size(), [&](std::size_t i) { pieces[i].emplace(frame, i > 0 ? i - 1 : 0, std::min(i, last)); });
+  CutterSolid solid;
+  solid.vertices = std::move(frame.vertices);
+  for (const auto& piece : pieces) piece->addTo(solid);
+  if (!cut.isEmpty()) closeSeams(solid);
+  return solid;
 }
 
 }  // namespace grinder

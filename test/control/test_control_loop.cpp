@@ -86,5 +86,18 @@ TEST(ControlLoopSamples, AJobIsStreamedWholeWithoutRoomForThemAndItsEndIsReporte
   EXPECT_FALSE(rig.cycle().job_ended);
 }
 
+TEST(ControlLoopSamples, OfAJobThatRunsDoNotReportTheEndOfTheOneBefore) {
+  RigIn rig(S::kReady);
+  SetpointStream first = rig.paperStream(), second = rig.paperStream();
+  rig.runUnseen(8192);
+  for (SetpointStream* stream : {&first, &second}) {
+    ASSERT_TRUE(rig.loop->startJob({stream, wheelOf(stream->program())}));
+    rig.runUnseen(stream == &first ? planned().size() + 10 : 10);
+  }
+  for (CycleSample sample; rig.loop->pop(sample);) EXPECT_FALSE(sample.job_ended);
+  EXPECT_FALSE(rig.cycle().job_ended);
+  EXPECT_EQ(rig.last().state, S::kRunning);
+}
+
 }  // namespace test_control_loop
 }  // namespace grinder::test_support

@@ -99,6 +99,12 @@ TEST_F(Preparation, ThatHangsIsRefusedInTimeAndUntilItReturns) {
   EXPECT_FALSE(isPowerOn());
 }
 
+TEST_F(Preparation, ThatHangsIsNotBlamedForWrongReadings) {
+  make(0.1, [this] { gate.pass(); });
+  rig().drive.on_read = [](FakeDrive& d) { d.position[kX] += d.status.feedback_count % 2 == 0 ? 0.01 : -0.01; };
+  EXPECT_EQ(enable(), "enable refused: the drive gives no valid, fresh positions");
+}
+
 TEST_F(Preparation, IsWithdrawnByADisable) {
   make(kForEver, [this] { gate.pass(); });
   post(E::kEnable);

@@ -103,6 +103,7 @@ TEST(Homing, LeavesNothingByWhichYIsDoubted) {
     RigIn rig(state);
     rig.loop->postStop(E::kDisable);
     rig.drive.status.homed = state == S::kHoming;
+    rig.drive.position[kY] += 0.01;
     ASSERT_EQ(rig.cycle().state, S::kDisabled);
     rig.drive.status.homed = true;
     rig.drive.position[kY] += 0.01;

@@ -111,8 +111,6 @@ TEST_P(JogFrom, AStepBeyondALimitIsRefusedWithTheLimit) {
     EXPECT_CONTAINS(answer.text, "jog refused: it would lead axis ");
     EXPECT_CONTAINS(answer.text, c.text);
   }
-  const double way = 0.3 - rig_.last().command[kX];
-  EXPECT_FALSE(rig_.jog(step(kX, std::nextafter(way, 1) + 1e-16)).accepted);
   rig_.run(10);
   EXPECT_TRUE(atRestFrom(rig_.log, before_));
   EXPECT_EQ(rig_.last().state, GetParam());
@@ -247,6 +245,17 @@ TEST(Jog, FromOutsideTheLimitsOfAnyAxisIsRefused) {
     rig.enable();
     EXPECT_EQ(rig.jog(step(kX, 0.001)).text, std::string("jog refused: ") + text);
   }
+}
+
+/// A client may round a distance to a limit by a unit in its last place, and no more.
+TEST(Jog, ByAStepThatOnlyRoundingLeadsBeyondALimitEndsThere) {
+  RigIn rig(S::kReady);
+  ASSERT_EQ(rig.last().command[kZ], 0);
+  const double limit = machineConfig().machine.limits.max_position[kZ], rounded = std::nextafter(limit, 1);
+  EXPECT_FALSE(rig.jog(step(kZ, std::nextafter(rounded, 1))).accepted);
+  ASSERT_TRUE(rig.jog(step(kZ, rounded)).accepted);
+  rig.runUntil(S::kReady);
+  EXPECT_EQ(rig.last().command[kZ], limit);
 }
 
 TEST(Jog, OnADriveWithABufferItIsOverWhenTheAxisRests) {

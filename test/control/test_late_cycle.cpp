@@ -43,6 +43,9 @@ TEST(LateCycle, IsNoFaultAtRest) {
     rig.cycle();
     EXPECT_EQ(rig.cycle(900).state, state);
   }
+  Rig<FakeDrive> rig(config);
+  ASSERT_NO_FATAL_FAILURE(rig.startPaper());
+  EXPECT_EQ(rig.cycle(900).state, S::kRunning) << "its first setpoint is where the axes stand";
 }
 
 TEST(LateCycle, IsNothingToADriveThatHasCommandsWaiting) {

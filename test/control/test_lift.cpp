@@ -26,6 +26,8 @@ void turnTo(Rig<FakeDrive>& rig, double y) {
 TEST(InTheWork, LiftGoesStraightUpUntilItIsClear) {
   RigInTheWork rig;
   EXPECT_EQ(rig.askToStartPaper().text, "start refused: the wheel is in the work; lift it first");
+  ASSERT_TRUE(rig.jog({kY, true, 0, 1e-3}).accepted) << "it has no end of its own, as the lift has";
+  rig.runUntil(S::kReady);
   const std::size_t before = rig.log.size() - 1;
   const Axes from = rig.last().command;
   ASSERT_TRUE(rig.ask(E::kLift).accepted);
@@ -65,6 +67,10 @@ TEST(InTheWork, IsOverWhenTheAxisIsSeenAboveByADriveThatKnowsWhereItIs) {
   };
   EXPECT_TRUE(seeAt(kClearanceHeight - 11e-6, true, 200));
   EXPECT_TRUE(seeAt(0.05, false, 200)) << "the position means nothing";
+  EXPECT_TRUE(seeAt(kClearanceHeight - 1e-4, false, 1));
+  rig.drive.on_read = [](FakeDrive& d) { --d.status.feedback_count; };
+  EXPECT_TRUE(seeAt(0.05, true, 200)) << "the position is an old one";
+  rig.drive.on_read = nullptr;
   EXPECT_TRUE(seeAt(kClearanceHeight - 1e-4, false, 1));
   for (int i = 0; i < 20; ++i) {
     EXPECT_TRUE(seeAt(kClearanceHeight + 1e-4, true, 10)) << "readings may be wrong";
@@ -375,6 +381,7 @@ TEST(AfterARestart, ALiftBeyondTheAxisIsRefused) {
   expect_refused({true, 0.2, 0.01}, 0, "200");
   expect_refused({true, std::numeric_limits<double>::quiet_NaN(), 0.01}, 0, "nan");
   expect_refused(unknownWheel(machineConfig().machine.limits, false), 0.151, "321");  // by its whole travel
+  EXPECT_DOUBLE_EQ(unknownWheel(machineConfig().machine.limits, true).back, 0.4);     // also of X
 }
 
 TEST(YThatWasReadWhereItCannotBe, IsNotBelievedAfterARestart) {

@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 // The thread.
 namespace grinder::test_support {
@@ -83,9 +84,9 @@ TEST_F(ControlLoopThread, OfADriveWithAClockOfItsOwnThatThrowsAgainLaterKeepsThe
 
 TEST_F(ControlLoopThread, GoesOnWhenTheDriveReturnsATimeThatCannotHavePassed) {
   const std::int32_t least = std::numeric_limits<std::int32_t>::min(), most = std::numeric_limits<std::int32_t>::max();
-  for (const std::int32_t seconds : {least, -1, 3601, most}) {
+  for (const auto& [seconds, nanoseconds] : {std::pair(least, 0), {-1, 0}, {3600, 1}, {most, 0}}) {
     drive_.on_wait = [] {};
-    drive_.waited = ros::Duration(seconds, 0);
+    drive_.waited = ros::Duration(seconds, nanoseconds);
     ControlLoop loop(drive_, machineConfig());
     loop.startThread();
     CycleSample sample;
@@ -132,6 +133,14 @@ TEST_F(ControlLoopThread, TheWatchdogSwitchesThePowerOffOfADriveThatHangs) {
   EXPECT_FALSE(loop_->hasEnded());
   hangs = false;
   EXPECT_TRUE(soon([&] { return loop_->hasEnded(); }));
+  drive_.power_off = false;
+  FakeDrive other;
+  ControlLoop never_started(other, machineConfig());
+  for (int i = 0; i < 2; ++i) {  // for longer than the first one waits
+    const LoopWatchdog later(never_started, other);
+    ASSERT_TRUE(soon([&] { return later.loopHangs(); }));
+  }
+  EXPECT_FALSE(watchdog.loopHangs() || drive_.power_off) << "a loop that has ended does not hang";
 }
 
 TEST_F(ControlLoopThread, OfADriveThatReturnsHasNoPowerBeforeItsPowerOffHasReturned) {
@@ -225,9 +234,11 @@ TEST_F(ControlLoopThread, KeepsTheComputersTime) {
   EXPECT_GE(loop_->status().time, sample.time);
 }
 
-TEST_F(ControlLoopThread, TakesNoSignal) {
+TEST_F(ControlLoopThread, TakesNoSignalAndIsKnownAsItsOwn) {
   std::atomic<int> open{-1};
+  std::atomic<bool> is_own{false};
   drive_.on_read = [&](FakeDrive&) {
+    is_own = loop_->isOwnThread();
     sigset_t blocked;
     pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
     int count = 0;
@@ -239,7 +250,9 @@ TEST_F(ControlLoopThread, TakesNoSignal) {
   loop_->startThread();
   CycleSample sample;
   ASSERT_TRUE(popInTime(sample));
+  EXPECT_FALSE(loop_->isOwnThread());
   loop_->stopThread();
+  EXPECT_TRUE(is_own);
   EXPECT_EQ(open, 0);
 }
 
@@ -266,7 +279,8 @@ TEST_F(ControlLoopThread, AnswersAStopAndARequestAndReportsItsStatus) {
   loop_->startThread();
   CycleSample sample;
   ASSERT_TRUE(popInTime(sample));
-  EXPECT_TRUE(loop_->stop(E::kDisable).accepted);
+  const RequestReply done = loop_->stop(E::kDisable);
+  EXPECT_TRUE(done.accepted && done.answered);
   const RequestReply answer = loop_->stop(E::kCancel);
   EXPECT_TRUE(answer.answered);
   EXPECT_EQ(answer.text, "cancel refused: the machine is in state disabled; allowed: enable, disable, reset");

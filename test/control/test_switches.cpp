@@ -152,6 +152,9 @@ TEST(SwitchesInAJob, WhatIsOffKeepsALiftedWheelFromTheWorkUntilItIsOnAndReady) {
     EXPECT_EQ(rig.last().state, S::kRetracted);
     EXPECT_TRUE(atRestFrom(rig.log, lifted));
     EXPECT_EQ(rig.last().interlock, Interlock::kNone) << "the loop did not hold the job";
+    rig.drive.status.homed = false;
+    EXPECT_EQ(rig.cycle().interlock, Interlock::kNotHomed) << "which nobody switched off";
+    rig.drive.status.homed = true;
     rig.drive.on_read = nullptr;
     rig.run(2);
     ASSERT_TRUE(rig.ask(E::kResume).accepted);

@@ -89,6 +89,7 @@ TEST(Swivel, IsConfirmedByTheStartOfAJobUnlessItIsMeasured) {
     ASSERT_TRUE(rig.loop->startJob({&*rig.stream, wheelOf(rig.stream->program()), true, true}));
     EXPECT_EQ(rig.answerOf([&] { return rig.loop->startJobReply(); }).accepted, !measured);
     EXPECT_EQ(rig.loop->status().swivel.angle, measured ? 32 * kDegree : kPaperSwivel);
+    EXPECT_EQ(rig.loop->status().swivel.measured, measured);
   }
 }
 

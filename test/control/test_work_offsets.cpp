@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <vector>
 
 // Jobs with work offsets: setpoints are the work's, commands, limits and heights the machine's.
 namespace grinder::test_support {
@@ -165,6 +166,16 @@ TEST(WorkOffsets, DoNotCountForALiftByTheLoopOrANewOneAfterAFault) {
     EXPECT_TRUE(sameBits(one->last().command, Axes(from[kX], wheel.clear_y, from[kZ], from[kA])));
     EXPECT_NEAR(one->last().command[kY], kClearanceHeight + 0.0375, 1e-15);
     EXPECT_FALSE(one->last().wheel_in_work);
+  }
+}
+
+TEST(WorkOffsets, MoveWhereACupIsClearButNotBeyondTheAxis) {
+  const ValidJob end(readJobFile("jobs/left_hand_end_mill_d8_t3.yaml", "end_primary"));
+  const ValidJob job = end.withEdges(ValidJob(end->ofOperation(0)), std::vector<EdgeHelix>(end->tooth_angles.size()));
+  const Machine machine = machineConfig().machine;
+  for (const double offset : {0.02, -1.0}) {
+    const GrindProgram program(job, machine, {machine.park, {}, {offset, 0, 0, 0}});
+    EXPECT_EQ(wheelOf(program).clear_x, offset > 0 ? program.clearX() + offset : machine.limits.min_position[kX]);
   }
 }
 

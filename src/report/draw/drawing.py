@@ -6,7 +6,7 @@ from itertools import cycle
 import numpy as np
 
 from cutter import max_radius, radius, spiral_angles, tooth_angles
-from style import CURVE, INK, METAL, THEORY, new_figure, picture
+from style import CURVE, INK, METAL, THEORY, Picture, new_figure
 
 SHANK_SHOWN = 0.9  # length of shank shown, as a fraction of its diameter
 
@@ -82,5 +82,5 @@ def tool_drawing(cutter):
         'tooth' if count == 1 else 'teeth'), va='bottom')
     axes.set(aspect='equal', xlim=(left - 3.2 * step, 1.04 * outline.total), ylim=(below - 0.6 * step, above + 1.6 * step))
     axes.set_axis_off()
-    return picture('tool', 'The tool', 'As asked, seen from the side, with the cutting edges on the near side; dimensions in mm.',
+    return Picture('tool', 'The tool', 'As asked, seen from the side, with the cutting edges on the near side; dimensions in mm.',
                    figure)

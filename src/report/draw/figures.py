@@ -3,7 +3,7 @@
 import numpy as np
 
 from cutter import process_of
-from style import CURVE, EVEN_STYLE, HELD, LIMIT, ODD_STYLE, THEORY, new_figure, picture
+from style import CURVE, EVEN_STYLE, HELD, LIMIT, ODD_STYLE, THEORY, Picture, new_figure
 
 MM = 1e-3
 MM_MIN = 1e-3 / 60
@@ -76,7 +76,7 @@ def path_picture(name, title, caption, path, marker):
     axes.ticklabel_format(useOffset=False)
     axes.locator_params('x', nbins=5)
     axes.legend()
-    return picture(name, title, caption, figure)
+    return Picture(name, title, caption, figure)
 
 
 def error_picture(data):
@@ -94,7 +94,7 @@ def error_picture(data):
         axes.set_ylabel('error of A [%s]' % unit)
         axes.set_title('%s points: max %.4e rad' % (name, largest), loc='left')
     panels[1].set_xlabel('X [mm]')
-    return picture('error', 'Error over X',
+    return Picture('error', 'Error over X',
                    'Theory minus commanded position of A over X in mm, above at the odd points, below at the even points, '
                    'each with its own scale.', figure)
 
@@ -131,7 +131,7 @@ def feed_picture(data, clock):
                   linestyle='--')
     axes.set_ylim(bottom=0)
     clock.finish(axes)
-    return picture('feed', 'Feed', 'Along the cutting edge in the strokes, in mm/min over the time in s%s; shaded: held.'
+    return Picture('feed', 'Feed', 'Along the cutting edge in the strokes, in mm/min over the time in s%s; shaded: held.'
                    % ('; dashed: asked, with the override' if asked is not None else ''), figure)
 
 
@@ -157,7 +157,7 @@ def axis_picture(data, clock, quantity, curve):
         axes.set_title('%s: max %.4g %s%s' % (where, top * many, unit, of_limit), loc='left')
         clock.finish(axes)
     panels[1].set_xlabel('time since the start [s]')
-    return picture('%s-%s' % (key, axis.lower()), '%s of %s' % (title, axis),
+    return Picture('%s-%s' % (key, axis.lower()), '%s of %s' % (title, axis),
                    '%s Time in s, each part with its own scale in %s.' % (caption, name), figure)
 
 
@@ -179,7 +179,7 @@ def timing_picture(data, clock):
     axes.axvline(LATE * clock.period / MS, color=LIMIT, linestyle='--', label='late from here on')
     axes.set_ylim(bottom=0.5)
     axes.legend()
-    return picture('timing', 'Loop timing',
+    return Picture('timing', 'Loop timing',
                    'Number of control cycles by their measured length in ms, on a logarithmic scale.', figure)
 
 

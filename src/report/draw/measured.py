@@ -4,7 +4,7 @@ an SVG file: measured.py FILE.svg < JSON."""
 import sys
 
 from document import Output, run
-from style import CURVE, INK, LIMIT, METAL, THEORY, new_figure, picture, svg_of
+from style import CURVE, INK, LIMIT, METAL, THEORY, Picture, new_figure, svg_of
 
 
 def title_of(history):
@@ -46,7 +46,7 @@ CAPTION = 'By gauge, over the numbers of the records of the tools%s.'
 
 
 def measured_picture(name, history):
-    return picture(name, title_of(history), CAPTION % (
+    return Picture(name, title_of(history), CAPTION % (
         '' if history['asked'] is None else '; dashed: as asked; shaded: the tolerance'), draw(history))
 
 

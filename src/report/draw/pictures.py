@@ -3,6 +3,7 @@
 from drawing import tool_drawing
 from figures import plot_pictures
 from measured import measured_pictures
+from style import drawn
 from tool import tool_pictures
 
 
@@ -16,4 +17,5 @@ def draw_all(data):
     parts['measured'] = measured_pictures(data.get('operations', []))
     if data.get('plots'):
         parts.update(plot_pictures(data))
-    return parts
+    pictures = iter(drawn([picture for part in parts.values() for picture in part]))
+    return {name: [next(pictures) for _ in part] for name, part in parts.items()}

@@ -2,13 +2,17 @@
 that they can be read in grey."""
 
 import io
+import multiprocessing
+import os
 import re
 from collections import namedtuple
+from concurrent.futures import ProcessPoolExecutor
 
 import matplotlib
 from matplotlib.figure import Figure
 
-Picture = namedtuple('Picture', 'name title caption svg')
+# With the SVG as part of a page, once it is drawn.
+Picture = namedtuple('Picture', 'name title caption figure svg', defaults=[None])
 
 WIDTH = 4.6  # width of a picture [in]
 NARROW = 3.0  # width of one of three pictures side by side [in]
@@ -44,12 +48,26 @@ def svg_of(figure):
     return buffer.getvalue().decode()
 
 
-def picture(name, title, caption, figure):
-    """A figure as part of a page: with unique ids, and with the page's variables for colours."""
-    svg = svg_of(figure)
+def page_svg(picture):
+    """The SVG of a picture as part of a page: with unique ids, and with the page's variables for colours."""
+    svg = svg_of(picture.figure)
     svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
     svg = re.sub(r' (width|height)="[\d.]+pt"', '', svg, count=2)
-    svg = re.sub(r'( id="|href="#|url\(#)', r'\g<1>%s-' % name, svg)
+    svg = re.sub(r'( id="|href="#|url\(#)', r'\g<1>%s-' % picture.name, svg)
     for colour, variable in VARIABLES.items():
         svg = svg.replace(colour, 'var(--%s)' % variable)
-    return Picture(name, title, caption, svg)
+    return svg
+
+
+_pictures = []  # of a process that draws: a figure cannot be sent to it, but it has what there was when it began
+
+
+def _page_svg_of(i):
+    return page_svg(_pictures[i])
+
+
+def drawn(pictures):
+    """The pictures with their SVG, drawn on all cores."""
+    fork = multiprocessing.get_context('fork')
+    with ProcessPoolExecutor(os.cpu_count(), fork, _pictures.extend, (pictures,)) as drawers:
+        return [picture._replace(svg=svg) for picture, svg in zip(pictures, drawers.map(_page_svg_of, range(len(pictures))))]

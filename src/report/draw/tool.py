@@ -11,8 +11,8 @@ from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
 from document import Output, run
-from style import (BLANK, CHAMFER, CURVE, FLUTE, GASH, INK, LIMIT, METAL, NARROW, PRIMARY, SECONDARY, TEETH, THEORY, new_figure,
-                   picture, svg_of)
+from style import (BLANK, CHAMFER, CURVE, FLUTE, GASH, INK, LIMIT, METAL, NARROW, PRIMARY, SECONDARY, TEETH, THEORY, Picture,
+                   new_figure, svg_of)
 
 FACES = {'primary': ('primary flank', PRIMARY), 'secondary': ('secondary flank', SECONDARY), 'chamfer': ('chamfer', CHAMFER),
          'gash': ('gash', GASH), 'blank': ('blank', BLANK)}
@@ -182,21 +182,21 @@ def tool_pictures(tool):
     for i, section in enumerate(shown_sections(tool), 1):
         figure = new_figure(3.6, NARROW)
         draw_section(figure.add_subplot(), tool, section)
-        pictures.append(picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
+        pictures.append(Picture('section-%d' % i, 'Section at X = %.3f mm' % section['x_mm'],
                                 'The first tooth on top, in mm; dotted: blank and core; dashed: the core and the %s asked. The '
                                 '%s is dimensioned along the outer circle.' %
                                 (('rake and clearance', 'primary relief') if is_relieved(tool) else ('rake', 'land')), figure))
     if tool['end_view']:
         figure = new_figure(2.8)
         draw_end(figure.add_subplot(), tool['end_view'], {'loc': 'center left', 'bbox_to_anchor': (1, 0.5)})
-        pictures.append(picture('end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
+        pictures.append(Picture('end', 'The end', 'Seen along the axis from the end, the first tooth on top; '
                                 'dashed: the diameter in which edges may be missing.', figure))
     for curve in tool['curves']:
         figure = new_figure(2.6)
         axes = figure.add_subplot(xlabel='X [mm]')
         draw_curve(axes, tool, curve)
         words = curve['words']
-        pictures.append(picture(words.replace(' ', '-'), words[0].upper() + words[1:], 'Over X in mm%s.' % (
+        pictures.append(Picture(words.replace(' ', '-'), words[0].upper() + words[1:], 'Over X in mm%s.' % (
             '' if curve['tolerance'] is None else '; dashed: as asked; shaded: the tolerance'), figure))
     return pictures
 

@@ -138,13 +138,11 @@ def reamer_file(path):
 
 
 def end_file(path, name):
-    """Writes a job of jobs/ to `path` with the primary flanks of its end and the flutes and gashes ahead of them alone, which are over
-    soon: in one pass each."""
+    """Writes a job of jobs/ to `path` without reliefs of the periphery, and with operations that are over soon: in one pass each."""
     jobs = package_file('jobs/')
     with open(jobs + name + '.yaml') as text:
         mill = yaml.safe_load(text)
-    kinds = ('flute', None), ('gash', None), ('end', 'primary')
-    mill['operations'] = [o for o in mill['operations'] if (o['kind'], o.get('relief')) in kinds]
+    mill['operations'] = [operation for operation in mill['operations'] if operation['kind'] != 'relief']
     for operation in mill['operations']:
         operation.pop('roughing_passes', None)
         operation.update(feed_mm_min=1000, infeed_mm=6, finish_infeed_mm=0, spark_out=0, clearance_mm=1)

@@ -145,16 +145,18 @@ def run(command, environment, patience):
 
 
 def command(suite, names):
-    """The command of a program with some of its tests."""
+    """The command of a program with some of its tests; of a suite that is a command, that."""
     if suite == RIDES:
         return [BINARIES / suite, '--from', '0', '--count', '300']
+    if not suite.startswith(PREFIX):
+        return shlex.split(suite)
     return [BINARIES / suite, '--gtest_filter=' + ':'.join(names)]
 
 
 def cases_of(suite):
     """The tests of a program."""
-    if suite == RIDES:
-        yield Case(suite, '300')
+    if not suite.startswith(PREFIX):
+        yield Case(suite, '')
         return
     text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, {'': LEAST})
     group = ''
@@ -263,6 +265,8 @@ def main():
     parser.add_argument('--seed', metavar='S', type=int, default=1, help='of the draw')
     parser.add_argument('--files', metavar='REGEX', default='', help='only breaks of these files')
     parser.add_argument('--tests', metavar='REGEX', default='', help='only test programs with these names')
+    parser.add_argument('--also', metavar='COMMAND', action='append', default=[],
+                        help="what else sees a break by its exit status, e.g. 'docs/make_reference.py --check'")
     parser.add_argument('--headers', action='store_true', help="also the module's headers: all is built anew")
     parser.add_argument('--json', metavar='FILE', help='write which tests see which mutants')
     arguments = parser.parse_args()
@@ -287,6 +291,7 @@ def main():
     print('%d breaks, %d compile' % (len(finder.breaks), len(numbers)), file=sys.stderr)
 
     suites = [s for s in sorted(p.name for p in BINARIES.glob(PREFIX + '*')) + [RIDES] if re.search(arguments.tests, s)]
+    suites += arguments.also
     cases = [case for suite in suites for case in cases_of(suite)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = dict(zip(cases, pool.map(reached_by, cases)))

@@ -159,7 +159,7 @@ void Jogging::stopIfNeeded() noexcept {
   // A jog that begins in contact moves the probe away: only a new contact stops it.
   if (touches_ && !status.contact.made) {
     status.contact.made = stops = true;
-    std::copy(sample.position.data(), sample.position.data() + kAxisCount, status.contact.position.begin());
+    Eigen::Map<Axes>(status.contact.position.data()) = sample.position;
     dead_man_.block();
   }
   hearClient();  // again: a jog may have been requested in this cycle, after its client was heard

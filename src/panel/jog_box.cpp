@@ -1,6 +1,6 @@
 #include "panel/jog_box.h"
 
-#include "flute_grinder/base/units.h"
+#include "flute_grinder/base/quantity.h"
 #include "flute_grinder/machine/machine_state.h"
 #include "panel/panel_button.h"
 
@@ -28,8 +28,6 @@ constexpr double kLinearSpeed = 600;   ///< speed of X, Y and Z [mm/min]
 constexpr double kRotarySpeed = 1800;  ///< speed of A [deg/min]
 constexpr double kMaxSpeed = 99999;
 constexpr int kSpeedDecimals = 3;
-
-double unitOf(int axis) { return axis == kA ? units::kDegree : units::kMillimetre; }
 
 NumberBox* speedBox(const char* name, const QString& unit, double value) {
   auto* box = new NumberBox(name, kSpeedDecimals);
@@ -95,12 +93,12 @@ QPushButton* JogBox::addButton(int axis, int direction) {
 
 bool JogBox::isContinuous() const { return step_->currentData().toDouble() == kContinuous; }
 
-double JogBox::speed(int axis) const { return speedBoxOf(axis).value() * unitOf(axis) / 60; }
+double JogBox::speed(int axis) const { return speedBoxOf(axis).value() * shopScale(unitOf(axis, 0)) / 60; }
 
 void JogBox::click(const Button& button) {
   if (isContinuous()) return;
   const double step = button.direction * step_->currentData().toDouble();
-  Q_EMIT stepWanted(button.axis, step * unitOf(button.axis), speed(button.axis));
+  Q_EMIT stepWanted(button.axis, step * shopScale(unitOf(button.axis, 0)), speed(button.axis));
 }
 
 void JogBox::press(const Button& button) {

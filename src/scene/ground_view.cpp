@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
 #include <utility>
 
 namespace grinder {
@@ -18,13 +17,6 @@ using Clock = std::chrono::steady_clock;
 constexpr int kNice = 15;
 constexpr std::chrono::duration<double> kMinPause{1};
 constexpr double kPausePerWork = 20;
-
-/// The processor time of this thread.
-std::chrono::duration<double> worked() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return std::chrono::duration<double>(static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec));
-}
 
 visualization_msgs::MarkerArray markersOf(const ValidJob& job, const std::optional<Reached>& reached) {
   const Reached end{job.passes().back().place, PassPhase::kAfter, 0};
@@ -71,9 +63,11 @@ void GroundView::run() {
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kNice);
   Clock::time_point earliest = Clock::now();
   while (const std::optional<Request> request = next(earliest)) {
-    const auto before = worked();
+    const Clock::time_point begin = Clock::now();
     publisher_.publish(request->job ? markersOf(*request->job, request->reached) : clearedArray());
-    const auto pause = std::max(kMinPause, kPausePerWork * (worked() - before));
+    // All cores compute: each rests for as many times as long.
+    const std::chrono::duration<double> took = Clock::now() - begin;
+    const auto pause = std::max(kMinPause, kPausePerWork * took);
     earliest = Clock::now() + std::chrono::duration_cast<Clock::duration>(pause);
   }
 }

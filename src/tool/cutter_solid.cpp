@@ -132,6 +132,7 @@ class Piece {
     } else {
       join(frame.is_step[last]);
     }
+    sides_ = {};  // there are as many pieces as layers
   }
 
   /// Adds it to a solid that begins with the frame's vertices.

@@ -11,9 +11,8 @@ namespace grinder {
 
 namespace {
 
-constexpr double kNoStep = 1e-9;  ///< [m]
-constexpr double kForetold =
-    1e-4;  ///< distance per radius from what neighbours foretell at which a section is left out
+constexpr double kNoStep = 1e-9;    ///< [m]
+constexpr double kForetold = 1e-4;  ///< distance, per radius, within which a section is as foretold
 constexpr double kSameStep = 1e-6;  ///< of a step
 constexpr std::size_t kStride = 8;  ///< places from one section that is always computed to the next
 
@@ -28,41 +27,68 @@ std::vector<double> evenly(double from, double to, double step) {
   return all;
 }
 
-/// The maximum distance between points of two outlines of a grid, per radius.
-double apart(const Outline& a, const Outline& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double turn = units::kTurn * (a[i].turns - b[i].turns);
-    most = std::max(most, std::hypot((a[i].radius - b[i].radius) / a[i].radius, turn));
+/// Whether an outline is as another one foretells it.
+bool isForetold(const Outline& outline, const Outline& by) {
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const double turn = units::kTurn * (outline[i].turns - by[i].turns);
+    if (!(std::hypot((outline[i].radius - by[i].radius) / outline[i].radius, turn) <= kForetold)) return false;
   }
-  return most;
+  return true;
+}
+
+/// The maximum turns of a point on the outer circle from one outline to another: a straight line between them would cut
+/// into the circle.
+double twist(const Outline& from, const Outline& to) {
+  const auto closer = [](const PolarPoint& a, const PolarPoint& b) { return a.radius < b.radius; };
+  const double outer = std::max_element(from.begin(), from.end(), closer)->radius;
+  double turns = 0;
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    if (from[i].radius == outer) turns = std::max(turns, std::abs(to[i].turns - from[i].turns));
+  }
+  return turns;
 }
 
 /// The layer at an X between two others.
 /// @param helix_at angle of the tool's helix at an X, along which the outlines turn [rad].
 template <typename HelixAt>
-SolidLayer between(const SolidLayer& from, const SolidLayer& to, double x, const HelixAt& helix_at) {
+SolidLayer layerBetween(const SolidLayer& from, const SolidLayer& to, double x, const HelixAt& helix_at) {
   const double part = (x - from.x) / (to.x - from.x);
   const double bend = helix_at(x) - helix_at(from.x) - part * (helix_at(to.x) - helix_at(from.x));
   SolidLayer layer{x, from.outline};
   for (std::size_t i = 0; i < layer.outline.size(); ++i) {
-    layer.outline[i] = grinder::between(from.outline[i], to.outline[i], part, bend / units::kTurn);
+    layer.outline[i] = between(from.outline[i], to.outline[i], part, bend / units::kTurn);
   }
   return layer;
 }
 
-/// Sections at some of many places: at every eighth, and wherever those beside it do not foretell one.
+/// Whether a wheel has been elsewhere than a job says, by what was recorded.
+bool hasDeviations(const GroundCutter& cutter) {
+  const auto deviates = [](const std::vector<WheelSweep>& sweeps) {
+    return std::any_of(sweeps.begin(), sweeps.end(),
+                       [](const WheelSweep& sweep) { return !sweep.stroke().deviations.empty(); });
+  };
+  for (std::size_t i = 0; i < cutter.teeth().size(); ++i) {
+    const Reliefs& reliefs = cutter.reliefs(i);
+    if (deviates(cutter.flutes()[cutter.teeth()[i].flute]) || std::any_of(reliefs.begin(), reliefs.end(), deviates))
+      return true;
+  }
+  return false;
+}
+
+/// Sections at many places. They are computed a stride apart, and wherever those beside one do not foretell it; the
+/// others are as foretold.
 /// @param x ascending [m].
 /// @param outline_at makes the section at an X; on all cores at once.
-/// @param helix_at see between().
+/// @param helix_at see layerBetween().
 template <typename OutlineAt, typename HelixAt>
-std::vector<SolidLayer> sectionsAt(const std::vector<double>& x, const OutlineAt& outline_at, const HelixAt& helix_at) {
-  std::vector<SolidLayer> layers(x.size());  // without an outline where there is none
+std::vector<SolidLayer> sectionsAt(const std::vector<double>& x, std::size_t stride, const OutlineAt& outline_at,
+                                   const HelixAt& helix_at) {
+  std::vector<SolidLayer> layers(x.size());
   const auto compute = [&](const std::vector<std::size_t>& places) {
     onAllCores(places.size(), [&](std::size_t i) { layers[places[i]] = {x[places[i]], outline_at(x[places[i]])}; });
   };
   std::vector<std::size_t> places;
-  for (std::size_t i = 0; i + 1 < x.size(); i += kStride) places.push_back(i);
+  for (std::size_t i = 0; i + 1 < x.size(); i += stride) places.push_back(i);
   places.push_back(x.size() - 1);
   compute(places);
 
@@ -80,15 +106,15 @@ std::vector<SolidLayer> sectionsAt(const std::vector<double>& x, const OutlineAt
     for (std::size_t i = 0; i < gaps.size(); ++i) {
       const auto [from, to] = gaps[i];
       const std::size_t middle = places[i];
-      const SolidLayer foretold = between(layers[from], layers[to], x[middle], helix_at);
-      if (apart(layers[middle].outline, foretold.outline) <= kForetold) continue;
-      addGap(from, middle, narrower);
-      addGap(middle, to, narrower);
+      const SolidLayer foretold = layerBetween(layers[from], layers[to], x[middle], helix_at);
+      const bool fill = isForetold(layers[middle].outline, foretold.outline);
+      for (const auto& [a, b] : {Gap{from, middle}, Gap{middle, to}}) {
+        if (!fill) addGap(a, b, narrower);
+        for (std::size_t k = a + 1; fill && k < b; ++k) layers[k] = layerBetween(layers[a], layers[b], x[k], helix_at);
+      }
     }
     gaps = std::move(narrower);
   }
-  const auto is_none = [](const SolidLayer& layer) { return layer.outline.empty(); };
-  layers.erase(std::remove_if(layers.begin(), layers.end(), is_none), layers.end());
   return layers;
 }
 
@@ -97,14 +123,15 @@ std::vector<SolidLayer> sectionsAt(const std::vector<double>& x, const OutlineAt
 std::vector<SolidLayer> solidLayers(const GroundCutter& cutter, const SolidExtent& extent,
                                     const SolidResolution& resolution, const OutlineGrid& grid) {
   std::vector<SolidLayer> layers;
+  // What was recorded may differ anywhere.
+  const std::size_t stride = hasDeviations(cutter) ? 1 : kStride;
   const LogCurve curve(cutter.cutter());
   const auto add = [&](SolidLayer next, const auto& helix_at) {
     if (!layers.empty() && next.x > layers.back().x) {
       const SolidLayer last = layers.back();
-      const double twist = std::abs(curve.a(next.x) - curve.a(last.x));
-      const double parts = std::ceil(twist / units::kTurn * static_cast<double>(resolution.around));
+      const double parts = std::ceil(twist(last.outline, next.outline) * static_cast<double>(resolution.around));
       for (double part = 1; part < parts; ++part) {
-        layers.push_back(between(last, next, last.x + part / parts * (next.x - last.x), helix_at));
+        layers.push_back(layerBetween(last, next, last.x + part / parts * (next.x - last.x), helix_at));
       }
     }
     layers.push_back(std::move(next));
@@ -112,7 +139,7 @@ std::vector<SolidLayer> solidLayers(const GroundCutter& cutter, const SolidExten
   const double step = (extent.to - extent.from) / static_cast<double>(resolution.sections - 1);
   const auto cone = [&](double x) { return sectionOutline(cutter, x, cutter.cutter().radius(x), grid); };
   const auto helix = [&](double x) { return curve.a(x); };
-  for (SolidLayer& section : sectionsAt(evenly(extent.from, extent.to, step), cone, helix)) {
+  for (SolidLayer& section : sectionsAt(evenly(extent.from, extent.to, step), stride, cone, helix)) {
     add(std::move(section), helix);
   }
   if (!(extent.shank_to > extent.to)) return layers;
@@ -123,9 +150,9 @@ std::vector<SolidLayer> solidLayers(const GroundCutter& cutter, const SolidExten
     return std::all_of(outline.begin(), outline.end(), [&](const PolarPoint& p) { return p.radius == radius; });
   };
   const auto shank = [&](double x) { return sectionOutline(cutter, x, radius, grid); };
-  // Where flutes run out, the tool does not turn on.
+  // Of no cone, and a flute that runs out turns on only up to its stroke's end.
   const auto straight = [](double) { return 0.0; };
-  std::vector<SolidLayer> of_shank = sectionsAt(evenly(extent.to, extent.shank_to, step), shank, straight);
+  std::vector<SolidLayer> of_shank = sectionsAt(evenly(extent.to, extent.shank_to, step), stride, shank, straight);
   // Without a step there must be no ring between cone and shank: it would appear as a line of slivers.
   const bool is_step = std::abs(radius - cutter.cutter().radius(extent.to)) > kNoStep;
   for (std::size_t i = is_step ? 0 : 1; i + 1 < of_shank.size() && (i == 0 || !is_whole()); ++i) {

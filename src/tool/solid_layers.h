@@ -14,8 +14,9 @@ struct SolidLayer {
   std::vector<PolarPoint> outline;
 };
 
-/// The outlines of cone and shank through which a solid goes, by ascending X: sections computed where those beside them
-/// do not foretell them within 0.2 um, and between them as many as the twist needs. Two at the same X are a step.
+/// The outlines of cone and shank through which a solid goes, by ascending X. Sections of a planned tool are computed
+/// where those beside them do not foretell them within 1e-4 of the radius, of a recorded one everywhere; between them
+/// are as many as the twist needs. Two at the same X are a step.
 /// @throw std::invalid_argument like sectionOutline().
 std::vector<SolidLayer> solidLayers(const GroundCutter& cutter, const SolidExtent& extent,
                                     const SolidResolution& resolution, const OutlineGrid& grid);

@@ -76,32 +76,55 @@ TEST(CutterSolid, IsClosedAndHasTheVolumeOfTheSectionsAlsoInAnStlFile) {
   }
 }
 
-/// Sections that are left out, and layers between sections, are where a wheel has been.
+/// How far a solid's corners are from where a wheel has been, along their circle; not those on lands, and beside a
+/// floor, where an angle says nothing [m].
+double offTheWalls(const GroundCutter& ground, const CutterSolid& solid, double from, double to) {
+  double most = 0;
+  std::size_t walls = 0;
+  for (const Eigen::Vector3d& v : solid.vertices) {
+    const double x = v.x(), r = v.tail<2>().norm(), blank = ground.cutter().radius(x);
+    if (!(x > from && x < to && r < 0.999 * blank)) continue;
+    double nearest = blank;
+    for (const GroundTooth& tooth : ground.teeth()) {
+      const Flute& flute = ground.flutes()[tooth.flute];
+      if (r < leastRadius(flute, x, blank) + 0.02 * blank) nearest = 0;
+      const auto arc = nearest > 0 ? ground.arc(flute, x, r) : std::nullopt;
+      if (!arc) continue;
+      for (const double end : {arc->low, arc->high}) {
+        const double off = std::remainder(std::atan2(v.z(), v.y()) - tooth.angle - end, 2 * units::kPi);
+        nearest = std::min(nearest, r * std::abs(off));
+      }
+    }
+    walls += nearest > 0;
+    most = std::max(most, nearest);
+  }
+  EXPECT_GT(walls, 500u);
+  return most;
+}
+
+/// Sections that are not computed, and layers between sections, are where a wheel has been.
 TEST(CutterSolid, KeepsToTheWallsOfTheFlutesBetweenItsSections) {
   for (const SolidCase& c : test_support::solidCases()) {
     if (c.name != "paper" && c.name != "left hand" && c.name != "back taper") continue;
-    SCOPED_TRACE(c.name);
-    std::size_t walls = 0;
-    for (const Eigen::Vector3d& v : cutterSolid(c.ground, {c.from, c.to}, {60, 8, 60}).vertices) {
-      const double x = v.x(), r = v.tail<2>().norm(), blank = c.ground.cutter().radius(x);
-      if (!(x > c.from && x < c.to && r < 0.999 * blank)) continue;
-      double nearest = blank;
-      for (const GroundTooth& tooth : c.ground.teeth()) {
-        const Flute& flute = c.ground.flutes()[tooth.flute];
-        // Beside a floor the angle says nothing.
-        if (r < leastRadius(flute, x, blank) + 0.02 * blank) nearest = 0;
-        const auto arc = nearest > 0 ? c.ground.arc(flute, x, r) : std::nullopt;
-        if (!arc) continue;
-        for (const double end : {arc->low, arc->high}) {
-          const double off = std::remainder(std::atan2(v.z(), v.y()) - tooth.angle - end, 2 * units::kPi);
-          nearest = std::min(nearest, r * std::abs(off));
-        }
-      }
-      walls += nearest > 0;
-      EXPECT_LT(nearest, 1e-4 * blank) << x << ' ' << r;
-    }
-    EXPECT_GT(walls, 500u);
+    const CutterSolid solid = cutterSolid(c.ground, {c.from, c.to}, {60, 8, 60});
+    EXPECT_LT(offTheWalls(c.ground, solid, c.from, c.to), 1e-4 * c.ground.cutter().radius(c.from)) << c.name;
   }
+}
+
+/// What was recorded differs from the plan along less than a stride between sections.
+TEST(CutterSolid, KeepsToWhatWasRecordedBetweenSectionsThatForetellEachOther) {
+  Case c = cylinder();
+  c.from = -20, c.to = 50;
+  GrindStroke stroke = c.stroke();
+  constexpr double kOff = 2e-3, kWave = 2.034e-3, kSteps = 350;  // [rad], half a stride [m]
+  for (double i = 0; i <= kSteps; ++i) {
+    const double x = stroke.from + i / kSteps * (stroke.to - stroke.from);
+    stroke.deviations.push_back({0, 0, kOff * std::sin(2 * units::kPi * x / kWave)});
+  }
+  const WheelSweep sweep(c.cutter(), c.profile(), c.wheel / 2 * kMillimetre, c.setup(), stroke);
+  const GroundCutter ground(c.cutter(), {{sweep}}, {{0, 0}});
+  const CutterSolid solid = cutterSolid(ground, {0, 0.03}, {60, 8, 60});
+  EXPECT_LT(offTheWalls(ground, solid, 0, 0.03), kOff / 2 * c.cutter().radius(0));
 }
 
 TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
@@ -119,6 +142,36 @@ TEST(CutterSolid, HasTheFlutesRunOutIntoTheShank) {
     EXPECT_LT(taken, 0.1 * shank);
     EXPECT_EQ(solid.vertices.back().x(), 0.05);
   }
+}
+
+/// The area that an outline encloses [m^2].
+double areaOf(const std::vector<PolarPoint>& outline) {
+  double twice = 0;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const PolarPoint &a = outline[i], &b = outline[(i + 1) % outline.size()];
+    twice += a.radius * b.radius * std::sin(b.angle() - a.angle());
+  }
+  return twice / 2;
+}
+
+TEST(CutterSolid, HasTheVolumeOfTheSectionsInTheShankToo) {
+  Case c = cylinder();
+  c.to = 15;
+  const GroundCutter ground = c.ground(2);
+  constexpr double kShank = 0.05, kRadius = 0.007;
+  const SolidResolution fine{60, 16, 120};
+  const OutlineGrid grid{2, 16, 120};
+  double shank = 0;
+  constexpr int kSections = 600;
+  for (int i = 0; i < kSections; ++i) {
+    const double x = 0.02 + (i + 0.5) / kSections * (kShank - 0.02);
+    shank += (kShank - 0.02) / kSections * areaOf(sectionOutline(ground, x, kRadius, grid));
+  }
+  const double cone = cutterSolid(ground, {0, 0.02}, fine).volume();
+  const double all = cutterSolid(ground, {0, 0.02, 2 * kRadius, kShank}, fine).volume();
+  const double run_out = units::kPi * kRadius * kRadius * (kShank - 0.02) - shank;
+  EXPECT_GT(run_out, 1e-9);
+  EXPECT_NEAR(all - cone, shank, 0.1 * run_out);
 }
 
 /// A triangle across the turn of a land leans along X by several times as much, and looks like a scale.

@@ -18,7 +18,7 @@ struct PolarPoint {
 };
 
 /// The point at a fraction of the way between two points, linear in radius and angle.
-/// @param bend turns to add: what an angle between two sections has more than a straight line does.
+/// @param bend turns by which the angle is ahead of that.
 PolarPoint between(const PolarPoint& from, const PolarPoint& to, double part, double bend = 0) noexcept;
 
 /// The kind of a part of the cutter's surface. A relieved land is kPrimary up to the end of the relief at its edge.

@@ -233,6 +233,24 @@ void take(const Json& json, T& value) {
   json.get_to(value);
 }
 
+/// Whether a figure of an end is one of a tooth as a whole, and not of a place on its edge.
+bool isOfTooth(ToolFigure figure) {
+  switch (figure) {
+    case ToolFigure::kUncutDiameter:
+    case ToolFigure::kShortFrom:
+    case ToolFigure::kPeripheryTaken:
+    case ToolFigure::kChamferWidth:
+    case ToolFigure::kChamferAngle:
+    case ToolFigure::kChamferClearance: return true;
+    default: return false;
+  }
+}
+
+std::string placeOnEnd(ToolFigure figure, const GroundFigure::At& at) {
+  const std::string tooth = format("tooth %d", at.tooth + 1);
+  return isOfTooth(figure) ? tooth : tooth + format(", %.3f mm from the axis", at.x / kMillimetre);
+}
+
 /// The criteria of an end: each figure's value that is farther from the asked one.
 void addCriteriaOfEnd(const ValidJob& job, const GroundTool* tool, std::vector<Criterion>& criteria) {
   for (const GroundFigure& asks : askedOfEnd(job)) {
@@ -246,7 +264,7 @@ void addCriteriaOfEnd(const ValidJob& job, const GroundTool* tool, std::vector<C
       continue;
     }
     for (const GroundFigure::At& at : {found->least, found->largest}) {
-      add(criterion, at.value / scale, format("tooth %d, %.3f mm from the axis", at.tooth + 1, at.x / kMillimetre));
+      add(criterion, at.value / scale, placeOnEnd(asks.figure, at));
     }
   }
 }

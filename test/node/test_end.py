@@ -64,19 +64,18 @@ class TestEnd(JournalTest):
         steepest = math.hypot(math.tan(math.radians(8)), math.tan(math.radians(2)))
         self.assertAlmostEqual(math.degrees(gc.process_of(self.goal).setup_swivel), 90 - math.degrees(math.atan(steepest)), delta=0.001)
         for number, (operation, words) in enumerate(OPERATIONS.items(), 1):
-            with self.subTest(operation):
-                asked = self.prepare(operation)
-                self.grind(0, 'plan', *asked, '--csv', self.folder + '/plan.csv')
-                self.grind(0, 'run', *asked, '--csv', self.folder + '/run.csv')
-                planned, streamed = ([row[:12] for row in csv.reader(open('%s/%s.csv' % (self.folder, name)))] for name in ('plan', 'run'))
-                self.assertTrue(planned == streamed, 'the setpoints differ')
-                places = {(row[3], row[6], row[8], row[9]) for row in planned if row[2] == 'stroke'}
-                if operation not in ('flute', 'gash'):  # a stroke has one X, Z and A
-                    self.assertEqual(len(places), TEETH)
-                record = self.wait_record(number)
-                self.assertEqual((record['operation'], record['outcome'], len(record['strokes'])), (words, 'done', TEETH))
-                self.assertEqual(self.wait_finished()['operation'], words)
-                self.assertEqual(self.json('status')['last_job']['operation'], words)
+            asked = self.prepare(operation)
+            self.grind(0, 'plan', *asked, '--csv', self.folder + '/plan.csv')
+            self.grind(0, 'run', *asked, '--csv', self.folder + '/run.csv')
+            planned, streamed = ([row[:12] for row in csv.reader(open('%s/%s.csv' % (self.folder, name)))] for name in ('plan', 'run'))
+            self.assertTrue(planned == streamed, operation + ': the setpoints differ')
+            places = {(row[3], row[6], row[8], row[9]) for row in planned if row[2] == 'stroke'}
+            if operation not in ('flute', 'gash'):  # a stroke has one X, Z and A
+                self.assertEqual(len(places), TEETH, operation)
+            record = self.wait_record(number)
+            self.assertEqual((record['operation'], record['outcome'], len(record['strokes'])), (words, 'done', TEETH))
+            self.assertEqual(self.wait_finished()['operation'], words)
+            self.assertEqual(self.json('status')['last_job']['operation'], words)
         self.assertRegex(self.said('offsets'), r'(?m)^tool in the collet: mill\.yaml with %s$' % ', '.join(OPERATIONS.values()))
         self.assertEqual(self.judged(), [(words, 'passed', []) for words in OPERATIONS.values()])
         self.grind(0, 'measured', self.job_path, '--operation', 'flute', 'core@10=6.125', '--from', self.history)
@@ -85,6 +84,7 @@ class TestEnd(JournalTest):
             page = file.read()
         self.assertIn('<figure id="end"', page)
         self.assertIn('<td class="number" data-label="measured">6.125 mm</td>', page)
+        self.assertRegex(page, r'uncut diameter</th><td class="number" data-label="asked">≤ 0\.150 mm<[^\n]*data-label="place">tooth [1-4]<')
 
     def hold_below(self, run, tooth):
         """Holds a run in the midst of a tooth's stroke, deeper than 2 mm into the end."""
@@ -135,4 +135,4 @@ class TestEnd(JournalTest):
                          (OPERATION, True, 'done', TEETH - 1))
         operation, verdict, because = self.judged()[-1]
         self.assertEqual((operation, verdict, because[0]), (OPERATION, 'incomplete', 'ground without the check of the zero points'))
-        self.assertIn('rake: not measured', because)  # after a chamfer it is another tool, whose flutes nobody knows
+        self.assertIn('rake: not measured', because)  # a primary flank after a chamfer begins another tool, without a record of flutes

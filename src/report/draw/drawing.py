@@ -60,8 +60,8 @@ def tool_drawing(cutter):
     axes.fill(np.concatenate([x, x[::-1]]), np.concatenate([r, -r[::-1]]), facecolor=METAL, edgecolor=INK, linewidth=0.9)
     for line in edges(cutter, outline):
         axes.plot(*line, color=CURVE)
-    axes.plot([-0.08 * outline.total, 1.03 * outline.total], [0, 0], color=THEORY, linestyle='-.', linewidth=0.7)
     step = 0.16 * max(half, outline.total / 4)
+    axes.plot([-step, outline.total + step], [0, 0], color=THEORY, linestyle='-.', linewidth=0.7)
     below = -half - 2 * step
     for at, radius in ((0, outline.end), (outline.length, outline.large)):
         axes.plot([at, at], [-radius, below - 0.4 * step], color=THEORY, linewidth=0.6)
@@ -71,16 +71,18 @@ def tool_drawing(cutter):
         axes.plot([0, left - 0.4 * step], [sign * outline.end] * 2, color=THEORY, linewidth=0.6)
     dimension(axes, (left, -outline.end), (left, outline.end), 'Ø %g' % cutter['end_diameter_mm'], (-0.4 * step, 0), ha='right',
               va='center')
-    right = outline.total - 0.25 * (outline.total - outline.shank_at)
-    dimension(axes, (right, -outline.shank), (right, outline.shank), ' Ø %g' % cutter['shank_diameter_mm'],
-              (0, 0.5 * outline.shank), ha='left', va='center')
+    right = outline.total + 1.5 * step
+    for sign in (-1, 1):
+        axes.plot([outline.total, right + 0.4 * step], [sign * outline.shank] * 2, color=THEORY, linewidth=0.6)
+    dimension(axes, (right, -outline.shank), (right, outline.shank), 'Ø %g' % cutter['shank_diameter_mm'], (0.4 * step, 0), ha='left',
+              va='center')
     above = half + 0.6 * step
     spirals = sorted(set(spiral_angles(cutter)))
     count = len(tooth_angles(cutter))
     axes.text(0, above, 'cone %g°, spiral %s, rake %g°, %d %s' % (
         cutter['cone_angle_deg'], ', '.join('%g°' % s for s in spirals), cutter['rake_angle_deg'], count,
         'tooth' if count == 1 else 'teeth'), va='bottom')
-    axes.set(aspect='equal', xlim=(left - 3.2 * step, 1.04 * outline.total), ylim=(below - 0.6 * step, above + 1.6 * step))
+    axes.set(aspect='equal', xlim=(left - 3.2 * step, right + 3.2 * step), ylim=(below - 0.6 * step, above + 1.6 * step))
     axes.set_axis_off()
     return Picture('tool', 'The tool', 'As asked, seen from the side, with the cutting edges on the near side; dimensions in mm.',
                    figure)

@@ -107,11 +107,12 @@ def pictures(parts, name):
 def tool_facts(cutter):
     angles = cutter.get('tooth_angles_deg')
     teeth = len(tooth_angles(cutter))
+    cores = dict.fromkeys((cutter['core_diameter_mm'], cutter['core_diameter_end_mm']))
     return [('end diameter', '%g mm' % cutter['end_diameter_mm']), ('flute length', '%g mm' % cutter['flute_length_mm']),
             ('cone', '%g deg' % cutter['cone_angle_deg']),
             ('spiral angle', '%s ± %g deg' % (', '.join('%g' % s for s in spiral_angles(cutter)), cutter['spiral_tolerance_deg'])),
             ('rake', '%g ± %g deg' % (cutter['rake_angle_deg'], cutter['rake_tolerance_deg'])),
-            ('core', '%g to %g ± %g mm' % (cutter['core_diameter_mm'], cutter['core_diameter_end_mm'], cutter['core_tolerance_mm'])),
+            ('core', '%s ± %g mm' % (' to '.join('%g' % d for d in cores), cutter['core_tolerance_mm'])),
             ('clearance', clearances(cutter)),
             ('teeth', '%d%s' % (teeth, ' at ' + ', '.join('%g' % a for a in angles) + ' deg' if angles else '')),
             ('cut', cutter['cut'].replace('_', ' ')), ('shank', '%g mm' % cutter['shank_diameter_mm'])]
@@ -250,11 +251,21 @@ def verdict_line(data):
     return '<p><span class="verdict %s">%s</span> %s</p>' % (said, VERDICTS[said], text(because))
 
 
-def shown(value, criterion, sign=''):
+def shown(value, criterion):
     if value is None:
         return None
     digits = criterion['digits']
-    return '%s%s %s' % (sign, three_digits(value) if digits is None else '%.*f' % (digits, value), criterion['unit'])
+    return '%s %s' % (three_digits(value) if digits is None else '%.*f' % (digits, value), criterion['unit'])
+
+
+def limits(criterion):
+    """What is asked, and the tolerance. No length and no share is below 0: one of 0 is asked to be small."""
+    asked, tolerance = (shown(criterion[key], criterion) for key in ('asked', 'tolerance'))
+    if tolerance is None:
+        return asked and '≥ ' + asked, None
+    if criterion['asked'] == 0 and criterion['unit'] != 'deg':
+        return '≤ ' + tolerance, None
+    return asked, '± ' + tolerance
 
 
 def criteria_table(data, of_tool):
@@ -262,8 +273,8 @@ def criteria_table(data, of_tool):
     for c in data['criteria']:
         if c['of_tool'] != of_tool:
             continue
-        table.add(c['name'], shown(c['asked'], c, '≥ ' if c['tolerance'] is None else ''),
-                  c['remark'] or shown(c['measured'], c), shown(c['tolerance'], c, '± '), c['result'], c['place'],
+        asked, tolerance = limits(c)
+        table.add(c['name'], asked, c['remark'] or shown(c['measured'], c), tolerance, c['result'], c['place'],
                   classes={4: c['result'].replace(' ', '-')})
     return table.html()
 

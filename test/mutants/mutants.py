@@ -197,7 +197,7 @@ def reached_by(case):
         text, good = run(command(case.suite, [case.name]), {'MUTANTS_REACHED': folder}, {'': 600})
         took = time.monotonic() - begin
         if not good:
-            print('%s fails without a mutant: left out\n%s' % (case.name, text[-500:]), file=sys.stderr)
+            print('%s %s fails without a mutant: left out\n%s' % (*case, text[-500:]), file=sys.stderr)
             return set(), took
         return {int(n) for file in pathlib.Path(folder).iterdir() for n in file.read_text().split()}, took
 
@@ -307,7 +307,7 @@ def main():
                 print('%d asked' % len(seen), file=sys.stderr)
     report(finder, numbers, reached, seen, took, own)
     if arguments.json:
-        found = [dict(finder.breaks[n]._asdict(), seen_by=sorted(c.suite.replace(PREFIX, '') + ' ' + c.name for c in seen[n]))
+        found = [dict(finder.breaks[n]._asdict(), seen_by=sorted((c.suite.replace(PREFIX, '') + ' ' + c.name).strip() for c in seen[n]))
                  for n in asked]
         pathlib.Path(arguments.json).write_text(json.dumps(found, indent=1))
 

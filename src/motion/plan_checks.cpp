@@ -49,8 +49,7 @@ bool PlanChecks::add(const Setpoint& p) {
     if (!p.position.isFinite().all()) return false;
   }
   count(p);
-  // The first setpoint is the start of the job: nothing has moved yet.
-  if (statistics_.setpoints > 1) measure(p);
+  measure(p);
   return true;
 }
 

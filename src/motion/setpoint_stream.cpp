@@ -261,8 +261,6 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
   current_.move = kind;
   current_.step = StepKind::kNone;
   current_.path_error = 0;
-  current_.feed = 0;
-  current_.at_feed = false;
   from_ = current_.position;
   way_ = to - from_;
   to_ = to;
@@ -272,12 +270,9 @@ void SetpointStream::beginStraight(MoveKind kind, const Axes& to) noexcept {
     law_ = SCurveProfile();
     return;
   }
-  MotionLimits limits = limitsAlong(way_, program_->machine().limits);
+  const MotionLimits limits = limitsAlong(way_, program_->machine().limits);
   double speed = limits.velocity;
-  if (isAtFeed(kind)) {
-    speed = std::min(speed, program_->job()->process().feed / linear_way_);
-    limits.velocity = std::min(limits.velocity, kMaxFeedOverride * speed);
-  }
+  if (isAtFeed(kind)) speed = std::min(speed, program_->job()->process().feed / linear_way_);
   beginLaw(limits, 1, speed);
 }
 

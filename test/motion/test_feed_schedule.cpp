@@ -215,6 +215,71 @@ TEST(FeedSchedule, TurnsAEvenlyAtItsLimitWhereThatCutsTheFeed) {
   }
 }
 
+/// On a turn at constant speed of X, half of A's acceleration is for k b (v/u)^2 of the path, and a tenth of its jerk
+/// for 2 k b^2 (v/u)^3; the rest is for the feed law and the blend.
+TEST(FeedSchedule, TurnsAWithItsShareOfAccelerationAndJerk) {
+  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
+  for (const bool by_jerk : {false, true}) {
+    SCOPED_TRACE(by_jerk);
+    Machine machine = boundless();
+    (by_jerk ? machine.limits.max_jerk : machine.limits.max_acceleration)[kA] = 1;
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+    const double v_per_u = schedule.limits().velocity * schedule.rate(0) / (1 - 0.5e-3 * b);
+    const double share = by_jerk ? 2 * k * b * b * std::pow(v_per_u, 3) : k * b * v_per_u * v_per_u;
+    EXPECT_NEAR(share, by_jerk ? 0.1 : 0.5, 1e-9);
+  }
+}
+
+/// Where nothing cuts the feed, the path may take half as much again as its jerk of 2 k b^2 (v/u)^3, and the feed law's
+/// acceleration a quarter of the limit.
+TEST(FeedSchedule, LeavesTheFeedLawWhatThePathDoesNotTakeOfTheJerkOfA) {
+  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
+  const double u = 1 - 0.5e-3 * b, v = 1.2 * 0.01 / test_support::edgePerTravel(thinCutter());
+  Machine machine = boundless();
+  machine.period = 1e-7;
+  const double path = 3 * k * b * b * std::pow(v / u, 3);
+  machine.limits.max_jerk[kA] = 10 * path;
+  const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
+  ASSERT_TRUE(schedule.feedLimits().empty());
+  const double left = (10 * path * 3 / 4 - path) / (k / u);
+  EXPECT_NEAR(schedule.limits().jerk, left, 1e-9 * left);
+}
+
+/// The steps of a pair differ from their mean by b v T/u, at the highest speed that the job or the axis allows.
+TEST(FeedSchedule, LeavesWhatTheStepsOfAPairDifferBy) {
+  const double b = std::tan(12 * units::kDegree) / 0.5e-3, u = 1 - 0.5e-3 * b;
+  const double asked = 0.01 / test_support::edgePerTravel(thinCutter());
+  FeedSchedule::Stroke stroke = plainStroke();
+  stroke.tolerance = 1;  // not in the way
+  for (const double allowed : {0.9, 1.25}) {
+    SCOPED_TRACE(allowed);
+    Machine machine = boundless();
+    machine.period = 0.02;
+    machine.limits.max_velocity[kX] = allowed * asked;
+    const FeedSchedule schedule(ConicalCutter(thinCutter()), stroke, machine);
+    const double fastest = std::min(allowed, 1.2) * asked;
+    const double expected = allowed * asked / (1 + b * fastest * machine.period / u);
+    EXPECT_NEAR(schedule.limits().velocity, expected, 1e-9 * expected);
+  }
+}
+
+/// A chord of d is off the curve of A by k b (d/u)^2 / 2 and, by the next term of the series, b d/u of that.
+TEST(FeedSchedule, TakesTheStepsThatTheToleranceAllows) {
+  FeedSchedule::Stroke stroke = plainStroke();
+  stroke.tolerance = 0.5e-6;
+  const ConicalCutter cutter(thinCutter());
+  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
+  const double u = 1 - 0.5e-3 * b;
+  Machine machine = boundless();
+  machine.period = 0.01;
+  const FeedSchedule schedule(cutter, stroke, machine);
+  ASSERT_EQ(causesOf(schedule.feedLimits()), "interpolation tolerance");
+  const double a_error = stroke.tolerance / (0.5e-3 * u * cutter.cosHelixToGeneratrix());
+  const double d = u * std::sqrt(2 * a_error / (k * b));
+  const double expected = d / (1 + b * d / u) / machine.period;
+  EXPECT_NEAR(schedule.feedSpeed(), expected, 1e-9 * expected);
+}
+
 TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
   // A allows the feed to grow along the cone faster than X may: dv/dt = b c v, and d2v/dt2 = (b c)^2 v. Y and Z follow
   // X in proportion, by tan C and tan C sin r.
@@ -233,8 +298,16 @@ TEST(FeedSchedule, CutsTheFeedFurtherWhereXYOrZCannotGainSpeedAsAAllows) {
           (by_jerk ? 0.1 : 0.02) * per_x[axis];
       const FeedSchedule schedule = c.schedule();
       EXPECT_EQ(causesOf(schedule.feedLimits()), std::string(names[axis]) + (by_jerk ? " jerk" : " acceleration"));
-      EXPECT_GT(schedule.limits().acceleration, 0);
+      // Half of the acceleration, or a quarter of the jerk, is for that growth; of the jerk a quarter more is for the
+      // feed law's acceleration on it, 3 b c dv/dt.
+      const double v = schedule.limits().velocity, b_c = growth / 0.5e-3 * v * schedule.rate(0);
+      const double share = by_jerk ? 0.1 / 4 : 0.02 / 2;
+      EXPECT_NEAR(by_jerk ? b_c * b_c * v : b_c * v, share, 1e-9 * share);
+      EXPECT_NEAR(schedule.limits().acceleration, by_jerk ? share / (3 * b_c) : share, 1e-9);
       EXPECT_GT(schedule.limits().jerk, 0);
+      if (by_jerk) {
+        EXPECT_NEAR(schedule.limits().jerk, 0.1 / 2, 1e-9);
+      }
       std::vector<double> xs;
       const double h = 2e-3;
       for (double s = 0; s < schedule.length(); s += h * schedule.limits().velocity) xs.push_back(schedule.x(s));

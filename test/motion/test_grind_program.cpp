@@ -110,6 +110,19 @@ TEST(GrindProgram, EveryPassIndexesGoesOverTheWorkDownAlongAndOut) {
   EXPECT_TRUE((program.moves().back().to == machine.park).all());
 }
 
+/// Its even points drift by up to as much again as its odd points deviate.
+TEST(GrindProgram, GivesTheStepsOfPublishedHalfOfTheTolerance) {
+  const auto speed = [](EvenStepRule rule, double tolerance) {
+    GrindJob job = paperJob();
+    job.process().feed = 0.1;
+    job.interpolation = {rule, tolerance, 1e-3};
+    const GrindProgram program(ValidJob(job), strongMachine(), strongMachine().park);
+    EXPECT_EQ(causesOf(program.schedule().feedLimits()), "interpolation tolerance");
+    return program.schedule().feedSpeed();
+  };
+  EXPECT_EQ(speed(EvenStepRule::kPublished, 2e-9), speed(EvenStepRule::kExact, 1e-9));
+}
+
 TEST(GrindProgram, ContinuesFromAPassOfATooth) {
   EXPECT_EQ(strokesOf(programOf(manyPasses(), {0, 2})), (std::vector<std::string>{"0/2", "1/0", "1/1", "1/2"}));
   EXPECT_EQ(strokesOf(programOf(manyPasses(), {1, 2})), (std::vector<std::string>{"1/2"}));

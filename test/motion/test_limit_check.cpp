@@ -294,6 +294,31 @@ TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPassALimitOfPositions) {
   EXPECT_FALSE(passes(LimitCheck::kUnplannedRoundings, 7, terms));
 }
 
+/// Acceleration and jerk are differences of three and four positions, which add up to 4 and 8 times the rounding of
+/// one.
+TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPassAtPairEnds) {
+  for (const bool jerk : {false, true}) {
+    SCOPED_TRACE(jerk);
+    AxisLimits l = plainLimits();
+    (jerk ? l.max_acceleration : l.max_jerk)[kA] = 1e12;
+    (jerk ? l.max_jerk : l.max_acceleration)[kA] = 1.0 / 1024;
+    const auto passes = [&](int epsilons) {
+      LimitCheck check(l, kPeriod);
+      Axes terms = Axes::Zero();
+      terms[kA] = 16;
+      check.restart(terms);
+      Setpoint p;
+      check.check(p);
+      p.cycle = 2;
+      const double way = std::pow(2 * kPeriod, jerk ? 3 : 2) / 1024;
+      p.position[kA] = way + epsilons * 16 * std::numeric_limits<double>::epsilon();
+      return !check.check(p);
+    };
+    EXPECT_TRUE(passes(jerk ? 15 : 7));
+    EXPECT_FALSE(passes(jerk ? 17 : 9));
+  }
+}
+
 TEST(LimitCheck, LetsTheRoundingOfThePositionsTermsPass) {
   AxisLimits l = plainLimits();
   l.max_velocity[kA] = 1.0 / 1024;

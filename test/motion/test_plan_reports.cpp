@@ -69,6 +69,32 @@ TEST(JobPlan, RefusesEveryAxisBeyondItsLimitsWithTheWorstOfEveryMove) {
   EXPECT_TRUE((visited.back().position == machine.park).all());
 }
 
+// A control period this long makes the steps of a pair so uneven that they exceed the velocity of A, too.
+TEST(JobPlan, HasAReasonForEveryLimitThatAnAxisExceedsInAMove) {
+  GrindJob job = steepJob();
+  job.cutter.spiral_angle = 10 * units::kDegree;
+  job.process().feed = 0.1;
+  job.interpolation.tolerance = 1e-3;
+  Machine machine = strongMachine();
+  machine.period = 0.02;
+  machine.limits.max_velocity[kA] = 4.5;
+  machine.limits.max_position[kA] = 0.5;
+  std::vector<Setpoint> visited;
+  const JobPlan plan = planJob(ValidJob(job), machine, machine.park, [&](const Setpoint& p) { visited.push_back(p); });
+  std::uint64_t fast = 0, far = 0;
+  for (const Setpoint& p : visited) {
+    if (p.move != MoveKind::kStroke) continue;
+    fast += p.velocity[kA] > 4.5 ? 1 : 0;
+    far += p.position[kA] > 0.5 ? 1 : 0;
+  }
+  ASSERT_TRUE(fast > 0 && far > fast);
+  std::map<ReasonKind, std::uint64_t> counts;
+  for (const Reason& reason : plan.reasons) {
+    if (reason.move == MoveKind::kStroke) counts[reason.kind] += reason.count;
+  }
+  EXPECT_EQ(counts, (std::map<ReasonKind, std::uint64_t>{{ReasonKind::kPosition, far}, {ReasonKind::kVelocity, fast}}));
+}
+
 /// An interrupted stroke comes to its end by other points than the plan's.
 TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
   for (const double way : {1, -1}) {
@@ -78,16 +104,19 @@ TEST(JobPlan, LeavesTheToleranceBetweenTheEndOfAStrokeAndTheLimitOfA) {
     end.position << 0.031, 0, 0, ReferenceCurve(job.cutter, job.process().setup_x_shift).a(0.031) + 1;
     const double room = job.interpolation.tolerance / Deviation(job).of(end);
     Machine machine = plainMachine();
+    const RunStart run{machine.park, {}, Axes(0, 0, 0, 0.3)};  // A is offset
+    const auto planned = [&] { return planJob(ValidJob(job), machine, run); };
     double& limit = (way > 0 ? machine.limits.max_position : machine.limits.min_position)[kA];
-    limit = end.position[kA] - 1 + way * 1.01 * room;
-    EXPECT_TRUE(planOf(job, machine).good()) << textOf(planOf(job, machine));
+    limit = end.position[kA] - 1 + 0.3 + way * 1.01 * room;
+    EXPECT_TRUE(planned().good()) << textOf(planned());
     limit -= way * 0.02 * room;
-    const JobPlan plan = planOf(job, machine);
+    const JobPlan plan = planned();
     EXPECT_EQ(plan.fault, PlanFault::kLimit);
     ASSERT_EQ(plan.reasons.size(), 1u) << textOf(plan);
     EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kPosition);
     EXPECT_EQ(plan.reasons[0].move, MoveKind::kStroke);
     EXPECT_NEAR(plan.reasons[0].value, limit + way * 0.01 * room, 1e-4 * room);
+    EXPECT_EQ(plan.reasons[0].limit, limit);
   }
 }
 
@@ -221,6 +250,11 @@ RC_GTEST_PROP(JobPlanProperty, ReportsWhereEveryMoveEnds, ()) {
   work.job.tooth_angles = {0};
   work.job.process().spark_out = 2;
   checkMoveEnds(work);
+  work.job.process().overtravel_end = 0;
+  for (const double a : {0.0, 0.5}) {  // perhaps above the begin of the stroke: the first move or two have no length
+    work.start << 0, work.machine.park[kY], 0, a;
+    checkMoveEnds(work);
+  }
 }
 
 }  // namespace test_plan_reports

@@ -124,6 +124,8 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
     Work work{paperJob(), plainMachine(), plainMachine().park};
     work.job.interpolation.even_step = rule;
     work.job.tooth_angles = {0, 1.1, 2.5, 4};
+    const double spiral = work.job.cutter.spiral_angle;
+    work.job.spiral_angles = {spiral, 0.9 * spiral, spiral, 0.9 * spiral};
     work.job.process().infeed = work.job.process().depth / 5;
     work.job.process().spark_out = 20;
     const JobPlan all = planOfAllSetpoints(work);
@@ -135,6 +137,35 @@ TEST(PlanShapes, OfAWholeToolGiveWhatAllSetpointsGive) {
         work.valid(), work.machine, work.start, [](const Setpoint&) {}, [&](double) { return ++looks_at_all > 0; });
     EXPECT_LE(looks * 10, looks_at_all) << "a planner asks its watch after every so many setpoints";
   }
+}
+
+// What moves may have in common but for what tells them apart: an infeed is slower than an approach of the same way.
+// The first index has the way of the next.
+TEST(PlanShapes, TellMovesOfTheSameWayApart) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.job.cutter.cone_angle = work.job.cutter.spiral_angle = 0;
+  work.job.tooth_angles = {0, 0.5, 1};
+  work.job.process().clearance = 1.0 / 256;
+  work.job.process().depth = work.job.process().infeed = 1.0 / 2048;
+  work.start << 0, 2.0 / 256 + 1.0 / 2048, 0, -0.5;
+  work.machine.park = work.start;
+  const GrindProgram program = work.program();
+  const std::vector<Move>& moves = program.moves();
+  ASSERT_TRUE((moves[3].to - moves[2].to == moves[2].to - moves[1].to).all() && moves[3].kind == MoveKind::kInfeed);
+  const JobPlan all = planOfAllSetpoints(work);
+  ASSERT_TRUE(all.good()) << textOf(all);
+  requireSame(planJob(work.valid(), work.machine, work.start), all);
+}
+
+// Of a rapid of 100 m at 0.2 m/s next to nothing is generated.
+TEST(PlanShapes, LeaveOutAConstantSpeed) {
+  Work work{paperJob(), plainMachine(), plainMachine().park};
+  work.start[kX] = work.machine.limits.min_position[kX] = -100;
+  int looks = 0;
+  const JobPlan plan = planJob(work.valid(), work.machine, work.start, {}, [&](double) { return ++looks > 0; });
+  EXPECT_TRUE(plan.good()) << textOf(plan);
+  EXPECT_GT(plan.statistics.setpoints, 500000u);
+  EXPECT_LE(looks, 5) << "a planner asks its watch after every 4096 setpoints";
 }
 
 // A plan that is not of all setpoints is watched too, in a stroke and in a rapid of months.

@@ -63,8 +63,10 @@ TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
   SetpointStream stream(GrindProgram(ValidJob(paperJob()), plainMachine(), plainMachine().park));
   Setpoint p;
   EXPECT_EQ(stream.rest(), Rest::kNone);
-  while (stream.next(p))
-    EXPECT_EQ(stream.rest() == Rest::kEnd, p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0);
+  while (stream.next(p)) {
+    const bool at_end = p.move == MoveKind::kReturn && p.move_fraction == 1 && p.cycle % 2 == 0;
+    ASSERT_EQ(stream.rest(), at_end ? Rest::kEnd : Rest::kNone);
+  }
   EXPECT_EQ(stream.rest(), Rest::kEnd);
   const Setpoint last = p;
   stream.retract();
@@ -73,6 +75,47 @@ TEST(SetpointStream, IsFinishedAtItsEndOnlyAndThenLeavesTheSetpointAsItWas) {
   EXPECT_FALSE(stream.next(p));
   EXPECT_EQ(p.cycle, last.cycle);
   EXPECT_TRUE((p.position == last.position).all());
+}
+
+TEST(SetpointStream, BeginsWithTheToothAndPassOfItsFirstMove) {
+  GrindJob job = paperJob();
+  job.tooth_angles = {0, 2};
+  job.process().spark_out = 2;
+  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), {plainMachine().park, {1, 2}}));
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p));
+  EXPECT_EQ(p.tooth, 1u);
+  EXPECT_EQ(p.pass, 2u);
+}
+
+/// A move shorter than any rounding has no setpoints, and ends where it should all the same.
+TEST(SetpointStream, EndsAMoveOfNextToNoLengthExactly) {
+  GrindJob job = paperJob();
+  job.process().overtravel_end = 0;  // so that A and X begin at 0
+  Axes start = plainMachine().park;
+  start[kA] = start[kX] = 1e-31;
+  SetpointStream stream(GrindProgram(ValidJob(job), plainMachine(), start));
+  Setpoint p;
+  ASSERT_TRUE(stream.next(p) && stream.next(p));
+  EXPECT_EQ(p.move, MoveKind::kApproach);
+  EXPECT_EQ(p.position[kA], 0);
+  EXPECT_EQ(p.position[kX], 0);
+}
+
+TEST(SetpointStream, SkippedToAnotherItGoesOnAsThat) {
+  PaperStroke ride(-1e-3);
+  for (const MoveKind kind : {MoveKind::kStroke, MoveKind::kReturn}) {
+    while (ride.last().move != kind || ride.last().cycle % 2 == 1) ride.next();
+    SetpointStream early = ride.stream();
+    for (int i = 0; i < 100; ++i) ride.next();
+    ASSERT_EQ(ride.last().move, kind);
+    early.skip(ride.stream(), 100);
+    Setpoint p;
+    ASSERT_TRUE(ride.next() && early.next(p));
+    EXPECT_EQ(p.cycle, ride.last().cycle);
+    EXPECT_TRUE((p.position == ride.last().position).all());
+    EXPECT_TRUE((p.velocity == ride.last().velocity).all());
+  }
 }
 
 TEST(SetpointStream, ReportsMoveAndProgress) {

@@ -93,15 +93,21 @@ TEST(StraightStrokes, RunInThePlaneOfTheFaceAtConstantA) {
     }
     EXPECT_EQ(begun, 3 * job.passes().size());
     std::vector<double> planes(job.depths().size(), 0);
+    int at_feed = 0;
     for (std::size_t i = 1; i < setpoints.size(); ++i) {
       const Setpoint &p = setpoints[i], &before = setpoints[i - 1];
       if (p.move != MoveKind::kStroke) continue;
       EXPECT_LE(p.feed, job->process().feed * (1 + 1e-12));
       EXPECT_EQ(p.position[kA], before.position[kA]);
+      if (p.at_feed) {
+        ++at_feed;
+        EXPECT_NEAR(p.velocity.head<3>().matrix().norm(), p.feed, 1e-9 * p.feed);
+      }
       const auto plane = [&](const Setpoint& at) { return -sin * at.position[kX] + cos * at.position[kZ]; };
       EXPECT_NEAR(plane(p), plane(before), 1e-12);
       planes[p.pass] = plane(p);
     }
+    EXPECT_GT(at_feed, 0);
     // Each pass takes its infeed: of a gash along Y, else across the plane, which the setup's rounded swivel blurs.
     for (std::size_t i = 1; i < planes.size(); ++i) {
       const double infeed = kind == OperationKind::kGash ? 0 : job.depths()[i] - job.depths()[i - 1];

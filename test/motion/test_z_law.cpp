@@ -114,6 +114,11 @@ TEST(ZLaw, AStrongBowTakesFeedAndNamesTheAxis) {
     ASSERT_EQ(plan.statistics.feed_limits.size(), 1u);
     EXPECT_EQ(plan.statistics.feed_limits[0].cause, cause);
     EXPECT_LT(plan.statistics.max_feed, 0.0099);
+    // The bow may take a quarter of each.
+    const ZCorrection::Bounds bow = plan.program->helix(0).z_correction.bounds();
+    const double v = plan.program->schedule().feedSpeed();
+    EXPECT_NEAR(cause == std::string("axis Z jerk") ? bow.third * v * v * v / 2e-3 : bow.second * v * v / 5e-4, 0.25,
+                1e-9);
     EXPECT_LT(plan.statistics.max_acceleration[kZ], 1.001 * machine.limits.max_acceleration[kZ]);
     EXPECT_LT(plan.statistics.max_jerk[kZ], 1.001 * machine.limits.max_jerk[kZ]);
   }
@@ -137,6 +142,7 @@ TEST(ZLaw, ABowKeepsOffTheLimitByWhatItCanRiseBetweenTwoSetpoints) {
     ASSERT_EQ(plan.reasons.size(), 1u) << text(plan.reasons);
     EXPECT_EQ(plan.reasons[0].kind, ReasonKind::kPosition);
     EXPECT_NEAR(plan.reasons[0].value, limit + way * 0.01 * room, 1e-4 * room);
+    EXPECT_EQ(plan.reasons[0].limit, limit);
   }
 }
 

@@ -531,7 +531,8 @@ class Grinder:
         each client gets them by a connection of its own, and later than the result as may be."""
 
         def batches():
-            new = self.batches[seen:]
+            before = {batch.goal_id for batch in self.batches[:seen]}  # of which some may still come
+            new = [batch for batch in self.batches[seen:] if batch.goal_id not in before]
             return [batch for batch in new if batch.goal_id == new[0].goal_id]
 
         def complete():

@@ -66,6 +66,7 @@ class TestRecords(gc.OwnNode):
         done = self.record_of(lambda: self.grinder.run(JOB, job_name='two.yaml'))
 
         def cancel():
+            self.grinder.make_ready(0.3)  # a client of a busy computer is to see the second pass
             run = self.grinder.send(JOB).wait_past(lambda s: s.move == STROKE and s.pass_ == 1, 'the second pass')
             run.cancel()
             run.wait_complete()

@@ -171,13 +171,12 @@ struct JobNumber {
   class Of {
    public:
     template <typename Number>
-    explicit Of(Number number) : number_(number), of_const_(number) {}
+    explicit Of(Number number) : number_(number) {}
     double& operator()(GrindJob& job) const { return number_(job); }
-    double operator()(const GrindJob& job) const { return of_const_(job); }
+    double operator()(const GrindJob& job) const { return number_(const_cast<GrindJob&>(job)); }  // only looked up
 
    private:
     double& (*number_)(GrindJob&);
-    const double& (*of_const_)(const GrindJob&);
   };
   JobField field;
   Of of;

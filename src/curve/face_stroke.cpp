@@ -121,10 +121,12 @@ InFace roundNext(const NextTooth& next, double rim) {
   const InFace outward = (outer - inner).normalized(), toward(outward[1], -outward[0]);
   const double half = (outer - inner).norm() / 2;
   InFace centre = (inner + outer) / 2 + std::sqrt(std::max(0.0, rim * rim - half * half)) * toward;
-  double step = rim;
+  double step = toNext(next, centre, true) - rim;
   for (int i = 0; i < kFaceSteps && step > kLastStep; ++i) {
-    step = toNext(next, centre, true) - rim;
-    centre -= std::max(0.0, step) * toward;
+    const InFace nearer = centre - step * toward;
+    const double left = toNext(next, nearer, true) - rim;
+    if (!(left < step)) break;  // a rim that is too small
+    centre = nearer, step = left;
   }
   return centre;
 }
@@ -143,6 +145,8 @@ InFace pastAxis(const NextTooth& next, double from_axis, double rim, bool round)
   double far = 0.75 * units::kTurn;
   for (int i = 0; i < kTurnSteps && (is_nearer(far) || !is_nearer(far - kStep)); ++i) far -= kStep;
   double near = far - kStep;
+  // Where the rim is clear nowhere, there is least missing in line with the next tooth: for the refusal.
+  if (is_nearer(far) || !is_nearer(near)) return at(round ? 0 : units::kTurn / 2);
   for (int i = 0; i < kTurnHalvings; ++i) {
     const double turn = (near + far) / 2;
     (is_nearer(turn) ? near : far) = turn;

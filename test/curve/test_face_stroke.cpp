@@ -2,6 +2,7 @@
 
 #include "flute_grinder/base/units.h"
 #include "random_cases.h"
+#include "refusal.h"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace grinder {
@@ -155,7 +157,11 @@ MeasuredEnd measured(const End& end) {
   double highest = -1;
   for (double angle = 0; angle < 6.28; angle += 0.1) highest = std::max(highest, begin.top(radius, angle));
   EXPECT_LE(highest, -clear);
-  EXPECT_GE(highest, right ? -1 : -clear - 2 * radius / std::tan(stroke.swivel)) << "no farther than a cup needs";
+  if (!right) {
+    // Of the end, nothing is farther than its diameter along Z from the edge, which lies on the plane at last.
+    EXPECT_NEAR((stroke.to - stroke.from)[kX] * std::sin(stroke.swivel), clear + 2 * radius * std::cos(stroke.swivel),
+                1e-12);
+  }
   EXPECT_NEAR(stroke.per_stock[kX] * std::sin(stroke.swivel), -1, 1e-12);
   return found;
 }
@@ -236,14 +242,28 @@ TEST(FaceStroke, KeepsClearOfTheNextToothAtAnyPitch) {
 }
 
 /// A cup that passes the axis by 0.05 mm has within its rim, by the gap, only what is 0.1 mm off the axis. Seen along
-/// the spindle, the next tooth's edge begins at 0.1084 or 0.0788 mm.
-TEST(FaceStroke, RefusesACupThatCannotGoRoundTheNextTooth) {
-  const FaceWheel wheel{50 * kMillimetre, 50 * kMillimetre, 10 * kMillimetre, 0, 0, 40 * kMillimetre};
-  const OnTooth normal = endNormal(8 * kDegree, 2 * kDegree), through(0, 5 * kMillimetre, 0);
+/// the spindle, the next tooth's edge begins at 0.1084 or 0.0788 mm. A small cup has within its rim what is 1.95 mm off
+/// the middle of the next tooth, whose ends are 5 mm / cos(8 deg) apart on the plane of a flat end. By a plane of
+/// 60 deg, an edge that begins at 0.2 mm is seen to begin at 0.1 mm, and the rim to be as far past the axis.
+TEST(FaceStroke, RefusesARimThatCannotEndClearOfTheNextTooth) {
+  FaceWheel wheel{50 * kMillimetre, 50 * kMillimetre, 10 * kMillimetre, 0, 0, 40 * kMillimetre};
   EndTooth tooth{5 * kMillimetre, kPi / 2, CutDirection::kLeftHand, 0.11 * kMillimetre, kGap};
-  EXPECT_NO_THROW(endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre));
+  const auto refusal = [&](double clearance, double dish) {
+    return test_support::refusalOf<std::invalid_argument>([&] {
+      endStroke(tooth, endNormal(clearance * kDegree, dish * kDegree), {0, tooth.radius, 0}, wheel, kGap,
+                1 * kMillimetre);
+    });
+  };
+  const std::string begin = "the wheel's rim cannot end clear of the next tooth, by ";
+  const std::string end = " mm; allowed: a flank and a wheel with which it can";
+  EXPECT_EQ(refusal(8, 2), "");
   tooth.next_from = 0.08 * kMillimetre;
-  EXPECT_THROW(endStroke(tooth, normal, through, wheel, kGap, 1 * kMillimetre), std::invalid_argument);
+  EXPECT_EQ(refusal(8, 2), begin + "0.0212" + end);
+  tooth.next_from = tooth.past_axis = 0;
+  wheel.inner_radius = 2 * kMillimetre;
+  EXPECT_EQ(refusal(8, 0), begin + "0.575" + end);
+  tooth = {5 * kMillimetre, kPi / 2, CutDirection::kRightHand, 0.2 * kMillimetre, 0.1 * kMillimetre};
+  EXPECT_EQ(refusal(60, 0), begin + "0.05" + end);
 }
 
 /// Two of an even number of teeth go to the axis, or one of any, at any pitch: where the next tooth is short, the rim
@@ -411,6 +431,10 @@ TEST(FaceStroke, HasTheSetUpsOfTheTrade) {
     EXPECT_EQ(left.swivel, right.swivel);
     EXPECT_NEAR(left.tooth / kDegree, 180 - tooth, 0.005);
   }
+  // By rounding, a normal may be longer than 1.
+  const double longer = 1 + std::numeric_limits<double>::epsilon();
+  EXPECT_NEAR(flankPose({-longer, 0, 0}, CutDirection::kRightHand).swivel, kPi / 2, 1e-12);
+  EXPECT_NEAR(gashPose({longer, 0, 0}, CutDirection::kRightHand).swivel, kPi / 2, 1e-12);
 }
 
 }  // namespace test_face_stroke

@@ -198,10 +198,8 @@ TEST(ReliefPath, BeginsOnAnotherAsFarFromTheEdgeAsAsked) {
   EXPECT_TRUE(std::isnan(primary.surfaceAt(0, 8 * kMillimetre).radius));
 }
 
-// A pass as much higher than the last as the depth touches the blank at one place and no more.
-RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
-  const Case c = drawn();
-  const ReliefPath path(c.cutter, c.start, c.wheel);
+/// The most by which the wheel is in the blank at an end of the stroke.
+double deepest(const Case& c, const ReliefPath& path) {
   const double w_x = -std::sin(c.wheel.swivel), w_z = std::cos(c.wheel.swivel), radius = c.wheel.nominal_radius;
   double highest = -1;
   for (const double s : {-path.beyondEnd(), c.cutter.cone().flute_length + path.beyondShank()}) {
@@ -221,8 +219,27 @@ RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
       }
     }
   }
+  return highest;
+}
+
+// A pass as much higher than the last as the depth touches the blank at one place and no more.
+RC_GTEST_PROP(ReliefPath, TheDepthReachesToTheBlank, ()) {
+  const Case c = drawn();
+  const ReliefPath path(c.cutter, c.start, c.wheel);
+  const double highest = deepest(c, path);
   RC_ASSERT(highest <= path.depth() + 1e-9);
   RC_ASSERT(highest > path.depth() - 50e-6);
+}
+
+/// The wheel is deepest where it begins on a back taper, or on a cone with the end of its rim.
+TEST(ReliefPath, TheDepthIsThatOfTheDeepestPlace) {
+  const ConicalCutter taper(cutterOf(10, -2, 0)), cone(cutterOf(10, 20, 0));
+  const ReliefStart first{10 * kDegree}, second{5 * kDegree, 0.8};
+  for (const Case& c : {Case{taper, first, wheelOf(taper, first, 100, 6, -35, -2.5)},
+                        Case{cone, second, wheelOf(cone, second, 100, 16, 30, -7.999)}}) {
+    const ReliefPath path(c.cutter, c.start, c.wheel);
+    EXPECT_NEAR(path.depth(), deepest(c, path), 0.5e-6);
+  }
 }
 
 // Wear is taken up where the relief begins: it keeps its clearance and its radius, in the closed form and by Y alone.

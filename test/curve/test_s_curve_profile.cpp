@@ -247,6 +247,20 @@ RC_GTEST_PROP(SCurveProfileProperty, SlowedDownAtAnyMomentItKeepsTheLimitsAndCom
   assertFinished(law, m);
 }
 
+/// Braking from 2 m/s for 0.6 s at 1 m/s^3, it is at 1.82 m/s, and would settle at 1.64 m/s if it stopped braking.
+/// Asked for a little more, it swings from -0.6 to 0.2 m/s^2 and back to 0.
+TEST(SCurveProfile, SpeedsUpToATargetBelowItsSpeedIfItWouldSettleLower) {
+  SCurveProfile law({2, 1, 1}, 100, 2);
+  law.advance(3.5);
+  ASSERT_TRUE(law.cruising());
+  law.setTarget(0);
+  law.advance(0.6);
+  law.setTarget(1.64 + 0.2 * 0.2);
+  law.advance(0.8);
+  EXPECT_NEAR(law.acceleration(), 0.2, 1e-9);
+  EXPECT_NEAR(law.speed(), 1.64 + 0.2 * 0.2 / 2, 1e-9);
+}
+
 TEST(SCurveProfile, WhatIsNoFactorDoesNotSlowItDown) {
   for (const double factor : {0.0, -0.5, 1.0, 1.5, kNan, kInf, -kInf}) {
     SCurveProfile law({1, 2, 8}, 10, 1);

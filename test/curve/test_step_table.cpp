@@ -105,6 +105,15 @@ TEST(StepTable, EndsWhereTheStepsAreTooLongForTheCurve) {
   const StepTable half = tableOf(back, EvenStepRule::kPublished, 75 * kMm);
   EXPECT_FALSE(half.complete);
   EXPECT_EQ(half.rows.size(), 1u);
+  // A first step that ends behind the apex, and a second one that comes back.
+  const Cone steep{2 * kMm, -3 * units::kDegree, 40 * units::kDegree, 0, 10 * kMm};
+  const ReferenceCurve curve(steep);
+  const ReferencePair pair = test_support::publishedPair(curve, units::kMillimetrePerRadian, 0, 26 * kMm);
+  ASSERT_LT(curve.u(pair.x1), 0);
+  ASSERT_GT(curve.u(pair.x2), 0);
+  const StepTable back_again = tableOf(steep, EvenStepRule::kPublished, 26 * kMm);
+  EXPECT_FALSE(back_again.complete);
+  EXPECT_EQ(back_again.rows.size(), 1u);
 }
 
 TEST(StepTable, EndsWhereAStepLeadsNowhere) {

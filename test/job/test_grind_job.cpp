@@ -1,15 +1,18 @@
 #include "flute_grinder/job/valid_job.h"
 
+#include "flute_grinder/job/job_digest.h"
 #include "flute_grinder/job/job_file.h"
 #include "motion/examples.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <initializer_list>
 #include <limits>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -486,14 +489,16 @@ TEST(GrindJob, OfAWholeMillNamesWhatItsOperationsNeed) {
   for (const auto& row : rows) EXPECT_EQ(refusalOf(row.operation, row.change), row.reason) << row.operation;
 }
 
+/// What is said of a job where it is made a valid one; its digest where it is.
+std::string refusal(const GrindJob& job) {
+  try {
+    return ValidJob(job).digest();
+  } catch (const InvalidJob& refused) {
+    return text(refused.reasons());
+  }
+}
+
 TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {
-  const auto refusal = [](const GrindJob& job) {
-    try {
-      return ValidJob(job).digest();
-    } catch (const InvalidJob& refused) {
-      return text(refused.reasons());
-    }
-  };
   GrindJob flute = paperJob();
   wearPerPass(flute, 0.125e-3 * (1 + 1e-6));
   EXPECT_EQ(refusal(flute),
@@ -511,6 +516,69 @@ TEST(ValidJob, RefusesMorePassesThanTheWheelLasts) {
       << why;
   end.process().wheel_wear_per_pass = std::nan("");
   EXPECT_THROW(ValidJob{end}, InvalidJob);
+  // Without wear, a wheel lasts that is nothing but corners.
+  end.process().wheel_wear_per_pass = 0;
+  end.process().wheel_corner_radius_lower = end.process().wheel_corner_radius_upper = end.process().wheel_width / 2;
+  EXPECT_EQ(refusal(end), jobDigest(end));
+}
+
+TEST(ValidJob, CountsThePassesOfAnOperationAfterTheFlutes) {
+  GrindJob gash = readJobFile("jobs/end_mill_d10_t4.yaml", "gash");
+  // 4 times 4950 roughing passes are 19,800.
+  gash.process().infeed = ValidJob(gash).deepest() / 4950;
+  gash.process().spark_out = 0;
+  EXPECT_EQ(refusal(gash), jobDigest(gash));
+  gash.process().spark_out = 100;
+  EXPECT_EQ(refusal(gash),
+            "process.infeed_mm is too small for a gash as deep as this: more than 20000 passes of all teeth");
+}
+
+TEST(ValidJob, RefusesAReliefThatBeginsBeyondTheApex) {
+  GrindJob relief = readJobFile("jobs/end_mill_d10_t4.yaml", "primary");
+  relief.cutter.cone_angle = 30 * kDeg;
+  relief.cutter.end_diameter = 1e-3;
+  relief.process().setup_height = -40e-3;
+  EXPECT_EQ(refusal(relief), "the stroke of the relief goes beyond where the cone closes");
+}
+
+/// All reliefs have the travel that the widest of them needs, with a millimetre at either end to reach the feed.
+TEST(ValidJob, OfAReliefHasTheTravelOfAllItsTeeth) {
+  const ValidJob flutes(readJobFile("jobs/end_mill_d10_t4.yaml", "flute"));
+  GrindJob job = readJobFile("jobs/end_mill_d10_t4.yaml", "primary");
+  job.process().direction = StrokeDirection::kFromEnd;
+  for (const double first : {34.9 * kDeg, 35.1 * kDeg}) {
+    std::vector<EdgeHelix> edges(4, EdgeHelix{35 * kDeg});
+    edges[0].spiral_angle = first;
+    const ValidJob valid = ValidJob(job).withEdges(flutes, edges);
+    double from = kInf, to = -kInf;
+    for (int tooth = 0; tooth < 4; ++tooth) {
+      const ReliefPath& path = *valid.relief(tooth);
+      from = std::min(from, path.xShift() - path.beyondEnd() - 1e-3);
+      to = std::max(to, path.xShift() + 22e-3 + path.beyondShank() + 1e-3);
+    }
+    EXPECT_NE(valid.relief(0)->xShift(), valid.relief(1)->xShift());
+    for (int tooth = 0; tooth < 4; ++tooth) {
+      EXPECT_NEAR(valid.strokeLaw(tooth).from, from, 1e-15) << tooth;
+      EXPECT_NEAR(valid.strokeLaw(tooth).to, to, 1e-15) << tooth;
+    }
+  }
+}
+
+TEST(GrindJob, OfAnOperationThatIsNotThereIsNone) {
+  EXPECT_NO_THROW(paperJob().ofOperation(0));
+  EXPECT_THROW(paperJob().ofOperation(1), std::out_of_range);
+}
+
+TEST(EndTooth, LeavesAsMuchOfTheNextOneAsThatHasOfAnEdge) {
+  const GrindJob job = readJobFile("jobs/center_cutting_d10_t4.yaml", "gash");
+  for (int tooth = 0; tooth < 4; ++tooth) {
+    EXPECT_EQ(endToothOf(job, tooth).next_from, tooth % 2 == 0 ? job.cutter.end_short_from : 0) << tooth;
+  }
+}
+
+// Of a wheel with nothing but 0, it is that of an empty text, which is well known.
+TEST(Digest, IsOfWhatIsNotZero) {
+  EXPECT_EQ(wheelDigest(GrindJob{}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 
 TEST(ValidJob, FinishesAllTeethAfterTheRoughingOfAll) {

@@ -3,6 +3,8 @@
 #include "flute_grinder/base/read_file.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/job/grind_job.h"
+#include "flute_grinder/job/rounded_job.h"
+#include "flute_grinder/job/setup_file.h"
 
 #include "job/good_job.h"
 #include "refusal.h"
@@ -11,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -153,6 +156,8 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
       {"teeth: 4", "teeth: 4.5", "job.yaml:7 ... cutter.teeth = 4.5 is not a whole number; allowed: 1 to 64"},
       {"spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
        "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
+      {"teeth: 4", "teeth: 0.5", "job.yaml:7 ... cutter.teeth = 0.5 is not a whole number; allowed: 1 to 64"},
+      {"feed_mm_min: 200", "feed_mm_min: \"\"", "job.yaml:17 ... process.feed_mm_min =  is not a number"},
       {"teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
       {"teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
       {"teeth: 4", "teeth: -4", "job.yaml:7 ... cutter.teeth = -4; allowed: 1 to 64"},
@@ -192,6 +197,8 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
        "job.yaml:31 ... process.wheel.points_mm ... -4 mm ... ascending"},
       {kAngled, "    profile: points\n    points_mm: [[-4, 50], [4]]\n",
        "job.yaml:31 ... process.wheel.points_mm[1] ... not a pair"},
+      {kAngled, "    profile: points\n    points_mm: [[-4]]\n",
+       "job.yaml:31 ... process.wheel.points_mm[0] ... not a pair"},
       {"  spiral_angle_deg: -45\n", "  spiral_angle_deg: -45\n  spiral_angles_deg: [-45, -44, -45, -44]\n",
        "job.yaml:4 ... cutter.spiral_angle_deg ... cutter.spiral_angles_deg ... one of the two"},
       {"spiral_angle_deg: -45", "spiral_angles_deg: [-45, -44]",
@@ -213,6 +220,7 @@ TEST(JobFile, RefusesWhatIsNoTreeOfWords) {
   } rows[]{{with("  clearance_mm: 5\n", "process:\n  clearance_mm: 5\n"), "job.yaml:22 ... process"},
            {with("process:\n  feed_mm_min: 200\n", "process.feed_mm_min: 200\nprocess:\n"),
             "job.yaml ... process.feed_mm_min"},
+           {with("[0.1, 0.2]", "[{lower: 0.1}, 0.2]"), "job.yaml ... process.wheel.corner_radius_mm[0] is missing"},
            {with("teeth: 4", "teeth: [4"), "job.yaml:"},
            {"cutter:\n  teeth: 4\n bad: : :\n", "job.yaml:3"},
            {kGoodJob + "? [1, 2]\n: 3\n", "job.yaml:39"},
@@ -335,6 +343,63 @@ TEST(JobFile, ReportsAllOfSeveralErrors) {
     EXPECT_EQ(linesOf(error), static_cast<std::ptrdiff_t>(row.messages.size())) << error;
     for (const char* message : row.messages) EXPECT_TRUE(hasLine(error, message)) << message << "\ngot: " << error;
   }
+}
+
+TEST(JobFile, RefusesAnotherOperationThanThereAreKinds) {
+  const std::string end = "interpolation:\n";
+  const std::string text = with(end, "  - kind: chamfer\n" + end, test_support::readFile("jobs/end_mill_d10_t4.yaml"));
+  const std::string error = refusalOf([&] { parseJob(text, "jobs/mill.yaml", "flute"); });
+  EXPECT_TRUE(hasLine(error, "jobs/mill.yaml:82 ... operations[7].kind is not a key of a job file")) << error;
+}
+
+TEST(RoundedJob, HasTheNineDigitsOfItsFile) {
+  GrindJob job = parseJob(kGoodJob, "job.yaml");
+  job.operations.push_back(job.process());
+  GrindJob noisy = job;
+  for (noisy.operation = 1; noisy.operation >= 0; --noisy.operation) {
+    visitJobFields([&](const JobField&, auto of) { of(noisy) *= 1 + 1e-12; });
+  }
+  for (double& angle : noisy.tooth_angles) angle *= 1 + 1e-12;
+  noisy.operation = 1;
+  const GrindJob rounded = roundedOff(noisy);
+  EXPECT_EQ(rounded.operation, 1);
+  EXPECT_EQ(rounded.tooth_angles, job.tooth_angles);
+  for (const int operation : {0, 1}) {
+    const GrindJob is = rounded.ofOperation(operation), was = job.ofOperation(operation);
+    visitJobFields([&](const JobField& field, auto of) { EXPECT_EQ(of(is), of(was)) << field.path; });
+  }
+}
+
+/// The set-up file of the shipped paper's job, which ends with what it was solved for, and what is said of it.
+class SetupOfAJob : public ::testing::Test {
+ protected:
+  std::string errorOf(const std::string& text) {
+    return refusalOf([&] { takeSetup(text, "setup.yaml", job_); });
+  }
+
+  const std::string text_ = test_support::readFile("jobs/paper.setup.yaml");
+  GrindJob job_ = readJobFile("jobs/paper.yaml");
+};
+
+TEST_F(SetupOfAJob, IsRefusedWhereItHasLessOrMore) {
+  EXPECT_EQ(errorOf(text_), "");
+  EXPECT_EQ(errorOf(with("    - process.z_law = published\n", "", text_)),
+            "setup.yaml:1: solved for nothing; the job now has process.z_law = published");
+  EXPECT_EQ(errorOf(with("  depth_mm:", "  colour: red\n  depth_mm:", text_))
+                .find("setup.yaml:4: flute.colour is not a key of a set-up file; allowed: flute."),
+            0u);
+}
+
+TEST_F(SetupOfAJob, IsNotWrittenOverANumber) {
+  EXPECT_EQ(refusalOf([&] { withSetup("3\n", "setup.yaml", "paper.yaml", job_); }),
+            "setup.yaml: not a set-up file, and not written over; name a file of its own in paper.yaml");
+}
+
+TEST_F(SetupOfAJob, IsSoughtFromATenthOfTheWayToTheApexOn) {
+  job_.cutter.end_diameter = 0.6e-3;
+  job_.cutter.cone_angle = kPi / 6;
+  clearSetup(job_);
+  EXPECT_NEAR(job_.process().overtravel_end, 0.03e-3 * std::sqrt(3), 1e-15);
 }
 
 TEST_F(JobFileOnDisk, ThatMayNotBeRead) {

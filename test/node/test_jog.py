@@ -104,9 +104,9 @@ class TestStep(JogTest):
         self.assertEqual((reply.success, reply.message), (True, ''))
         g.wait_state(GrinderState.READY)
         speeds = [j.velocity[j.name.index('axis_x')] for j in g.joints[first:]]
-        # Most of the way; the drive's own speed swings where its host stalls.
-        self.assertAlmostEqual(statistics.median(speed for speed in speeds if speed > 0),
-                               rospy.get_param('/grinder/jog_velocity/axis_x'), delta=0.0005)
+        asked = rospy.get_param('/grinder/jog_velocity/axis_x')
+        # Most of the way; the drive's own speed swings where its host stalls, and it creeps to where it is to stand.
+        self.assertAlmostEqual(statistics.median(speed for speed in speeds if speed > asked / 2), asked, delta=0.0005)
         self.assertTrue(step(A, -90 * DEG, 200 * DEG).success)
         g.wait_state(GrinderState.READY)
         at[X] += 5 * MM

@@ -21,6 +21,10 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// A cutter that comes to a thin end: a 1 mm tip on a 12 deg cone.
 Cone thinCutter() { return {1e-3, 12 * units::kDegree, 45 * units::kDegree, 8 * units::kDegree, 20e-3}; }
 
+/// Of its curve A = a ln(1 + bX): b, k = a b, and u = 1 + bX where plainStroke() begins.
+const double kThinB = std::tan(12 * units::kDegree) / 0.5e-3, kThinK = std::tan(45 * units::kDegree) / 0.5e-3;
+const double kThinU = 1 - 0.5e-3 * kThinB;
+
 /// Limits that hinder nothing.
 Machine boundless() {
   Machine m = plainMachine();
@@ -218,13 +222,13 @@ TEST(FeedSchedule, TurnsAEvenlyAtItsLimitWhereThatCutsTheFeed) {
 /// On a turn at constant speed of X, half of A's acceleration is for k b (v/u)^2 of the path, and a tenth of its jerk
 /// for 2 k b^2 (v/u)^3; the rest is for the feed law and the blend.
 TEST(FeedSchedule, TurnsAWithItsShareOfAccelerationAndJerk) {
-  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
+  const double b = kThinB, k = kThinK;
   for (const bool by_jerk : {false, true}) {
     SCOPED_TRACE(by_jerk);
     Machine machine = boundless();
     (by_jerk ? machine.limits.max_jerk : machine.limits.max_acceleration)[kA] = 1;
     const FeedSchedule schedule(ConicalCutter(thinCutter()), plainStroke(), machine);
-    const double v_per_u = schedule.limits().velocity * schedule.rate(0) / (1 - 0.5e-3 * b);
+    const double v_per_u = schedule.limits().velocity * schedule.rate(0) / kThinU;
     const double share = by_jerk ? 2 * k * b * b * std::pow(v_per_u, 3) : k * b * v_per_u * v_per_u;
     EXPECT_NEAR(share, by_jerk ? 0.1 : 0.5, 1e-9);
   }
@@ -233,8 +237,8 @@ TEST(FeedSchedule, TurnsAWithItsShareOfAccelerationAndJerk) {
 /// Where nothing cuts the feed, the path may take half as much again as its jerk of 2 k b^2 (v/u)^3, and the feed law's
 /// acceleration a quarter of the limit.
 TEST(FeedSchedule, LeavesTheFeedLawWhatThePathDoesNotTakeOfTheJerkOfA) {
-  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
-  const double u = 1 - 0.5e-3 * b, v = 1.2 * 0.01 / test_support::edgePerTravel(thinCutter());
+  const double b = kThinB, k = kThinK, u = kThinU;
+  const double v = 1.2 * 0.01 / test_support::edgePerTravel(thinCutter());
   Machine machine = boundless();
   machine.period = 1e-7;
   const double path = 3 * k * b * b * std::pow(v / u, 3);
@@ -247,7 +251,7 @@ TEST(FeedSchedule, LeavesTheFeedLawWhatThePathDoesNotTakeOfTheJerkOfA) {
 
 /// The steps of a pair differ from their mean by b v T/u, at the highest speed that the job or the axis allows.
 TEST(FeedSchedule, LeavesWhatTheStepsOfAPairDifferBy) {
-  const double b = std::tan(12 * units::kDegree) / 0.5e-3, u = 1 - 0.5e-3 * b;
+  const double b = kThinB, u = kThinU;
   const double asked = 0.01 / test_support::edgePerTravel(thinCutter());
   FeedSchedule::Stroke stroke = plainStroke();
   stroke.tolerance = 1;  // not in the way
@@ -268,8 +272,7 @@ TEST(FeedSchedule, TakesTheStepsThatTheToleranceAllows) {
   FeedSchedule::Stroke stroke = plainStroke();
   stroke.tolerance = 0.5e-6;
   const ConicalCutter cutter(thinCutter());
-  const double b = std::tan(12 * units::kDegree) / 0.5e-3, k = std::tan(45 * units::kDegree) / 0.5e-3;
-  const double u = 1 - 0.5e-3 * b;
+  const double b = kThinB, k = kThinK, u = kThinU;
   Machine machine = boundless();
   machine.period = 0.01;
   const FeedSchedule schedule(cutter, stroke, machine);

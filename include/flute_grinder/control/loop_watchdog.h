@@ -20,7 +20,8 @@ class LoopWatchdog {
   static constexpr std::chrono::milliseconds kLook{10};
   static constexpr int kMostLooks = 25;
 
-  /// @param loop loop whose thread has been started. @param drive the loop's drive. Both must outlive this object.
+  /// @param loop loop whose thread has been started: one that never was counts as one that hangs. @param drive the
+  /// loop's drive. Both must outlive this object.
   LoopWatchdog(ControlLoop& loop, Drive& drive);
   ~LoopWatchdog();
 

@@ -19,9 +19,9 @@ struct SolidExtent {
 
 /// The resolution of a solid.
 struct SolidResolution {
-  std::size_t sections = 60;  ///< number of sections over the cone, of which those that follow are not computed
+  std::size_t sections = 60;  ///< number of sections over the cone; those that others foretell are not computed
   std::size_t rings = 64;     ///< number of rings of each wall in a section
-  std::size_t around = 180;   ///< points of a whole circle, and layers per turn of the helix
+  std::size_t around = 180;   ///< points of a whole circle, and layers per turn of the lands
 };
 
 struct SolidTriangle {

@@ -1,20 +1,11 @@
 """The style of the pictures. They are small, so that their text can be read on a phone. Shapes repeat the meaning of colours, so
 that they can be read in grey."""
 
-import ctypes
 import io
-import multiprocessing
-import os
-import re
-import signal
 from collections import namedtuple
-from concurrent.futures import ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 
 import matplotlib
 from matplotlib.figure import Figure
-
-from document import Failure
 
 # With the SVG as part of a page, once it is drawn.
 Picture = namedtuple('Picture', 'name title caption figure svg', defaults=[None])
@@ -31,8 +22,6 @@ FLUTE, GASH, SECONDARY, PRIMARY, CHAMFER, BLANK = '#5c6b84', '#8d9bb0', '#b9c6d6
 VARIABLES = {FLUTE: 'flute', GASH: 'gash', SECONDARY: 'secondary', PRIMARY: 'primary', CHAMFER: 'chamfer', BLANK: 'blank',
              INK: 'ink', GRID: 'grid', THEORY: 'theory', LIMIT: 'limit', METAL: 'metal', HELD: 'held',
              **{colour: 'tooth%d' % i for i, colour in enumerate(TEETH)}}
-
-PR_SET_PDEATHSIG = 1  # of prctl(2)
 
 ODD_STYLE = {'marker': 'o', 'color': ODD_COLOUR, 'markerfacecolor': 'none'}
 EVEN_STYLE = {'marker': 's', 'color': CURVE}
@@ -53,37 +42,3 @@ def svg_of(figure):
     buffer = io.BytesIO()
     figure.savefig(buffer, format='svg', metadata={'Date': None})
     return buffer.getvalue().decode()
-
-
-def page_svg(picture):
-    """The SVG of a picture as part of a page: with unique ids, and with the page's variables for colours."""
-    svg = svg_of(picture.figure)
-    svg = re.sub(r'<metadata>.*?</metadata>', '', svg[svg.index('<svg'):], flags=re.DOTALL)
-    svg = re.sub(r' (width|height)="[\d.]+pt"', '', svg, count=2)
-    svg = re.sub(r'( id="|href="#|url\(#)', r'\g<1>%s-' % picture.name, svg)
-    for colour, variable in VARIABLES.items():
-        svg = svg.replace(colour, 'var(--%s)' % variable)
-    return svg
-
-
-_pictures = []  # of a worker: a figure cannot be pickled, so that it inherits them all when it is forked
-
-
-def _begin_work(pictures):
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    _pictures.extend(pictures)
-
-
-def _page_svg_of(i):
-    return page_svg(_pictures[i])
-
-
-def drawn(pictures):
-    """The pictures with their SVG, drawn on all cores. @raise Failure"""
-    workers = max(1, min(len(pictures), len(os.sched_getaffinity(0))))
-    fork = multiprocessing.get_context('fork')
-    try:
-        with ProcessPoolExecutor(workers, fork, _begin_work, (pictures,)) as pool:
-            return [picture._replace(figure=None, svg=svg) for picture, svg in zip(pictures, pool.map(_page_svg_of, range(len(pictures))))]
-    except BrokenProcessPool:
-        raise Failure('a process that draws pictures has died, as of too little memory', 1)

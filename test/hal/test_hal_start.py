@@ -115,4 +115,4 @@ class TestSignals(HalStart):
         state = grinder.fresh_state()
         self.assertEqual((state.swivel, state.swivel_measured), (0.25, True))
         hal_bench.halcmd('sets', 'swivel', '-0.125')
-        gc.poll(lambda: grinder.fresh_state().swivel == -0.125, 'the other angle')
+        grinder.wait_fresh(lambda s: s.swivel == -0.125, 'the other angle')

@@ -443,9 +443,13 @@ class Grinder:
             self._changed.notify_all()
 
     def wait_for(self, condition, what, timeout=PATIENCE):
+        """Waits for a condition of what is recorded, and returns its value."""
         deadline = time.monotonic() + timeout
         with self._changed:
-            while not condition():
+            while True:
+                value = condition()
+                if value:
+                    return value
                 left = deadline - time.monotonic()
                 if left <= 0:
                     raise AssertionError('timed out waiting for: ' + what)
@@ -564,24 +568,21 @@ class Grinder:
         park = rospy.get_param('/%s/park_position' % self.name)
         return [park[joint] for joint in JOINTS]
 
-    def fresh_state(self):
-        """The state as of now: what was under way when it was asked for is let pass."""
+    def wait_fresh(self, condition, what):
+        """Waits for a condition of the state as of now, and returns that state: what was under way at the call is let pass."""
         seen = len(self.states)
-        self.wait_for(lambda: len(self.states) >= seen + 3, 'state messages')
-        return self.states[-1]
+        return self.wait_for(lambda: len(self.states) >= seen + 3 and condition(self.states[-1]) and self.states[-1], what)
+
+    def fresh_state(self):
+        """The state as of now."""
+        return self.wait_fresh(lambda _: True, 'messages of the state')
 
     def wait_state(self, state):
-        """Waits for a state that is reported from now on."""
-        seen = len(self.states)
-        self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == state, 'state %d' % state)
-        return self.states[-1]
+        return self.wait_fresh(lambda s: s.state == state, 'state %d' % state)
 
     def wait_power_off(self):
-        """Waits for the state disabled with the power off, which the drive reports a cycle later, reported from now on."""
-        seen = len(self.states)
-        self.wait_for(lambda: len(self.states) > seen and self.states[-1].state == GrinderState.DISABLED and
-                      not self.states[-1].enabled, 'the end of the power')
-        return self.states[-1]
+        """Waits for the state disabled with the power off, which the drive reports a cycle later."""
+        return self.wait_fresh(lambda s: s.state == GrinderState.DISABLED and not s.enabled, 'the end of the power')
 
     def positions(self):
         """Of all axes, as reported last."""

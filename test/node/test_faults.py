@@ -59,7 +59,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         run.wait_complete()
         self.assertEqual((run.status, run.code), ('ABORTED', GrindResult.HARDWARE_FAULT))
         self.assertRegex(run.text, 'it has returned to the control loop too late')
-        gc.poll(lambda: grinder().fresh_state().fault == run.text.split(' (')[0], 'the fault of the state')
+        grinder().wait_fresh(lambda s: s.fault == run.text.split(' (')[0], 'the fault of the state')
 
     def test_way_back_from_an_emergency_stop(self):
         g = grinder()
@@ -70,7 +70,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertEqual((refused.status, refused.code), ('REJECTED', GrindResult.NOT_READY))
         self.assertRegex(refused.text, r'state fault; allowed: disable, reset')
         g.inject('none')
-        gc.poll(lambda: not g.fresh_state().emergency_stop, 'the emergency stop released')
+        g.wait_fresh(lambda s: not s.emergency_stop, 'the emergency stop released')
         self.assertTrue(g.reset().success)
         self.assertEqual(g.wait_state(GrinderState.DISABLED).fault, '')
         at_reset = g.wait_rest()
@@ -82,7 +82,7 @@ class TestFaultInTheStroke(unittest.TestCase):
         self.assertEqual(g.wait_rest(), at_reset)
 
         self.assertTrue(g.lift().success)
-        gc.poll(lambda: not g.fresh_state().wheel_in_work, 'the wheel off the work')
+        g.wait_fresh(lambda s: not s.wheel_in_work, 'the wheel off the work')
         g.wait_state(GrinderState.READY)
         self.assertGreater(g.wait_rest()[Y], at_reset[Y])
         run = g.run(gc.SHORT)

@@ -36,9 +36,7 @@ while True:
 
 
 def step(axis, distance, speed=0.0):
-    reply = grinder()._call('jog_step', JogStep, axis, distance, speed)
-    grinder().fresh_state()  # that of before may be under way, and says that the machine is ready
-    return reply
+    return grinder()._call('jog_step', JogStep, axis, distance, speed)
 
 
 def return_to_park():

@@ -319,7 +319,7 @@ class TestDisk(JournalTest):
         self.assertIn(self.journal, run.text)
         self.client.wait_state(GrinderState.READY)
         self.assertEqual(set(self.client.positions_over(0.2)), {tuple(rest)})
-        gc.poll(lambda: not self.client.fresh_state().spindle_at_speed, 'the spindle stopped')
+        self.client.wait_fresh(lambda s: not s.spindle_at_speed, 'the spindle stopped')
         self.check_reported(before)
         os.rmdir(self.journal + '.new')
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')

@@ -120,7 +120,7 @@ class TestStops(NodeTest):
             run.cancel()
             end, = gc.poll(lambda: [r for r in results if r.status.goal_id.id == run.id], 'the end of the goal')
             self.assertIn(end.status.status, (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
-            gc.poll(lambda: self.client.fresh_state().state == GrinderState.READY, 'the stop')
+            self.client.wait_state(GrinderState.READY)
         gc.poll(lambda: not has_unknown(), 'the end of its status')
 
     def publish_stop(self, request):

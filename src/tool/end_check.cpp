@@ -29,6 +29,7 @@ struct EndPlace {
   double periphery = 0;           ///< see ToolFigure::kPeripheryTaken [m]
   std::optional<ChamferFigures> chamfer;
   FigureValue drag;  ///< of its heel [m]
+  double core = 0;   ///< see ToolFigure::kCoreGashed [m]
 };
 
 /// A figure of the end, with the operation from which on it is asked.
@@ -36,7 +37,7 @@ struct EndMeasurement {
   ToolFigure figure;
   OperationKind since;
   FigureValue (*measured)(const EndPlace&);
-  double (*asked)(const CutterGeometry&);
+  double (*asked)(const CutterGeometry&);  ///< null if the figure is told, and no job asks for it
   double (*tolerance)(const CutterGeometry&);
 };
 
@@ -68,6 +69,8 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kShortFrom, OperationKind::kGash, [](const EndPlace& p) { return p.short_from; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_short_from; }},
+    {ToolFigure::kCoreGashed, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.core); }, nullptr,
+     nullptr},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
      [](const CutterGeometry& c) { return c.chamfer_width; },
@@ -116,8 +119,8 @@ bool hasAllFlanks(const GrindJob& job) {
                       [](const GrindProcess& p) { return isEndFlank(p.kind); });
 }
 
-/// A figure is asked once its operation is done.
-bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
+/// A figure is measured once its operation is done.
+bool isMeasured(const EndMeasurement& m, const ValidJob& job, const std::optional<ValidJob>& next) {
   if (m.figure == ToolFigure::kPeripheryTaken) return true;
   if (m.figure == ToolFigure::kHeelDrag) return hasAllFlanks(*job);
   if (m.figure == ToolFigure::kUncutDiameter) return hasEdges(job, next);
@@ -126,6 +129,7 @@ bool isAsked(const EndMeasurement& m, const ValidJob& job, const std::optional<V
 }
 
 GroundFigure askedFigure(const EndMeasurement& m, const CutterGeometry& cutter) {
+  if (m.asked == nullptr) return {m.figure, {}, {}, std::nullopt, 0};
   const double asked = m.asked(cutter);
   return {m.figure, {}, {}, Range{asked, asked}, m.tolerance(cutter)};
 }
@@ -137,7 +141,7 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}};
+    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}, coreGashed(tooth)};
     const double radius = cutter_.end_diameter / 2;
     const bool has_edge = hasEdges(job_, next_);
     const bool is_short = job_->isShort(static_cast<int>(tooth));
@@ -160,7 +164,7 @@ class EndCheck {
 
   CutterCheck result() {
     for (const EndMeasurement& m : kEndMeasurements) {
-      if (!isAsked(m, job_, next_) || find(figures_, m.figure) != nullptr) continue;
+      if (!isMeasured(m, job_, next_) || find(figures_, m.figure) != nullptr) continue;
       reasons_.push_back(
           otherReason(std::string("the ") + rowOf(m.figure).words + " cannot be measured: nothing is left of it"));
     }
@@ -220,9 +224,15 @@ class EndCheck {
     return taken;
   }
 
+  /// How far behind the end a tooth's gash goes into the asked core.
+  double coreGashed(std::size_t tooth) const {
+    const auto core = [this](double x) { return askedCore(cutter_, x) / 2; };
+    return end_.gashedTo(tooth, core, cutter_.flute_length);
+  }
+
   void take(const EndPlace& place, std::size_t tooth) {
     for (const EndMeasurement& m : kEndMeasurements) {
-      if (!isAsked(m, job_, next_)) continue;
+      if (!isMeasured(m, job_, next_)) continue;
       const FigureValue value = m.measured(place);
       if (value) add(m, *value, place.at.r, static_cast<int>(tooth));
     }
@@ -239,6 +249,7 @@ class EndCheck {
       if (value < known->least.value) known->least = at;
       if (value > known->largest.value) known->largest = at;
     }
+    if (m.asked == nullptr) return;
     const double asked = m.asked(cutter_), tolerance = m.tolerance(cutter_);
     const auto is_same = [&](const Reason& reason) { return reason.detail == rowOf(m.figure).words; };
     if (std::abs(value - asked) <= tolerance || std::any_of(reasons_.begin(), reasons_.end(), is_same)) return;
@@ -274,7 +285,7 @@ CutterFigures askedOfEnd(const ValidJob& job) {
   const std::optional<ValidJob> next = flankAfter(job);
   CutterFigures figures;
   for (const EndMeasurement& m : kEndMeasurements) {
-    if (isAsked(m, job, next)) figures.push_back(askedFigure(m, job->cutter));
+    if (m.asked != nullptr && isMeasured(m, job, next)) figures.push_back(askedFigure(m, job->cutter));
   }
   return figures;
 }

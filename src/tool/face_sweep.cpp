@@ -106,11 +106,11 @@ std::optional<double> FaceSweep::removedTo(const OnRay& on_ray, double x) const 
   return last != nullptr ? std::optional(x) : std::nullopt;
 }
 
-double FaceSweep::Leg::distance(const Vector2d& at) const noexcept {
-  if (endless) return Vector2d(at[0] - to[0], std::min(0.0, at[1] - to[1])).norm();
+double FaceSweep::Leg::squaredDistance(const Vector2d& at) const noexcept {
+  if (endless) return Vector2d(at[0] - to[0], std::min(0.0, at[1] - to[1])).squaredNorm();
   const Vector2d way = to - from;
   const double part = std::clamp((at - from).dot(way) / way.squaredNorm(), 0.0, 1.0);
-  return (at - from - part * way).norm();
+  return (at - from - part * way).squaredNorm();
 }
 
 Range FaceSweep::Leg::within(double distance, double along) const noexcept {
@@ -135,12 +135,14 @@ Range FaceSweep::Leg::within(double distance, double along) const noexcept {
 
 /// How far a place of the ray is inside the wheel, along its radius; negative outside it.
 double FaceSweep::depth(const Ray& ray, const Leg& leg, double x) const {
-  return profile_.radius(ray.w + x * ray.w_per_x) - leg.distance(ray.at + x * ray.at_per_x);
+  return profile_.radius(ray.w + x * ray.w_per_x) - std::sqrt(leg.squaredDistance(ray.at + x * ray.at_per_x));
 }
 
 bool FaceSweep::covers(const Ray& ray, const Leg& leg, double x) const {
   const double w = ray.w + x * ray.w_per_x;
-  return w >= profile_.lowerFace() && w <= profile_.upperFace() && depth(ray, leg, x) >= 0;
+  if (!(w >= profile_.lowerFace() && w <= profile_.upperFace())) return false;
+  const double radius = profile_.radius(w);
+  return leg.squaredDistance(ray.at + x * ray.at_per_x) <= radius * radius;
 }
 
 /// The depth is concave along the ray: there is one end, beyond any place that is covered.

@@ -40,7 +40,7 @@ class FaceSweep {
     Eigen::Vector2d from, to;  ///< across Y and along it [m]
     bool endless;              ///< on upward from `to`, without end
 
-    double distance(const Eigen::Vector2d& at) const noexcept;
+    double squaredDistance(const Eigen::Vector2d& at) const noexcept;
     /// The places across Y, at a place along it, that are within a distance; empty if `from` is above `to`.
     Range within(double distance, double along) const noexcept;
   };

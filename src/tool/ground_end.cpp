@@ -24,6 +24,8 @@ constexpr int kHalvings = 13;                     ///< of a step, to far less th
 constexpr int kFacesInStep = 8;                   ///< most faces that a step along a heel goes over
 constexpr double kHeelStep = 3 * units::kDegree;  ///< greatest step along a heel
 constexpr double kInnermost = 1e-3;               ///< least radius at which an edge is looked for, per radius
+constexpr int kCoreRounds = 4;                    ///< of the search for the place where a gash is deepest in the core
+constexpr int kCorePlaces = 30;                   ///< of such a round to either side
 
 bool holds(const std::vector<Range>& ranges, double x) {
   return std::any_of(ranges.begin(), ranges.end(),
@@ -153,6 +155,30 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
   if (!isOf(surface(tooth, section.r, end + kNearby * radius_).cut, tooth, OperationKind::kSecondaryEnd)) return;
   section.land = end - section.behind;
   section.second_clearance = std::atan(slope(tooth, section.r, end));
+}
+
+double GroundEnd::gashedTo(std::size_t tooth, const std::function<double(double)>& core, double length) const {
+  double turn = 0, reach = units::kPi, deepest = 0;
+  // Of the place on the circle where the gash is deepest, first coarsely, then ever more finely.
+  for (int i = 0; i < kCoreRounds; ++i, reach *= 2.0 / kCorePlaces) {
+    const double middle = turn;
+    const auto is_gashed = [&](double x) {
+      for (int place = -kCorePlaces; place <= kCorePlaces; ++place) {
+        const double here = middle + reach * place / kCorePlaces;
+        const Ray ray = rayAt(core(x), tooth_angles_[tooth] + here);
+        const auto takes = [&](const EndCut& cut) {
+          return isOf(&cut, tooth, OperationKind::kGash) && cut.sweep.removes(ray.at, x);
+        };
+        if (!std::any_of(cuts_.begin(), cuts_.end(), takes)) continue;
+        turn = here;
+        return true;
+      }
+      return false;
+    };
+    if (!is_gashed(deepest)) return deepest;
+    deepest = changeBetween(length, deepest, is_gashed);
+  }
+  return deepest;
 }
 
 double GroundEnd::heelDrag(std::size_t tooth, const EndSection& section, double pitch) const {

@@ -5,6 +5,7 @@
 #include "tool/end_flutes.h"
 #include "tool/face_sweep.h"
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -64,6 +65,11 @@ class GroundEnd {
   /// @param r,turn,x the place: distance from the axis [m], angle from the tooth's in the sense of A [rad], along the
   ///        axis [m].
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
+
+  /// How far behind the end a tooth's gash goes into a core; 0 if it does not [m].
+  /// @param core radius at X, which changes little along X; less than the end's at 0 [m].
+  /// @param length of the core; a gash that goes farther is not followed [m].
+  double gashedTo(std::size_t tooth, const std::function<double(double)>& core, double length) const;
 
   /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.
   /// What is narrower than a fiftieth of the radius is found only where a face ends. The land of the next tooth, which

@@ -215,6 +215,17 @@ class RightHandEndByForce(unittest.TestCase):
                 faces.append(low)
             self.near(tooth, 'rake', numpy.degrees(numpy.arctan((faces[1] - faces[0]) / 0.04)), self.end['rake_deg'], 0.01)
 
+    def test_gashes_go_into_the_core_as_printed(self):
+        turn = numpy.linspace(0, 2 * math.pi, 20000, endpoint=False)
+        core = numpy.full(len(turn), self.tool.cutter['core_diameter_mm'] / 2)  # at both ends
+        deepest = [max(high.max() for stroke in self.tool.of(tooth, 'gash') for _, _, high in [stroke.removed(core, turn)])
+                   for tooth in self.tool.distinct]
+        self.assertGreater(min(deepest), 1)
+        printed = self.tool.printed['chamfer']['figures']['core_gashed']
+        self.assertNotIn('asked_mm', printed)
+        for got, by_force in zip(printed['ground_mm'], (min(deepest), max(deepest))):
+            self.assertAlmostEqual(got, by_force, delta=0.005)
+
     def is_whole(self, tooth, rs):
         """Whether an edge is where the tooth's own strokes leave it, in the plane that is asked, so that no other touches it."""
         all_strokes, own = (self.tool.edges(strokes, tooth, rs, 'end_primary', -0.02, 0.1)

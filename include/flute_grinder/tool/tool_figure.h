@@ -38,6 +38,7 @@ enum class ToolFigure : std::uint8_t {
   kChamferClearance,
   kHeelDrag,
   kShortFrom,
+  kCoreGashed,
 };
 
 /// A figure with its name in files, which is the message constant in lower case.
@@ -89,6 +90,7 @@ inline constexpr ToolFigureRow kToolFigures[]{
     figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
     figureOfEnd(ToolFigure::kHeelDrag, "heel_drag", "heel drag", Unit::kMetre),
     figureOfEnd(ToolFigure::kShortFrom, "short_from", "beginning of the short edge", Unit::kMetre),
+    figureOfEnd(ToolFigure::kCoreGashed, "core_gashed", "core gashed", Unit::kMetre),
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

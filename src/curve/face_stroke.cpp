@@ -270,8 +270,8 @@ FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle
   const Vector3d spindle = spindleAt(pose.swivel);
   const Vector3d along = acrossAt(pose.swivel);
   const Vector3d corner = inMachine({0, tooth.radius, 0}, pose.tooth, tooth.cut);
-  // Where the face's plane crosses X = 0 and Y = 0.
-  const Vector3d origin(0, 0, corner[2] - spindle[0] / spindle[2] * (0 - corner[0]));
+  // Where the face's plane, which holds the corner at X = 0 and the direction of Y, crosses Y = 0.
+  const Vector3d origin(0, 0, corner[2]);
   const auto axes = [&](double way) {
     const double u = way * std::cos(angle) - wheel.radius * std::sin(angle);
     const double v = -past + way * std::sin(angle) + wheel.radius * std::cos(angle);

@@ -450,9 +450,6 @@ std::vector<Reason> validateWheel(const GrindJob& job) {
     if (of_wheel(field.path)) checker.range(field, of(job));
   });
   checkWheelPoints(checker, job);
-  visitJobChoices([&](const char* path, int max, auto of) {
-    if (of_wheel(path)) checker.whole(path, static_cast<int>(of(job)), max);
-  });
   if (checker.good()) checkWheel(checker, job.process());
   return checker.take();
 }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace grinder {
 namespace test_relief_path {
@@ -139,14 +140,19 @@ RC_GTEST_PROP(ReliefPath, TheSurfaceIsWhatTheWheelLeaves, ()) {
 
 /// The edge lies on the cylinder of the rim, not on a corner, whichever hand.
 TEST(ReliefPath, EndsWhereTheWheelsCornersBegin) {
-  for (const CutDirection cut : {CutDirection::kRightHand, CutDirection::kLeftHand}) {
+  // With the spiral the relief lies on one half of the rim, against it on the other.
+  for (const auto& [cut, swivel, contact] : {std::tuple(CutDirection::kRightHand, 30, -2.5),
+                                             {CutDirection::kLeftHand, -30, -2.5},
+                                             {CutDirection::kRightHand, -20, 2.5},
+                                             {CutDirection::kLeftHand, 20, 2.5}}) {
+    SCOPED_TRACE(swivel);
     const double hand = cut == CutDirection::kLeftHand ? -1 : 1;
     const ConicalCutter cutter(cutterOf(10, 5, hand * 30, cut));
     const ReliefStart start{10 * kDegree};
-    ReliefWheel wheel = wheelOf(cutter, start, 100, 6, hand * 30, -2.5);
+    ReliefWheel wheel = wheelOf(cutter, start, 100, 6, swivel, contact);
     wheel.corner_radius = {0.4 * kMillimetre, 0.45 * kMillimetre};
-    // From the edge on, the rim ends at the upper face's corner on a right-hand cutter, at the lower one's on another.
-    const double corner = hand > 0 ? 0.45 : 0.4;
+    // The half on which it lies ends at the corner of the upper or of the lower face.
+    const double corner = swivel > 0 ? 0.45 : 0.4;
     EXPECT_NEAR(ReliefPath(cutter, start, wheel).reach(), (3 - corner + 2.5) * kMillimetre, 1e-9);
     wheel.height = ReliefPath::heightForReach(cutter, start, wheel, 1.2 * kMillimetre);
     EXPECT_NEAR(ReliefPath(cutter, start, wheel).reach(), 1.2 * kMillimetre, 1e-9);

@@ -105,6 +105,10 @@ TEST(GrindJob, NamesAContradictionOnceWithWhatIsAllowed) {
        "process.depth_end_mm = 7.63 mm; allowed: less than 7.624659906 mm, the cutter's radius at the flute's end"},
       {[](GrindJob& j) { chord(j, 1.5e-3); },
        "cutter.chordal_rake_depth_mm = 1.5 mm; allowed: less than 1.5 mm, the asked depth of the flute"},
+      {[](GrindJob& j) { chord(j, 1.2e-3), j.cutter.core_diameter_end = 13e-3; },
+       "cutter.chordal_rake_depth_mm = 1.2 mm; allowed: less than 1.124659906 mm, the asked depth of the flute"},
+      {[](GrindJob& j) { j.spiral_angles = {31 * kDeg}; },
+       "cutter.spiral_angles_deg = 31 deg; allowed: first cutter.spiral_angle_deg, 30 deg"},
       {[](GrindJob& j) { j.process().finish_infeed = 0.6e-3; },
        "process.finish_infeed_mm = 0.6 mm; allowed: up to the depth, 0.5 mm"},
       {[](GrindJob& j) { j.process().wheel_wear = 50e-3; },
@@ -459,8 +463,11 @@ TEST(GrindJob, OfAWholeMillNamesWhatItsOperationsNeed) {
       {"end_mill_d10_t4 chamfer",
        [](GrindJob& j) { wheel(j, WheelShape::kCup), j.process().wheel_side = WheelFace::kUpper; },
        "process.wheel.side = 0; allowed: the lower face, which grinds the flank"},
-      {"end_mill_d10_t4 chamfer", [](GrindJob& j) { wheel(j, WheelShape::kCup), j.process().wheel_rim = 50e-3; },
-       "process.wheel.rim_mm = 50 mm; allowed: less than 50 mm, what is left of its radius"},
+      {"end_mill_d10_t4 chamfer",
+       [](GrindJob& j) {
+         wheel(j, WheelShape::kCup), j.process().wheel_wear = 0.5e-3, j.process().wheel_rim = 49.5e-3;
+       },
+       "process.wheel.rim_mm = 49.5 mm; allowed: less than 49.5 mm, what is left of its radius"},
       {"end_mill_d10_t4 chamfer", [](GrindJob& j) { j.process().wheel_rim = 6e-3; },
        "process.wheel.rim_mm = 6 mm; allowed: 0 for this profile"},
       {"left_hand_end_mill_d8_t3 end_primary", [](GrindJob& j) { wheel(j, WheelShape::kStraight); },
@@ -579,6 +586,15 @@ TEST(EndTooth, LeavesAsMuchOfTheNextOneAsThatHasOfAnEdge) {
 // Of a wheel with nothing but 0, it is that of an empty text, which is well known.
 TEST(Digest, IsOfWhatIsNotZero) {
   EXPECT_EQ(wheelDigest(GrindJob{}), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+/// Zero points hold for another job that places its teeth alike.
+TEST(Digest, OfATaughtToolIsOfWhatPlacesItsTeeth) {
+  GrindJob job = paperJob(), other = job;
+  other.cutter.core_tolerance *= 2, other.cutter.clearance = 0.1, other.process().feed *= 2;
+  EXPECT_EQ(toolDigest(other), toolDigest(job));
+  other.process().z_law = job.process().z_law == ZLaw::kPublished ? ZLaw::kConstantRake : ZLaw::kPublished;
+  EXPECT_NE(toolDigest(other), toolDigest(job));
 }
 
 TEST(ValidJob, FinishesAllTeethAfterTheRoughingOfAll) {

@@ -157,6 +157,8 @@ TEST(JobFile, ReportsAMistakeOnceWithFileLineKeyAndWhatIsAllowed) {
       {"spiral_angle_deg: -45", "spiral_angle_deg: 30,5",
        "job.yaml:4 ... cutter.spiral_angle_deg = 30,5 is not a number; allowed: -60 to 60 deg"},
       {"teeth: 4", "teeth: 0.5", "job.yaml:7 ... cutter.teeth = 0.5 is not a whole number; allowed: 1 to 64"},
+      {"depth_mm: 1.5", "depth_mm: 1-2",
+       "job.yaml:18 ... process.depth_mm = 1-2 is not a number; allowed: 0.001 to 50 mm"},
       {"feed_mm_min: 200", "feed_mm_min: \"\"", "job.yaml:17 ... process.feed_mm_min =  is not a number"},
       {"teeth: 4", "teeth: 010", "job.yaml:7 ... cutter.teeth = 010 ... octal ... 1 to 64"},
       {"teeth: 4", "teeth: +04", "job.yaml:7 ... cutter.teeth = +04 ... octal ... 1 to 64"},
@@ -342,6 +344,35 @@ TEST(JobFile, ReportsAllOfSeveralErrors) {
     const std::string error = errorOf(row.text);
     EXPECT_EQ(linesOf(error), static_cast<std::ptrdiff_t>(row.messages.size())) << error;
     for (const char* message : row.messages) EXPECT_TRUE(hasLine(error, message)) << message << "\ngot: " << error;
+  }
+}
+
+TEST(JobFile, OfAWholeMillReportsAMistakeWithWhatIsAllowedThere) {
+  const struct {
+    const char *operation, *piece, *replacement, *message;
+  } rows[]{
+      {"flute", "  - kind: chamfer\n", "  - kind: bevel\n",
+       "jobs/mill.yaml:76: operations[6].kind = bevel; allowed: flute, relief, gash, end, chamfer"},
+      {"secondary", "    relief: secondary\n    feed_mm_min: 400\n    roughing_passes: 3\n",
+       "    relief: third\n    feed_mm_min: 400\n    roughing_passes: 3\n",
+       "jobs/mill.yaml:48: operations[2].relief = third; allowed: primary, secondary"},
+      {"secondary", "    feed_mm_min: 400\n    roughing_passes: 3\n", "    roughing_passes: 3\n",
+       "jobs/mill.yaml:1: operations[2].feed_mm_min is missing; allowed: 0.1 to 10000 mm/min"},
+      {"secondary",
+       "    roughing_passes: 3\n    finish_infeed_mm: 0.02\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    "
+       "setup: {",
+       "    roughing_passes: 3\n    finish_infeed_mm: 0.02\n    wheel: {file: ../wheels/straight_d100_w6.yaml}\n    "
+       "setup: {height_mm: 3, ",
+       "jobs/mill.yaml:53: operations[2].setup.height_mm stands beside operations[2].setup.file; allowed beside it: "
+       "operations[2].setup.swivel_deg"},
+      {"gash", "a45.yaml}\n    setup: {", "a45.yaml}\n    setup: {swivel_deg: 3, ",
+       "jobs/mill.yaml:61: operations[3].setup.swivel_deg stands beside operations[3].setup.file; allowed beside it: "
+       "none"},
+  };
+  const std::string mill = test_support::readFile("jobs/end_mill_d10_t4.yaml");
+  for (const auto& row : rows) {
+    const std::string text = with(row.piece, row.replacement, mill);
+    EXPECT_EQ(refusalOf([&] { parseJob(text, "jobs/mill.yaml", row.operation); }), row.message) << row.replacement;
   }
 }
 

@@ -238,7 +238,9 @@ TEST(WheelFile, ReportsAMistakeWithFileLineKeyAndWhatIsAllowed) {
        "7: corner_radius_mm[0] = 0.3 mm; allowed: up to the wheel's width for both corners together, 0.25 mm"},
       // At 20 deg a radius of 2.8 mm is used up over 2.8 mm / tan 20 deg.
       {"diameter_mm: 99.4", "diameter_mm: 5.6",
-       "11: measured.width_mm = 7.9 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"}};
+       "11: measured.width_mm = 7.9 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"},
+      {"diameter_mm: 99.4\n  width_mm: 7.9\n", "diameter_mm: 5.6\n",
+       "4: width_mm = 8 mm; allowed: less than 7.692936774 mm, where the wheel's smaller face closes"}};
   for (const auto& row : rows) {
     EXPECT_EQ(errorOf(with(row.piece, row.replacement, kWheel)), std::string("wheel.yaml:") + row.message);
   }

@@ -5,6 +5,7 @@
 #include "cli/machine_file.h"
 #include "cli/offsets.h"
 #include "cli/online.h"
+#include "cli/waiting.h"
 #include "flute_grinder/base/format.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/client/latest.h"

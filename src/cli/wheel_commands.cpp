@@ -1,6 +1,7 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/completion.h"
+#include "cli/machine_file.h"
 #include "cli/wheel.h"
 #include "cli/zeros.h"
 

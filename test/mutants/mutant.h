@@ -2,11 +2,12 @@
 // Without warnings: the functions below mix types as the code that they stand in for does.
 #pragma GCC system_header
 
+#include <fcntl.h>
 #include <unistd.h>
 #include <array>
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <type_traits>
 
@@ -14,31 +15,30 @@
 /// and defines how many there are (MUTANTS).
 namespace mutants {
 
-/// Which mutant this process has, by the environment variable MUTANT, and which of them it has come by. At the end of
-/// the process the latter are written into the folder MUTANTS_REACHED, if it is set.
+/// Which mutant this process has, by the environment variable MUTANT, and which of them it has come by. The latter are
+/// written into the folder MUTANTS_REACHED, if it is set.
 class Process {
  public:
   Process() {
     const char* number = std::getenv("MUTANT");
     if (number) own_ = std::atoi(number);
     const char* folder = std::getenv("MUTANTS_REACHED");
-    if (folder) folder_ = folder;
-  }
-  ~Process() {
-    if (folder_.empty()) return;
-    std::ofstream file(folder_ + "/" + std::to_string(getpid()), std::ios::app);
-    for (int i = 0; i < MUTANTS; ++i) {
-      if (reached_[static_cast<std::size_t>(i)].load(std::memory_order_relaxed)) file << i << '\n';
-    }
+    if (!folder) return;
+    const std::string name = std::string(folder) + "/" + std::to_string(getpid());
+    reached_file_ = open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   }
   bool comesBy(int number) {
-    reached_[static_cast<std::size_t>(number)].store(true, std::memory_order_relaxed);
+    // At once: a program may end without the end of its statics.
+    std::atomic<bool>& reached = reached_[static_cast<std::size_t>(number)];
+    if (!reached.load(std::memory_order_relaxed) && !reached.exchange(true) && reached_file_ >= 0) {
+      dprintf(reached_file_, "%d\n", number);
+    }
     return number == own_;
   }
 
  private:
   int own_ = -1;
-  std::string folder_;
+  int reached_file_ = -1;
   std::array<std::atomic<bool>, MUTANTS> reached_{};
 };
 inline Process process;

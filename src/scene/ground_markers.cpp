@@ -274,14 +274,7 @@ struct Part {
   CutterSolid solid;
 };
 
-/// Removes faces from a solid.
-template <typename Which>
-void drop(CutterSolid& solid, Which which) {
-  auto& faces = solid.triangles;
-  faces.erase(std::remove_if(faces.begin(), faces.end(), which), faces.end());
-}
-
-/// The cutter without a wedge, with the faces of the cut, and the surface of the wedge.
+/// The cutter without a wedge, and the wedge, both with the faces of the cut.
 std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const char* ns,
                           const std::optional<Reached>& reached) {
   const EndVolumes end = endSoFar(job, reached);
@@ -295,14 +288,15 @@ std::vector<Part> partsOf(const GroundCutter& cutter, const ValidJob& job, const
   removed.pop_back();
   for (const Plane& plane : cut_out.body) removed.push_back({{{-plane.normal, -plane.offset}}, {}});
   Part inside{kCutOut, cutterSolid(cutter, extent, resolution, removed)};
-  drop(inside.solid, [](const SolidTriangle& face) { return face.kind == SurfaceKind::kCut; });
   for (CutterSolid* solid : {&rest.solid, &inside.solid}) {
     // Toward the shank: through the cracks one would see dots of it.
     const double last = std::max(extent.to, extent.shank_to);
-    drop(*solid, [&](const SolidTriangle& face) {
+    const auto is_last = [&](const SolidTriangle& face) {
       return std::all_of(face.vertices.begin(), face.vertices.end(),
                          [&](std::uint32_t v) { return solid->vertices[v].x() == last; });
-    });
+    };
+    auto& faces = solid->triangles;
+    faces.erase(std::remove_if(faces.begin(), faces.end(), is_last), faces.end());
   }
   return {std::move(rest), std::move(inside)};
 }
@@ -368,6 +362,19 @@ void appendSurfaces(MarkerArray& array, const std::vector<Part>& parts, SurfaceK
 
 }  // namespace
 
+void Reached::add(const Setpoint& setpoint, const Axes& actual, StrokeDirection direction) {
+  const PassPhase now = phaseOf(setpoint.move);
+  if (now == PassPhase::kNone) return;
+  const ToothPass running{setpoint.tooth, setpoint.pass};
+  if (now != PassPhase::kStroke) {
+    *this = {running, now, 0};
+    return;
+  }
+  if (phase != now) *this = {running, now, setpoint.position[kX]};
+  // A faulty drive may report NaN, which is neither.
+  if (direction == StrokeDirection::kFromEnd ? actual[kX] > x : actual[kX] < x) x = actual[kX];
+}
+
 GroundCutter groundSoFar(const ValidJob& job, const Reached& reached) {
   if (job.isStraight()) return groundCutterOf(job);
   const std::vector<std::vector<GrindStroke>> strokes = strokesSoFar(job, reached);
@@ -416,7 +423,6 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
     }
     appendShank(array, job, ns);
   } catch (const std::invalid_argument& error) {
-    array = clearedArray();
     Marker& label = append(array, "label", Marker::TEXT_VIEW_FACING, "cutter");
     label.pose.position = point(job->cutter.flute_length / 2, 0, 0);
     label.scale.z = kLabelHeight * job->cutter.flute_length;

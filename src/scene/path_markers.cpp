@@ -27,6 +27,7 @@ constexpr double kOnLine = 1e-6;            ///< part of a line on the end by wh
 constexpr double kMinAspect = 4;            ///< least length of a line on the end, per width
 constexpr std::size_t kMaxArrows = 200;
 constexpr std::size_t kMaxExecutedPoints = 2000;
+static_assert(std::max({kMostSteps, kEndSteps, kMaxExecutedPoints}) < kMaxMarkerPoints);
 
 /// A point of the cutter at the radius r.
 geometry_msgs::Point atRadius(double x, double r, double a) { return point(x, r * std::cos(a), r * std::sin(a)); }
@@ -119,7 +120,7 @@ ToolPath::ToolPath(const GrindProgram& program, const std::vector<GroundEdge>& e
       measured_(steps_ + 1, -1) {
   const ValidJob& job = program.job();
   for (EndLine& line : deepestLines(job)) flutes_.push_back({std::move(line), {}});
-  for (std::size_t i = 0; i < edges.size() && !straight_; ++i) {
+  for (std::size_t i = 0; i < edges.size(); ++i) {
     const int tooth = static_cast<int>(i);
     flutes_.push_back({Edge{job.strokeLaw(tooth).a, program.helix(tooth).curve, edges[i]}, {}});
   }
@@ -139,7 +140,6 @@ geometry_msgs::Point ToolPath::pointOf(const Flute& flute, std::size_t i) const 
 }
 
 bool ToolPath::add(const Setpoint& p, const Axes& actual) {
-  if (flutes_.empty()) return false;
   // The last setpoints of a straight stroke may all be at its end, but for rounding.
   if (p.move == MoveKind::kStroke && p.move_fraction == 1 && !active_) return false;
   const std::optional<std::size_t> before = active_;
@@ -196,14 +196,11 @@ void ToolPath::appendFlute(MarkerArray& array, std::size_t tooth) const {
   const Flute& flute = flutes_[tooth];
   if (!isShown(flute)) return;
   const bool active = active_ == tooth;
-  for (std::size_t first = 0; first < steps_; first += kMaxMarkerPoints - 1) {
-    Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness_);
-    m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
-    const std::size_t last = std::min(steps_, first + kMaxMarkerPoints - 1);
-    for (std::size_t i = first; i <= last; ++i) {
-      m.points.push_back(pointOf(flute, i));
-      if (!active && !flute.errors.empty()) m.colors.push_back(errorColour(flute.errors[i] / tolerance_));
-    }
+  Marker& m = appendLines(array, "tool_path", Marker::LINE_STRIP, kFrame, kPathWidth * fineness_);
+  m.color = active ? colour(1, 0.2, 0.9) : colour(0.72, 0.72, 0.72);
+  for (std::size_t i = 0; i <= steps_; ++i) {
+    m.points.push_back(pointOf(flute, i));
+    if (!active && !flute.errors.empty()) m.colors.push_back(errorColour(flute.errors[i] / tolerance_));
   }
 }
 
@@ -226,7 +223,7 @@ std::optional<geometry_msgs::Point> ExecutedPath::placeOf(const Setpoint& p, con
     const std::optional<EndLine::Place> place = straight_->placeOf(p, actual);
     return place ? std::optional(onCutter(place->at, actual[kA])) : std::nullopt;
   }
-  if (edges_.empty() || edges_[p.tooth].empty()) return std::nullopt;
+  if (edges_[p.tooth].empty()) return std::nullopt;
   const GroundEdge::Place place = edges_[p.tooth].formedAt(actual[kX]);
   const double height = actual[kY] + wear_of_move_[p.move_index] - actual[kX] * cutter_.tanCone();
   return atRadius(place.x, cutter_.radius(place.x) + height, actual[kA] + place.turn);

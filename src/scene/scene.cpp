@@ -95,22 +95,7 @@ void Scene::add(const Setpoint& setpoint, const Axes& actual) {
   if (shown_->tool_path.add(setpoint, actual)) flutes_changed_ = true;
   shown_->executed.add(setpoint, actual);
   shown_->errors.add(setpoint);
-  trackGround(setpoint, actual);
-}
-
-void Scene::trackGround(const Setpoint& setpoint, const Axes& actual) {
-  const PassPhase phase = phaseOf(setpoint.move);
-  if (phase == PassPhase::kNone) return;
-  Reached& reached = shown_->reached;
-  const ToothPass pass{setpoint.tooth, setpoint.pass};
-  if (phase != PassPhase::kStroke) {
-    reached = {pass, phase, 0};
-    return;
-  }
-  if (reached.phase != phase) reached = {pass, phase, setpoint.position[kX]};
-  // The ground part stays ground when the wheel goes back along the stroke; a faulty drive may report NaN.
-  const bool from_end = shown_->job->process().direction == StrokeDirection::kFromEnd;
-  if (from_end ? actual[kX] > reached.x : actual[kX] < reached.x) reached.x = actual[kX];
+  shown_->reached.add(setpoint, actual, shown_->job->process().direction);
 }
 
 void Scene::showGround() {

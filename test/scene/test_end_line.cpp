@@ -67,6 +67,22 @@ TEST(EndLine, OfAFlankIsItsEdge) {
   }
 }
 
+// The rim of a cup that comes along X is over the whole edge at once; that of a tooth over the center passes the axis.
+TEST(EndLine, OfAFlankByACupOrOverTheCenterIsItsWholeEdge) {
+  for (const char* file : {"jobs/left_hand_end_mill_d8_t3.yaml", "jobs/slot_drill_d8_t2.yaml"}) {
+    SCOPED_TRACE(file);
+    const ValidJob job = withLaws(ValidJob(readJobFile(file, "end_primary")));
+    const EndLine line = deepest(job, 0);
+    Vector3d begin = onTooth(job, 0, line, line.at(0)), end = onTooth(job, 0, line, line.at(1));
+    if (begin[1] < end[1]) std::swap(begin, end);
+    const double radius = 4 * kMillimetre;
+    expectNear(begin, {0, radius, 0}, 1e-12);
+    expectNear(end, {radius * std::tan(kDish), 0, 0}, 1e-12);
+    const FaceStroke stroke = job.faceStroke(0, job.deepest(), 0);
+    EXPECT_EQ(line.placeOf(stroke.to).has_value(), !job->comesAlongX()) << "nothing to measure along it";
+  }
+}
+
 // From the flute's edge to the end's, which the hook lifts.
 TEST(EndLine, OfAChamferIsItsEdge) {
   for (const ValidJob& job : {endJob("chamfer"), leftHandEndJob(OperationKind::kChamfer)}) {

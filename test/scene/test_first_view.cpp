@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <string>
 
 namespace grinder {
@@ -52,6 +54,34 @@ TEST(FirstView, HasWheelAndBlankOfTheirSizesAndFewPoints) {
   }
   EXPECT_GT(points, 1000u);
   EXPECT_LT(points, 5000u) << "each costs time in every frame";
+}
+
+/// The radius of a wheel's markers at the circles of their outline, by their distance along the axis [nm].
+std::map<long, double> outlineOf(const WheelProfile& wheel) {
+  MarkerArray array;
+  appendWheel(array, wheel);
+  std::map<long, double> outline;
+  for (const Marker& m : array.markers) {
+    for (const geometry_msgs::Point& p : m.points) {
+      double& radius = outline[std::lround(1e9 * p.x)];
+      radius = std::max(radius, std::hypot(p.y, p.z));
+    }
+  }
+  return outline;
+}
+
+TEST(FirstView, AWheelHasTheOutlineOfItsProfile) {
+  for (const WheelProfile& wheel :
+       {WheelProfile::straight(0.1, 0.006, {0.001, 0.002}), WheelProfile::fullRadius(0.1, 0.006)}) {
+    const std::map<long, double> outline = outlineOf(wheel);
+    ASSERT_EQ(outline.begin()->first, -3000000);
+    ASSERT_EQ(outline.rbegin()->first, 3000000);
+    for (const auto& [w, radius] : outline) EXPECT_NEAR(radius, wheel.radius(1e-9 * w), 1e-6) << w;
+    for (auto to = std::next(outline.begin()), from = outline.begin(); to != outline.end(); from = to++) {
+      EXPECT_NEAR((from->second + to->second) / 2, wheel.radius(1e-9 * (from->first + to->first) / 2), 0.3e-3);
+    }
+  }
+  EXPECT_EQ(outlineOf(WheelProfile::angled(0.1, 0.006, 0.5)).size(), 2u) << "each costs time in every frame";
 }
 
 /// Six times the volume of closed triangles that face outward is positive.

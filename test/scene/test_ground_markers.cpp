@@ -64,11 +64,17 @@ void expectFit(const GrindJob& job) {
   EXPECT_LT(ros::serialization::serializationLength(array), kMaxBytes);
   EXPECT_EQ(array.markers.front().action, Marker::DELETEALL);
   EXPECT_EQ(textsOf(array).find_first_not_of('\n'), std::string::npos) << textsOf(array);
+  std::size_t triangles = 0;
+  for (const Marker& m : array.markers) triangles += m.points.size() / 3;
+  EXPECT_GT(triangles, 13000u) << "as fine as there is time for";
+  EXPECT_LT(triangles, 21000u) << "each costs time in every frame";
   for (const std::string ns : {"planned", kCutOut}) {
     const std::vector<Marker> solid = solidOf(array, ns);
     EXPECT_GT(solid.size(), 3u) << textsOf(array);
     for (const Marker& m : solid) {
       EXPECT_EQ(m.header.frame_id, "cutter");
+      EXPECT_TRUE(m.frame_locked) << "turns with A between messages";
+      EXPECT_TRUE(m.pose.orientation.w == 1 && m.scale.x == 1 && m.scale.y == 1 && m.scale.z == 1) << "as rviz asks";
       EXPECT_LE(m.points.size(), 16384u);
       EXPECT_EQ(m.points.size() % 3, 0u);
       EXPECT_EQ(m.colors.size(), isCut(m) ? 0 : m.points.size());
@@ -138,6 +144,31 @@ TEST(GroundMarkers, InAStrokeTheCutterIsGroundToWhereTheWheelIs) {
   }
 }
 
+// Back along the stroke nothing is ground, and a lift belongs to no pass.
+TEST(GroundMarkers, WhatIsReachedFollowsTheJob) {
+  for (const StrokeDirection direction : {StrokeDirection::kFromEnd, StrokeDirection::kToEnd}) {
+    Reached reached;
+    const double way = direction == StrokeDirection::kFromEnd ? 1 : -1;
+    const auto after = [&](MoveKind move, double commanded, double actual) {
+      Setpoint p;
+      p.tooth = 1;
+      p.pass = 2;
+      p.move = move;
+      p.position[kX] = commanded;
+      reached.add(p, Axes::Constant(actual), direction);
+      return reached;
+    };
+    EXPECT_EQ(after(MoveKind::kLift, 0.1, 0.1), Reached{});
+    EXPECT_EQ(after(MoveKind::kInfeed, 0.1, 0.1), (Reached{{1, 2}, PassPhase::kBefore, 0}));
+    const auto in_stroke = [&](double x) { return Reached{{1, 2}, PassPhase::kStroke, x}; };
+    EXPECT_EQ(after(MoveKind::kStroke, 0.1, std::nan("")), in_stroke(0.1));
+    EXPECT_EQ(after(MoveKind::kStroke, 0.1 + way * 0.03, 0.1 + way * 0.02), in_stroke(0.1 + way * 0.02));
+    EXPECT_EQ(after(MoveKind::kStroke, 0.1, 0.1), in_stroke(0.1 + way * 0.02));
+    EXPECT_EQ(after(MoveKind::kLift, 0.1, 0.5), in_stroke(0.1 + way * 0.02));
+    EXPECT_EQ(after(MoveKind::kRetract, 0.1, 0.1), (Reached{{1, 2}, PassPhase::kAfter, 0}));
+  }
+}
+
 /// The part of the tolerance that a rake face's colour stands for, beyond 1 if it is out; nothing for the colours of
 /// other surfaces.
 std::optional<double> deviationOf(const Marker& m) {
@@ -187,6 +218,7 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     const auto roughed = coloured({{1, last - 1}, PassPhase::kAfter, 0});
     const auto begun = coloured({{0, last}, PassPhase::kBefore, 0});
     EXPECT_GT(begun.first, begun.second) << "a flute that is only roughed has the rake of no tool";
+    EXPECT_GT(solidOf(markersSoFar(job, {{1, 0}, PassPhase::kBefore, 0}), "ground").size(), 3u) << "but it is shown";
     if (job.passes()[1].place.tooth == 1) {
       EXPECT_GT(roughed.first, roughed.second);
     }
@@ -202,6 +234,30 @@ TEST(GroundMarkers, ColourTheRakeFacesOnlyWhereTheLastPassHasBeen) {
     EXPECT_LT(done.first, facet);
     EXPECT_GT(done.second, job->cutter.flute_length - facet);
   }
+}
+
+// On a cone it changes along the flute; where the stroke ends too early, the flute is not whole and has no rake.
+TEST(GroundMarkers, ColourTheRakeFacesByTheRakeThatIsThere) {
+  GrindJob job = paper();
+  job.process().overtravel_shank = 0;
+  const GroundCutter cutter = groundCutterOf(ValidJob(job));
+  const double length = job.cutter.flute_length, place = length / 12;
+  const auto rake_at = [&](double x) { return *cutter.section(x).teeth[0].rake; };
+  const double to = cutter.completeRange(0, length)->to, begin = rake_at(0);
+  ASSERT_GT(to, length / 2);
+  ASSERT_LT(to, length - place);
+  job.cutter.rake_angle = begin;
+  job.cutter.rake_tolerance = 1.25 * std::abs(rake_at(to) - begin);
+  double last = 0;
+  for (const Marker& m : solidOf(groundMarkers(cutter, ValidJob(job), "planned"), "planned")) {
+    const auto level = deviationOf(m);
+    for (std::size_t i = 0; level && i < m.points.size(); i += 7) {
+      const double x = m.points[i].x;
+      EXPECT_NEAR(*level, std::abs(rake_at(x) - begin) / job.cutter.rake_tolerance, 0.15) << x;
+      last = std::max(last, x);
+    }
+  }
+  EXPECT_NEAR(last, to, place);
 }
 
 /// One operation of a taper reamer of 6 mm and 2 deg, with six teeth and a clearance of 10 deg.
@@ -303,6 +359,7 @@ TEST(GroundMarkers, ABlankIsRoundBeforeTheFirstStroke) {
     const Marker& m = solid[0];
     EXPECT_NEAR(maxRadius(solid, -1e-9, 1e-9), job->cutter.end_diameter / 2, 1e-12);
     EXPECT_NEAR(maxRadius(solid, 60 * kMillimetre, 1), job->cutter.shank_diameter / 2, 1e-12);
+    EXPECT_EQ(maxRadius(solid, 66.001 * kMillimetre, 1), 0) << "in the collet";
     // Edges across the facets: a circle of so many corners that none shows.
     std::set<long> angles;
     for (const geometry_msgs::Point& p : m.points) {
@@ -330,6 +387,15 @@ TEST(GroundMarkers, AMicroToolHasItsNeckAndItsShank) {
       EXPECT_NEAR(maxRadius(solid, begin - 1e-9, begin + 1e-9), shank / 2 * kMillimetre, 1e-9);
       EXPECT_NEAR(maxRadius(solid, end - 1e-9, end + 1e-9), shank / 2 * kMillimetre, 1e-9);
       EXPECT_EQ(maxRadius(solid, end + 1e-9, 1), 0);
+      std::vector<geometry_msgs::Point> face;  // the small end's
+      for (const Marker& m : groundMarkers(cutter, valid, "ground").markers) {
+        for (std::size_t i = 0; i + 2 < m.points.size() && !isCut(m); i += 3) {
+          if (m.points[i].x + m.points[i + 1].x + m.points[i + 2].x == 0)
+            face.insert(face.end(), &m.points[i], &m.points[i] + 3);
+        }
+      }
+      EXPECT_GT(areaOf(face), units::kPi / 4 * std::pow(job.cutter.core_diameter, 2));
+      EXPECT_LT(areaOf(face), units::kPi / 4 * std::pow(job.cutter.end_diameter, 2));
       // On the cone all the way to the shank, flutes and neck.
       for (int i = 1; i <= 8; ++i) {
         const double x = begin * i / 8, cone = 0.1 * kMillimetre + x * std::tan(3 * kDegree);
@@ -398,6 +464,8 @@ TEST(GroundMarkers, TellWhyACutterCannotBeShown) {
   const MarkerArray array = plannedMarkers(job);
   EXPECT_TRUE(solidOf(array, "planned").empty());
   EXPECT_NE(textsOf(array).find("core radius = "), std::string::npos) << textsOf(array);
+  const Marker& label = array.markers.back();
+  EXPECT_EQ(label.pose.position.x, job.cutter.flute_length / 2) << "where the cutter would be";
 }
 
 }  // namespace test_ground_markers

@@ -111,6 +111,7 @@ TEST(PathMarkers, FlutesArePlannedActiveAndMeasured) {
     if (!flutes.add(p, p.position)) continue;
     ++changes;
     const bool ends = p.move == MoveKind::kStroke && p.move_fraction == 1;
+    EXPECT_TRUE(ends || p.move == MoveKind::kIndex) << "while the wheel is on its way to it";
     if (ends) done[p.tooth] = 'm';
     std::string looks = done;
     if (!ends) looks[p.tooth] = 'a';
@@ -169,6 +170,8 @@ TEST(PathMarkers, AreLinesOfAWidthAndStayFiniteWhateverTheDriveSaysAndLeaveOutPo
       if (m.type != Marker::LINE_STRIP && m.type != Marker::LINE_LIST) continue;
       ++lines;
       EXPECT_TRUE(m.scale.x > 0 && m.scale.y == 0 && m.scale.z == 0) << m.ns;  // all that rviz knows
+      EXPECT_LE(m.scale.x, 0.3e-3) << m.ns;
+      EXPECT_EQ(m.pose.orientation.w, 1) << m.ns;
     }
     EXPECT_GT(lines, 0u);
   }
@@ -269,6 +272,25 @@ TEST(PathMarkers, OfStrokesOnTheEndAreTheirLinesWithTheColoursOfTheirErrors) {
   }
 }
 
+// A cup along X grinds all of an edge at once: there is nothing to measure along it.
+TEST(PathMarkers, OfAFlankByACupHaveNoErrors) {
+  const ValidJob job = withLaws(ValidJob(readJobFile("jobs/left_hand_end_mill_d8_t3.yaml", "end_primary")));
+  const Machine machine = test_support::roomyMachine();
+  const GrindProgram of_job(job, machine, machine.park);
+  ToolPath flutes(of_job, {});
+  ExecutedPath executed(of_job, {});
+  SetpointStream stream(of_job);
+  for (Setpoint p; stream.next(p);) {
+    flutes.add(p, p.position);
+    executed.add(p, p.position);
+  }
+  EXPECT_EQ(looksOf(flutes), "ppp");
+  EXPECT_EQ(flutes.maxMeasured(), 0);
+  MarkerArray path;
+  executed.append(path);
+  EXPECT_TRUE(path.markers.empty());
+}
+
 // From one end of the cutter to the other, and nothing beyond.
 TEST(PathMarkers, AreWhereTheEdgeIsGround) {
   constexpr double kLinear = 5e-6;  // between the sections of the edge that are known
@@ -316,7 +338,14 @@ TEST(PathMarkers, AreWhereTheEdgeIsGround) {
     EXPECT_LE(path.markers[0].points.size(), 2001u) << "thinned out as it grows";
     const DepthLaw depth = of_job.job().depthLaw(0, of_job.job().depths()[0], 0);
     int on_cutter = 0;
-    for (const geometry_msgs::Point& p : path.markers[0].points) {
+    const std::vector<geometry_msgs::Point>& line = path.markers[0].points;
+    double length = 0, longest = 0;
+    for (std::size_t i = 1; i < line.size(); ++i) {
+      length += distance(line[i - 1], line[i]);
+      longest = std::max(longest, distance(line[i - 1], line[i]));
+    }
+    EXPECT_LT(longest, 2 * length / static_cast<double>(line.size())) << "evenly";
+    for (const geometry_msgs::Point& p : line) {
       if (p.x < 0 || p.x > job.cutter.flute_length) continue;
       ++on_cutter;
       const double below = depth.at_end - depth.taper * edges[0].at(p.x).wheel_x;
@@ -377,14 +406,17 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
   std::map<double, Setpoint> commanded;
   SetpointStream stream(job);
   for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
+    p.path_error *= 4000;  // up to beyond the tolerance
     errors.add(p);
     commanded[p.position[kX]] = p;
   }
   const double factor = errors.scale(), normal = cutter.cosHelixToGeneratrix();
-  const std::vector<geometry_msgs::Point> ends = errors.markers().markers.at(1).points;
+  const Marker arrows = errors.markers().markers.at(1);
+  const std::vector<geometry_msgs::Point>& ends = arrows.points;
   ASSERT_GE(ends.size(), 180u);
   for (std::size_t i = 0; i < ends.size(); i += 2) {
     const Setpoint& p = commanded.lower_bound(ends[i].x - 1e-12)->second;
+    EXPECT_EQ(p.step, i % 4 == 0 ? StepKind::kOdd : StepKind::kEven) << "as many of each";
     const double r = cutter.radius(ends[i].x), a = p.position[kA], deviation = -p.path_error * r * normal;
     EXPECT_LT(distance(ends[i], point(ends[i].x, r * std::cos(a), r * std::sin(a))), 1e-12);
     const Eigen::Vector3d arrow(ends[i + 1].x - ends[i].x, ends[i + 1].y - ends[i].y, ends[i + 1].z - ends[i].z);
@@ -396,6 +428,73 @@ TEST(PathMarkers, OfErrorsAreArrowsAcrossTheHelix) {
     EXPECT_NEAR(arrow.dot(Eigen::Vector3d(1, tan_cone * std::cos(a) - tan_spiral * std::sin(a),
                                           tan_cone * std::sin(a) + tan_spiral * std::cos(a))),
                 0, rounding);
+    const std_msgs::ColorRGBA expected = errorColour(std::abs(deviation) / job.job()->interpolation.tolerance);
+    EXPECT_NEAR(arrows.colors[i].r, expected.r, 1e-6);
+    EXPECT_NEAR(arrows.colors[i].g, expected.g, 1e-6);
+  }
+}
+
+// By a round number, up to 3 mm; below a thousandth of the tolerance there are only rounding errors.
+TEST(PathMarkers, OfErrorsAreAsLongAsThereIsRoom) {
+  const GrindProgram job = programOf(paper());
+  const ConicalCutter& cutter = job.cutter();
+  const double tolerance = job.job()->interpolation.tolerance;
+  for (double error = 1e-6 * tolerance; error < 10 * tolerance; error *= 1.5) {
+    SCOPED_TRACE(error);
+    PathErrorMarkers errors(job.job(), {centralEdge(paper())});
+    Setpoint p;
+    p.position[kX] = 10e-3;
+    p.path_error = error / (cutter.radius(10e-3) * cutter.cosHelixToGeneratrix());
+    p.step = StepKind::kOdd;
+    errors.add(p);
+    const double scale = errors.scale(), longest = std::max(error, 1e-3 * tolerance) * scale;
+    EXPECT_LE(longest, 3.001e-3);
+    EXPECT_GT(longest, 3e-3 / 2.501);
+    const double digit = scale / std::pow(10, std::floor(std::log10(scale * 1.000001)));
+    EXPECT_TRUE(std::abs(digit - 1) < 1e-5 || std::abs(digit - 2) < 1e-5 || std::abs(digit - 5) < 1e-5) << scale;
+  }
+}
+
+TEST(PathMarkers, OfErrorsAndOfTheExecutedPathAreOfOneStroke) {
+  GrindJob job = paper();
+  job.tooth_angles = {0, units::kPi};
+  const GrindProgram of_job = programOf(job);
+  PathErrorMarkers errors(of_job.job(), {centralEdge(job), centralEdge(job)});
+  ExecutedPath executed(of_job, {centralEdge(job), centralEdge(job)});
+  SetpointStream stream(of_job);
+  int second = 0;
+  for (Setpoint p; second < 300 && stream.next(p);) {
+    errors.add(p);
+    executed.add(p, p.position);
+    const bool is_on_edge = p.step != StepKind::kNone && p.position[kX] >= 0;
+    if (p.tooth == 1 && is_on_edge) ++second;
+  }
+  ASSERT_EQ(second, 300);
+  const Marker arrows = errors.markers().markers.at(1);
+  MarkerArray path;
+  executed.append(path);
+  for (const Marker& m : {arrows, path.markers.at(0)}) {
+    for (const geometry_msgs::Point& p : m.points) EXPECT_LT(p.y, 0) << m.ns << ": the second tooth's side";
+  }
+}
+
+// On a cylinder X alone may be off.
+TEST(PathMarkers, OfTheExecutedPathLeaveOutWhatIsFarAway) {
+  GrindJob job = paper();
+  job.cutter.cone_angle = 0;
+  job.cutter.core_diameter_end = job.cutter.core_diameter;
+  const GrindProgram of_job = programOf(job);
+  for (const double value : {1e30, -1e30, 2.0}) {
+    ExecutedPath executed(of_job, {centralEdge(job)});
+    SetpointStream stream(of_job);
+    for (Setpoint p; stream.next(p) && p.move != MoveKind::kRetract;) {
+      if (p.cycle % 7 == 0) p.position[kX] = value;
+      executed.add(p, p.position);
+    }
+    MarkerArray path;
+    executed.append(path);
+    EXPECT_GT(path.markers.at(0).points.size(), 500u);
+    for (const geometry_msgs::Point& p : path.markers[0].points) EXPECT_LE(std::abs(p.x), 1) << value;
   }
 }
 
@@ -413,6 +512,7 @@ TEST(PathMarkers, OfTheLongestFlutesStaySmall) {
   for (const Marker& m : array.markers) points += m.points.size();
   EXPECT_GT(points, 1000u);
   EXPECT_LT(points, 5000u);
+  EXPECT_LT(array.markers.back().scale.x, job.cutter.end_diameter / 8) << "does not cover the cutter";
 }
 
 }  // namespace test_path_markers

@@ -1,7 +1,9 @@
 #pragma once
 
+#include "flute_grinder/job/grind_job.h"
 #include "flute_grinder/job/move_kind.h"
 #include "flute_grinder/job/tooth_pass.h"
+#include "flute_grinder/motion/setpoint.h"
 #include "flute_grinder/scene/markers.h"
 #include "flute_grinder/tool/ground_cutter.h"
 
@@ -16,6 +18,11 @@ struct Reached {
   ToothPass pass;
   PassPhase phase = PassPhase::kBefore;
   double x = 0;  ///< X reached in the stroke [m]
+
+  /// Follows a job by the position that a setpoint has reached. What is ground remains so when the wheel goes back
+  /// along the stroke.
+  /// @param actual position of the axes in work coordinates, which may be any number [m], A [rad].
+  void add(const Setpoint& setpoint, const Axes& actual, StrokeDirection direction);
 
   bool operator==(const Reached& other) const { return pass == other.pass && phase == other.phase && x == other.x; }
 };

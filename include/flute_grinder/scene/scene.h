@@ -65,7 +65,6 @@ class Scene {
     Reached ground{};  ///< progress shown last
   };
 
-  void trackGround(const Setpoint& setpoint, const Axes& actual);
   void showGround();
   void publishExecuted();
   void publishPathError();

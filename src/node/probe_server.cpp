@@ -1,5 +1,6 @@
 #include "node/probe_server.h"
 
+#include "flute_grinder/messages/reasons.h"
 #include "node/probing_cycles.h"
 #include "node/stamp_age.h"
 

@@ -79,15 +79,8 @@ class Story:
             assert answer.success, answer.message
         self.of_axes = []
         subscriber = rospy.Subscriber('/tf', TFMessage, self.of_axes.append, queue_size=10000)
-        self.run = g.send(JOB)
-        self.run.wait_past(self.in_stroke, "the second tooth's stroke")
-        self.seen = []
-        # While the stroke goes on.
-        while self.in_stroke(self.run.last):
-            batch = self.run.batches[-1]
-            self.look(batch)
-            g.wait_for(lambda: self.run.batches[-1] is not batch, 'the next setpoints')
-        self.run.wait_complete()
+        self.run = g.run(JOB)
+        self.seen = [self.look(batch) for batch in self.run.batches if self.in_stroke(batch.setpoints[-1])]
         subscriber.unregister()
         self.known = {t.header.stamp for message in self.of_axes for t in message.transforms if t.child_frame_id == 'table'}
         self.axes = {joint.header.stamp: numpy.array(gc.axes_of(joint)) for joint in grinder().joints}
@@ -105,10 +98,10 @@ class Story:
         return (setpoint.tooth, setpoint.move) == (1, STROKE)
 
     def look(self, batch):
-        """The last setpoint of a batch was written with a joint state of the same stamp."""
+        """What tf has of the last setpoint of a batch, which was written with a joint state of the same stamp."""
         found = {(frame, within): self.frames.find(frame, within, batch.end_stamp)
                  for frame, within in (('wheel', 'cutter'), ('wheel', 'work'), ('contact', 'work'))}
-        self.seen.append(dict(found, setpoint=batch.setpoints[-1], stamp=batch.end_stamp))
+        return dict(found, setpoint=batch.setpoints[-1], stamp=batch.end_stamp)
 
 
 @functools.lru_cache(maxsize=None)
@@ -122,7 +115,7 @@ class TestStroke(unittest.TestCase):
 
     def test_wheel_contact_and_cutter_are_where_the_axes_and_the_setpoint_are(self):
         self.assertEqual(story().run.status, 'SUCCEEDED', story().run.text)
-        strokes = [seen for seen in story().seen if Story.in_stroke(seen['setpoint'])]
+        strokes = story().seen
         self.assertGreater(len(strokes), 20)
         ends = [seen['setpoint'].position[X] for seen in (strokes[0], strokes[-1])]
         self.assertGreater(abs(ends[1] - ends[0]), 1 * MM, 'it moves along the cutter')

@@ -270,7 +270,7 @@ FaceStroke gashStroke(const EndTooth& tooth, const OnTooth& normal, double angle
   const Vector3d spindle = spindleAt(pose.swivel);
   const Vector3d along = acrossAt(pose.swivel);
   const Vector3d corner = inMachine({0, tooth.radius, 0}, pose.tooth, tooth.cut);
-  // Where the face's plane, which holds the corner at X = 0 and the direction of Y, crosses Y = 0.
+  // The face's plane holds the corner, which is at X = 0, and is parallel to Y: its point at X = Y = 0.
   const Vector3d origin(0, 0, corner[2]);
   const auto axes = [&](double way) {
     const double u = way * std::cos(angle) - wheel.radius * std::sin(angle);

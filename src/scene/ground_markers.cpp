@@ -371,7 +371,7 @@ void Reached::add(const Setpoint& setpoint, const Axes& actual, StrokeDirection 
     return;
   }
   if (phase != now) *this = {running, now, setpoint.position[kX]};
-  // A faulty drive may report NaN, which is neither.
+  // NaN from a faulty drive fails both comparisons.
   if (direction == StrokeDirection::kFromEnd ? actual[kX] > x : actual[kX] < x) x = actual[kX];
 }
 
@@ -422,7 +422,7 @@ MarkerArray groundMarkers(const GroundCutter& cutter, const ValidJob& job, const
       appendSurfaces(array, parts, static_cast<SurfaceKind>(kind), deviations);
     }
     appendShank(array, job, ns);
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::invalid_argument& error) {  // thrown before the first marker is appended
     Marker& label = append(array, "label", Marker::TEXT_VIEW_FACING, "cutter");
     label.pose.position = point(job->cutter.flute_length / 2, 0, 0);
     label.scale.z = kLabelHeight * job->cutter.flute_length;

@@ -29,15 +29,15 @@ struct EndPlace {
   double periphery = 0;           ///< see ToolFigure::kPeripheryTaken [m]
   std::optional<ChamferFigures> chamfer;
   FigureValue drag;  ///< of its heel [m]
-  double core = 0;   ///< see ToolFigure::kCoreGashed [m]
+  double core = 0;   ///< see ToolFigure::kGashInCore [m]
 };
 
-/// A figure of the end, with the operation from which on it is asked.
+/// A figure of the end, with the operation from which on it is measured.
 struct EndMeasurement {
   ToolFigure figure;
   OperationKind since;
   FigureValue (*measured)(const EndPlace&);
-  double (*asked)(const CutterGeometry&);  ///< null if the figure is told, and no job asks for it
+  double (*asked)(const CutterGeometry&);  ///< null of a figure that is only reported
   double (*tolerance)(const CutterGeometry&);
 };
 
@@ -69,7 +69,7 @@ constexpr EndMeasurement kEndMeasurements[]{
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry&) { return kTouched; }},
     {ToolFigure::kShortFrom, OperationKind::kGash, [](const EndPlace& p) { return p.short_from; },
      [](const CutterGeometry&) { return 0.0; }, [](const CutterGeometry& c) { return c.end_short_from; }},
-    {ToolFigure::kCoreGashed, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.core); }, nullptr,
+    {ToolFigure::kGashInCore, OperationKind::kGash, [](const EndPlace& p) { return FigureValue(p.core); }, nullptr,
      nullptr},
     {ToolFigure::kChamferWidth, OperationKind::kChamfer,
      [](const EndPlace& p) { return FigureValue(p.chamfer ? p.chamfer->width : 0); },
@@ -128,7 +128,7 @@ bool isMeasured(const EndMeasurement& m, const ValidJob& job, const std::optiona
   return job->hasGround(m.since);
 }
 
-GroundFigure askedFigure(const EndMeasurement& m, const CutterGeometry& cutter) {
+GroundFigure withoutValues(const EndMeasurement& m, const CutterGeometry& cutter) {
   if (m.asked == nullptr) return {m.figure, {}, {}, std::nullopt, 0};
   const double asked = m.asked(cutter);
   return {m.figure, {}, {}, Range{asked, asked}, m.tolerance(cutter)};
@@ -141,7 +141,7 @@ class EndCheck {
       : job_(job), next_(flankAfter(job)), end_(groundEndOf(job, strokes, next_)), cutter_(job->cutter) {}
 
   void measure(std::size_t tooth) {
-    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}, coreGashed(tooth)};
+    EndPlace place{cutter_, {}, {}, {}, periphery(tooth), {}, {}, gashInCore(tooth)};
     const double radius = cutter_.end_diameter / 2;
     const bool has_edge = hasEdges(job_, next_);
     const bool is_short = job_->isShort(static_cast<int>(tooth));
@@ -225,7 +225,7 @@ class EndCheck {
   }
 
   /// How far behind the end a tooth's gash goes into the asked core.
-  double coreGashed(std::size_t tooth) const {
+  double gashInCore(std::size_t tooth) const {
     const auto core = [this](double x) { return askedCore(cutter_, x) / 2; };
     return end_.gashedTo(tooth, core, cutter_.flute_length);
   }
@@ -234,7 +234,8 @@ class EndCheck {
     for (const EndMeasurement& m : kEndMeasurements) {
       if (!isMeasured(m, job_, next_)) continue;
       const FigureValue value = m.measured(place);
-      if (value) add(m, *value, place.at.r, static_cast<int>(tooth));
+      const bool in_core = m.figure == ToolFigure::kGashInCore;
+      if (value) add(m, *value, in_core ? askedCore(cutter_, *value) / 2 : place.at.r, static_cast<int>(tooth));
     }
   }
 
@@ -243,7 +244,7 @@ class EndCheck {
     const auto known = std::find_if(figures_.begin(), figures_.end(),
                                     [&](const GroundFigure& figure) { return figure.figure == m.figure; });
     if (known == figures_.end()) {
-      GroundFigure& figure = figures_.emplace_back(askedFigure(m, cutter_));
+      GroundFigure& figure = figures_.emplace_back(withoutValues(m, cutter_));
       figure.least = figure.largest = at;
     } else {
       if (value < known->least.value) known->least = at;
@@ -285,7 +286,7 @@ CutterFigures askedOfEnd(const ValidJob& job) {
   const std::optional<ValidJob> next = flankAfter(job);
   CutterFigures figures;
   for (const EndMeasurement& m : kEndMeasurements) {
-    if (m.asked != nullptr && isMeasured(m, job, next)) figures.push_back(askedFigure(m, job->cutter));
+    if (m.asked != nullptr && isMeasured(m, job, next)) figures.push_back(withoutValues(m, job->cutter));
   }
   return figures;
 }

@@ -24,8 +24,8 @@ constexpr int kHalvings = 13;                     ///< of a step, to far less th
 constexpr int kFacesInStep = 8;                   ///< most faces that a step along a heel goes over
 constexpr double kHeelStep = 3 * units::kDegree;  ///< greatest step along a heel
 constexpr double kInnermost = 1e-3;               ///< least radius at which an edge is looked for, per radius
-constexpr int kCoreRounds = 4;                    ///< of the search for the place where a gash is deepest in the core
-constexpr int kCorePlaces = 30;                   ///< of such a round to either side
+constexpr int kCoreRounds = 4;   ///< number of rounds of the search for the place where a gash is deepest in the core
+constexpr int kCorePlaces = 30;  ///< number of places to either side in a round
 
 bool holds(const std::vector<Range>& ranges, double x) {
   return std::any_of(ranges.begin(), ranges.end(),
@@ -159,7 +159,7 @@ void GroundEnd::measureFlanks(std::size_t tooth, EndSection& section) const {
 
 double GroundEnd::gashedTo(std::size_t tooth, const std::function<double(double)>& core, double length) const {
   double turn = 0, reach = units::kPi, deepest = 0;
-  // Of the place on the circle where the gash is deepest, first coarsely, then ever more finely.
+  // Searches the circle for the place where the gash is deepest, first coarsely, then ever more finely.
   for (int i = 0; i < kCoreRounds; ++i, reach *= 2.0 / kCorePlaces) {
     const double middle = turn;
     const auto is_gashed = [&](double x) {

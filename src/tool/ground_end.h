@@ -66,9 +66,9 @@ class GroundEnd {
   ///        axis [m].
   bool isRemovedOnEnd(std::size_t tooth, double r, double turn, double x) const;
 
-  /// How far behind the end a tooth's gash goes into a core; 0 if it does not [m].
-  /// @param core radius at X, which changes little along X; less than the end's at 0 [m].
-  /// @param length of the core; a gash that goes farther is not followed [m].
+  /// How far behind the end a tooth's gash runs into a core; 0 if it does not [m].
+  /// @param core its radius at X, which grows along X by less than the gash's bottom rises [m].
+  /// @param length of the core, the most that is returned [m].
   double gashedTo(std::size_t tooth, const std::function<double(double)>& core, double length) const;
 
   /// By which the end stands in front of a tooth's edge anywhere behind it, on a circle about the axis; 0 if nowhere.

@@ -95,7 +95,7 @@ constexpr Measurement kMeasurements[]{
      [](const Place& p) -> FigureValue { return 2 * p.section.radius; },
      [](const Place&) { return 2 * kMostUndercut; }},
 };
-/// Of the figures before those of the end, see figuresOf() of a GroundEnd.
+/// Of the figures before those of the end, which end_check.cpp measures.
 static_assert(isInOrder(kMeasurements) &&
               std::size(kMeasurements) == static_cast<std::size_t>(ToolFigure::kEndClearance));
 

@@ -221,7 +221,7 @@ class RightHandEndByForce(unittest.TestCase):
         deepest = [max(high.max() for stroke in self.tool.of(tooth, 'gash') for _, _, high in [stroke.removed(core, turn)])
                    for tooth in self.tool.distinct]
         self.assertGreater(min(deepest), 1)
-        printed = self.tool.printed['chamfer']['figures']['core_gashed']
+        printed = self.tool.printed['chamfer']['figures']['gash_in_core']
         self.assertNotIn('asked_mm', printed)
         for got, by_force in zip(printed['ground_mm'], (min(deepest), max(deepest))):
             self.assertAlmostEqual(got, by_force, delta=0.005)

@@ -28,7 +28,7 @@ class Process {
     reached_file_ = open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   }
   bool comesBy(int number) {
-    // At once: a program may end without the end of its statics.
+    // Written at once: a program may end without destroying its statics.
     std::atomic<bool>& reached = reached_[static_cast<std::size_t>(number)];
     if (!reached.load(std::memory_order_relaxed) && !reached.exchange(true) && reached_file_ >= 0) {
       dprintf(reached_file_, "%d\n", number);

@@ -286,8 +286,10 @@ def main():
     for source in sorted((TREE / 'src' / module).glob('*.cpp')):
         try:
             finder.add(source, compiler)
-        except RuntimeError as error:  # as of a drive for what is not installed here
-            print('left out: %s' % error, file=sys.stderr)
+        except RuntimeError as error:
+            if 'file not found' not in str(error):
+                raise
+            print('left out, e.g. a drive whose library is not installed: %s' % error)
     for program in BINARIES.glob(PREFIX + '*'):
         program.unlink()  # one that is not built any more would see breaks, against libraries that it does not fit
     numbers = build_with(finder)

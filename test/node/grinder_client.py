@@ -569,7 +569,8 @@ class Grinder:
         return [park[joint] for joint in JOINTS]
 
     def wait_fresh(self, condition, what):
-        """Waits for a condition of the state as of now, and returns that state: what was under way at the call is let pass."""
+        """Waits for a condition of the state, and returns that state. Three messages, more than are under way at the call, are let
+        pass first."""
         seen = len(self.states)
         return self.wait_for(lambda: len(self.states) >= seen + 3 and condition(self.states[-1]) and self.states[-1], what)
 
@@ -578,6 +579,7 @@ class Grinder:
         return self.wait_fresh(lambda _: True, 'messages of the state')
 
     def wait_state(self, state):
+        """Waits for a state that lasts, and returns it."""
         return self.wait_fresh(lambda s: s.state == state, 'state %d' % state)
 
     def wait_power_off(self):

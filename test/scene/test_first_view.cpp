@@ -74,6 +74,7 @@ TEST(FirstView, AWheelHasTheOutlineOfItsProfile) {
   for (const WheelProfile& wheel :
        {WheelProfile::straight(0.1, 0.006, {0.001, 0.002}), WheelProfile::fullRadius(0.1, 0.006)}) {
     const std::map<long, double> outline = outlineOf(wheel);
+    ASSERT_FALSE(outline.empty());
     ASSERT_EQ(outline.begin()->first, -3000000);
     ASSERT_EQ(outline.rbegin()->first, 3000000);
     for (const auto& [w, radius] : outline) EXPECT_NEAR(radius, wheel.radius(1e-9 * w), 1e-6) << w;

@@ -66,8 +66,9 @@ void expectFit(const GrindJob& job) {
   EXPECT_EQ(textsOf(array).find_first_not_of('\n'), std::string::npos) << textsOf(array);
   std::size_t triangles = 0;
   for (const Marker& m : array.markers) triangles += m.points.size() / 3;
-  EXPECT_GT(triangles, 13000u) << "as fine as there is time for";
-  EXPECT_LT(triangles, 21000u) << "each costs time in every frame";
+  // Guards against a change: no closed form gives the number that is fine enough, and that each frame has time for.
+  EXPECT_GT(triangles, 13000u);
+  EXPECT_LT(triangles, 21000u);
   for (const std::string ns : {"planned", kCutOut}) {
     const std::vector<Marker> solid = solidOf(array, ns);
     EXPECT_GT(solid.size(), 3u) << textsOf(array);
@@ -242,7 +243,7 @@ TEST(GroundMarkers, ColourTheRakeFacesByTheRakeThatIsThere) {
   job.process().overtravel_shank = 0;
   const GroundCutter cutter = groundCutterOf(ValidJob(job));
   const double length = job.cutter.flute_length, place = length / 12;
-  const auto rake_at = [&](double x) { return *cutter.section(x).teeth[0].rake; };
+  const auto rake_at = [&](double x) { return cutter.section(x).teeth[0].rake.value_or(0); };
   const double to = cutter.completeRange(0, length)->to, begin = rake_at(0);
   ASSERT_GT(to, length / 2);
   ASSERT_LT(to, length - place);

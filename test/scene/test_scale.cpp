@@ -55,13 +55,14 @@ TEST(Scale, HasAFewRoundNumbersWhateverTheLength) {
       numbers.push_back(std::stod(m.text));
       EXPECT_NEAR(m.pose.position.x, numbers.back() * kMillimetre, 1e-9) << m.text;
     }
-    EXPECT_EQ(ends.size(), 1u) << "of the same length";
+    ASSERT_EQ(ends.size(), 1u) << "of the same length";
     EXPECT_GT(*ends.begin(), cutter.end_diameter / 2);
     EXPECT_LT(*ends.begin(), -nearest) << "toward the numbers";
     for (const double number : numbers) {
       EXPECT_TRUE(
           std::any_of(ticks.begin(), ticks.end(), [&](double x) { return std::abs(x - number * kMillimetre) < 1e-9; }));
     }
+    ASSERT_FALSE(ticks.empty());
     EXPECT_NEAR(*ticks.rbegin(), cutter.flute_length, 1e-9);
     ASSERT_GE(numbers.size(), 4U) << length;
     ASSERT_LE(numbers.size(), 8U) << length;

@@ -76,7 +76,9 @@ constexpr Asked kAsked[] = {{ToolFigure::kEndClearance, 8 * kDegree, 1e-6},
 void expectAsAsked(const CutterCheck& check) {
   EXPECT_TRUE(check.reasons.empty()) << text(check.reasons);
   EXPECT_EQ(check.figures.size(), std::size(kAsked) + 1);
-  EXPECT_FALSE(find(check.figures, ToolFigure::kCoreGashed)->asked);
+  const GroundFigure* in_core = find(check.figures, ToolFigure::kGashInCore);
+  ASSERT_TRUE(in_core);
+  EXPECT_FALSE(in_core->asked);
   for (const Asked& asked : kAsked) {
     const GroundFigure* found = find(check.figures, asked.figure);
     ASSERT_TRUE(found) << toString(asked.figure);
@@ -132,7 +134,7 @@ GrindProcess& gashOf(GrindJob& job) { return operationOf(job, OperationKind::kGa
 
 /// A sharp rim whose face holds the axis comes nearest to the core with its corner, which goes out at the gash's angle.
 TEST(EndCheck, TellsHowFarTheGashesGoIntoTheCore) {
-  for (const double end_core : {6.81, 6.41}) {
+  for (const double end_core : {6.81, 6.41, 7.21}) {
     for (const double past : {0.2, -1.0, -3.5}) {
       const CutterCheck check = checked(jobOf("gash", [&](GrindJob& job) {
         job.cutter.end_rake = job.cutter.end_dish = 0;
@@ -140,11 +142,11 @@ TEST(EndCheck, TellsHowFarTheGashesGoIntoTheCore) {
         gashOf(job).gash_angle = 40 * kDegree;
         gashOf(job).gash_past = past * kMillimetre;
       }));
-      const GroundFigure* gashed = find(check.figures, ToolFigure::kCoreGashed);
+      const GroundFigure* gashed = find(check.figures, ToolFigure::kGashInCore);
       ASSERT_TRUE(gashed);
       const double taper = (end_core - 6.81) / 2 / 22, depth = (6.81 / 2 + past) / (std::tan(40 * kDegree) - taper);
       EXPECT_NEAR(gashed->largest.value, std::max(depth, 0.0) * kMillimetre, 1e-9) << end_core << " " << past;
-      EXPECT_EQ(gashed->least.value, gashed->largest.value);
+      EXPECT_NEAR(gashed->largest.x, (6.81 / 2 + taper * std::max(depth, 0.0)) * kMillimetre, 1e-9);
     }
   }
 }

@@ -187,7 +187,8 @@ constexpr double kMinFeed = 0.1e-3 / 60;  ///< slowest allowed feed [m/s]
 /// @return one reason for each number that is not allowed; empty if the job is valid.
 std::vector<Reason> validate(const GrindJob& job);
 
-/// Checks the numbers of the wheel alone: the members of its operation that begin with wheel_.
+/// Checks the numbers of the wheel alone: the members of its operation that begin with wheel_. Profile and side are
+/// taken as they are.
 std::vector<Reason> validateWheel(const GrindJob& job);
 
 /// The depths of the passes, see ValidJob::depths(), for numbers that are each within their range.

@@ -19,9 +19,9 @@ struct Reached {
   PassPhase phase = PassPhase::kBefore;
   double x = 0;  ///< X reached in the stroke [m]
 
-  /// Follows a job by the position that a setpoint has reached. What is ground remains so when the wheel goes back
+  /// Updates the progress by a setpoint and the measured position. What is ground remains so when the wheel goes back
   /// along the stroke.
-  /// @param actual position of the axes in work coordinates, which may be any number [m], A [rad].
+  /// @param actual position of the axes in work coordinates, which may be NaN [m], A [rad].
   void add(const Setpoint& setpoint, const Axes& actual, StrokeDirection direction);
 
   bool operator==(const Reached& other) const { return pass == other.pass && phase == other.phase && x == other.x; }

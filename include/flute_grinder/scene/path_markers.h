@@ -48,7 +48,8 @@ class ToolPath {
   /// The maximum error measured so far, normal to the helix on the cutter's surface, or EndLine::Place::error [m].
   double maxMeasured() const { return max_; }
 
-  /// @return markers of namespace "tool_path", one per tooth, in order; the first deletes the earlier ones.
+  /// @return markers of namespace "tool_path", one for each tooth that has an edge, in order; the first deletes the
+  /// earlier ones.
   visualization_msgs::MarkerArray markers() const;
 
  private:

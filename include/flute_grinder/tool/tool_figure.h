@@ -38,14 +38,14 @@ enum class ToolFigure : std::uint8_t {
   kChamferClearance,
   kHeelDrag,
   kShortFrom,
-  kCoreGashed,
+  kGashInCore,
 };
 
 /// A figure with its name in files, which is the message constant in lower case.
 struct ToolFigureRow : EnumRow<ToolFigure> {
   const char* words = "";  ///< name in texts
   Unit unit = Unit::kNone;
-  ReasonKind reason = ReasonKind::kNone;  ///< reason for refusing a plan; none if another check covers it
+  ReasonKind reason = ReasonKind::kNone;  ///< reason for refusing a plan; none if another check covers it, or none asks
   StrokeForm of = StrokeForm::kFlute;     ///< the operations for which it is judged
   bool of_complete = false;               ///< whether it counts only where the flute is complete
 };
@@ -90,7 +90,11 @@ inline constexpr ToolFigureRow kToolFigures[]{
     figureOfEnd(ToolFigure::kChamferClearance, "chamfer_clearance", "chamfer clearance", Unit::kRadian),
     figureOfEnd(ToolFigure::kHeelDrag, "heel_drag", "heel drag", Unit::kMetre),
     figureOfEnd(ToolFigure::kShortFrom, "short_from", "beginning of the short edge", Unit::kMetre),
-    figureOfEnd(ToolFigure::kCoreGashed, "core_gashed", "core gashed", Unit::kMetre),
+    {{ToolFigure::kGashInCore, "gash_in_core"},
+     "gash in the core",
+     Unit::kMetre,
+     ReasonKind::kNone,
+     StrokeForm::kStraight},
 };
 constexpr auto& rowsOf(ToolFigure) noexcept { return kToolFigures; }
 

@@ -67,8 +67,8 @@ TEST(EndLine, OfAFlankIsItsEdge) {
   }
 }
 
-// The rim of a cup that comes along X is over the whole edge at once; that of a tooth over the center passes the axis.
-TEST(EndLine, OfAFlankByACupOrOverTheCenterIsItsWholeEdge) {
+// The rim of a cup that comes along X is over the whole edge at once; that of a tooth over the centre passes the axis.
+TEST(EndLine, OfAFlankByACupOrOverTheCentreIsItsWholeEdge) {
   for (const char* file : {"jobs/left_hand_end_mill_d8_t3.yaml", "jobs/slot_drill_d8_t2.yaml"}) {
     SCOPED_TRACE(file);
     const ValidJob job = withLaws(ValidJob(readJobFile(file, "end_primary")));

@@ -132,22 +132,34 @@ TEST(EndCheck, UnequalTeethAreMeasuredOneByOne) {
 
 GrindProcess& gashOf(GrindJob& job) { return operationOf(job, OperationKind::kGash); }
 
-/// A sharp rim whose face holds the axis comes nearest to the core with its corner, which goes out at the gash's angle.
+/// The sharp corner of an angled wheel's rim is what comes nearest to the axis: it goes out along a line in the face.
 TEST(EndCheck, TellsHowFarTheGashesGoIntoTheCore) {
-  for (const double end_core : {6.81, 6.41, 7.21}) {
-    for (const double past : {0.2, -1.0, -3.5}) {
-      const CutterCheck check = checked(jobOf("gash", [&](GrindJob& job) {
-        job.cutter.end_rake = job.cutter.end_dish = 0;
-        job.cutter.core_diameter_end = end_core * kMillimetre;
-        gashOf(job).gash_angle = 40 * kDegree;
-        gashOf(job).gash_past = past * kMillimetre;
-      }));
-      const GroundFigure* gashed = find(check.figures, ToolFigure::kGashInCore);
-      ASSERT_TRUE(gashed);
-      const double taper = (end_core - 6.81) / 2 / 22, depth = (6.81 / 2 + past) / (std::tan(40 * kDegree) - taper);
-      EXPECT_NEAR(gashed->largest.value, std::max(depth, 0.0) * kMillimetre, 1e-9) << end_core << " " << past;
-      EXPECT_NEAR(gashed->largest.x, (6.81 / 2 + taper * std::max(depth, 0.0)) * kMillimetre, 1e-9);
+  struct Row {
+    double rake, end_core, past;  ///< [deg], [mm]
+  };
+  const double radius = 6.81 / 2, sin = std::sin(40 * kDegree), cos = std::cos(40 * kDegree);
+  for (const Row& row : {Row{0, 6.81, 0.2}, Row{0, 6.81, -1}, Row{0, 6.81, -3.5}, Row{0, 6.41, 0.2}, Row{0, 7.21, -1},
+                         Row{9, 6.81, 0.2}, Row{12, 6.41, 0}}) {
+    const CutterCheck check = checked(jobOf("gash", [&](GrindJob& job) {
+      job.cutter.end_dish = 0;
+      job.cutter.end_rake = row.rake * kDegree;
+      job.cutter.core_diameter_end = row.end_core * kMillimetre;
+      gashOf(job).gash_angle = 40 * kDegree;
+      gashOf(job).gash_past = row.past * kMillimetre;
+    }));
+    const GroundFigure* gashed = find(check.figures, ToolFigure::kGashInCore);
+    ASSERT_TRUE(gashed);
+    // The line is at (t cos, -past + t sin) in the face, which is turned about Y by the rake.
+    const double tilt = std::sin(row.rake * kDegree), a = sin * sin + cos * cos * tilt * tilt, b = row.past * sin / a;
+    double core = radius, depth = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double t = b + std::sqrt(b * b + (core * core - row.past * row.past) / a);
+      depth = core + row.past < 0 ? 0 : t * cos * std::cos(row.rake * kDegree);
+      core = radius + (row.end_core - 6.81) / 2 / 22 * depth;
     }
+    const double off = row.rake > 0 ? 0.2e-6 : 1e-9;
+    EXPECT_NEAR(gashed->largest.value, depth * kMillimetre, off) << row.rake << ' ' << row.end_core << ' ' << row.past;
+    EXPECT_NEAR(gashed->largest.x, core * kMillimetre, off);
   }
 }
 

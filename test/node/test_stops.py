@@ -19,10 +19,8 @@ from grinder_client import A, LIFT, MM, MM_MIN, STROKE, X, Y, Z
 
 SEED = 20
 
-# With a depth that changes along the flute, no pass is like another: one that takes longer to plan than any test waits, and one
-# that takes a second or more.
+# With a depth that changes along the flute, no pass is like another: it takes longer to plan than any test waits.
 ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
-LONG_TO_PLAN = gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM)
 # Time enough to do something in a stroke.
 SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.
@@ -41,8 +39,8 @@ class NodeTest(gc.OwnNode):
         parameters['max_job_duration'] = 1e9
         return super().start(parameters, clean_up, **arguments)
 
-    def send_planning(self, job=ENDLESS):
-        run = self.client.send(job)
+    def send_planning(self, job=ENDLESS, **fields):
+        run = self.client.send(job, **fields)
         self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
         self.assertEqual(run.feedback[0].state, 'planning')
         return run
@@ -69,7 +67,8 @@ class TestStops(NodeTest):
     @classmethod
     def setUpClass(cls):
         test = cls()
-        test.start(cls.addClassCleanup)
+        cls.disk = gc.SlowDisk(gc.temp_folder(cls.addClassCleanup))
+        test.start(cls.addClassCleanup, environment=cls.disk.environment)
         cls.node, cls.client = test.node, test.client
 
     def setUp(self):
@@ -95,8 +94,12 @@ class TestStops(NodeTest):
         self.assertEqual(self.client.run(gc.SHORT).status, 'SUCCEEDED')
 
     def test_hold_of_a_job_that_is_planned_latches(self):
-        run = self.send_planning(LONG_TO_PLAN)
+        # Until the disk has taken the answer the job is not planned, however late the hold is.
+        self.disk.stop()
+        self.addCleanup(self.disk.release)
+        run = self.send_planning(SLOW, answers=['discard', 'confirm-wheel', 'ignore-offsets'])
         self.assertTrue(self.client.hold().success)
+        self.disk.release()
         self.client.wait_state(GrinderState.HELD)
         self.assert_rests()
         run.cancel()

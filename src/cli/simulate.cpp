@@ -23,7 +23,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -63,10 +62,7 @@ void writeStlFile(const GroundTool& tool, OutputFile& file) {
   const GrindJob& job = *tool.job;
   const SolidExtent extent{tool.end.blank_x, job.cutter.flute_length, job.cutter.shank_diameter,
                            groundTo(job) + job.cutter.shank_diameter};
-  const CutterSolid solid = cutterSolid(tool.cutter, extent, {}, tool.end.removed);
-  std::ostringstream stl;
-  writeStl(stl, solid);
-  const std::string bytes = stl.str();
+  const std::string bytes = stlOf(cutterSolid(tool.cutter, extent, {}, tool.end.removed));
   const bool good = std::fwrite(bytes.data(), 1, bytes.size(), file.stream()) == bytes.size();
   file.close(good ? 0 : errno);
 }

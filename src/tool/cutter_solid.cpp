@@ -135,6 +135,9 @@ class Piece {
     sides_ = {};  // there are as many pieces as layers
   }
 
+  std::size_t ownVertices() const { return cut_part_.vertices.size(); }
+  std::size_t triangles() const { return triangles_.size() + cut_part_.triangles.size(); }
+
   /// Adds it to a solid that begins with the frame's vertices.
   void addTo(CutterSolid& solid) const {
     const auto first = static_cast<std::uint32_t>(solid.vertices.size());
@@ -148,10 +151,11 @@ class Piece {
 
  private:
   void findSides(std::uint32_t end) {
-    const std::size_t volumes = frame_.cut.volumes();
-    sides_.resize((end - begin_) * volumes);
+    const std::vector<Eigen::Vector3d>& at = frame_.vertices;
+    near_ = frame_.cut.between(at[begin_].x(), at[end_].x());
+    sides_.resize((end - begin_) * near_.size());
     for (std::uint32_t v = begin_; v < end; ++v) {
-      frame_.cut.findSides(frame_.vertices[v], sides_.data() + (v - begin_) * volumes);
+      frame_.cut.findSides(near_, at[v], sides_.data() + (v - begin_) * near_.size());
     }
   }
 
@@ -188,8 +192,8 @@ class Piece {
     std::sort(t.begin(), t.end());
     if (frame_.turns_on) std::reverse(t.begin(), t.end());
     const auto [a, b, c] = t;
-    const auto touched = frame_.cut.touched({sidesOf(begin_ + a), sidesOf(begin_ + b), sidesOf(begin_ + c),
-                                             sidesOf(end_ + a), sidesOf(end_ + b), sidesOf(end_ + c)});
+    const auto touched = SolidCut::touched(near_, {sidesOf(begin_ + a), sidesOf(begin_ + b), sidesOf(begin_ + c),
+                                                   sidesOf(end_ + a), sidesOf(end_ + b), sidesOf(end_ + c)});
     if (!touched || touched->empty()) return;
     std::vector<CutFace> faces;
     const auto cut = [&](std::uint32_t i, std::uint32_t j, std::uint32_t k, std::uint32_t l) {
@@ -210,9 +214,7 @@ class Piece {
     return !(a == b || b == c || c == a);
   }
 
-  const std::uint64_t* sidesOf(std::uint32_t vertex) const {
-    return sides_.data() + (vertex - begin_) * frame_.cut.volumes();
-  }
+  const std::uint64_t* sidesOf(std::uint32_t vertex) const { return sides_.data() + (vertex - begin_) * near_.size(); }
 
   void append(const Polygon& polygon, SurfaceKind kind, std::uint16_t tooth) {
     const auto first = static_cast<std::uint32_t>(cut_part_.vertices.size());
@@ -227,7 +229,7 @@ class Piece {
     const Eigen::Vector3d &a = frame_.vertices[v[0]], &b = frame_.vertices[v[1]], &c = frame_.vertices[v[2]];
     if (!hasArea(a, b, c)) return;
     if (!is_cut_) return triangles_.push_back({v, kind, tooth});
-    const auto touched = frame_.cut.touched({sidesOf(v[0]), sidesOf(v[1]), sidesOf(v[2])});
+    const auto touched = SolidCut::touched(near_, {sidesOf(v[0]), sidesOf(v[1]), sidesOf(v[2])});
     if (!touched) return;
     if (touched->empty()) return triangles_.push_back({v, kind, tooth});
     for (const Polygon& p : frame_.cut.outside(*touched, {a, b, c})) append(p, kind, tooth);
@@ -236,7 +238,8 @@ class Piece {
   const Frame& frame_;
   bool is_cut_;
   std::uint32_t begin_, end_;             ///< first vertices of the two layers; of an end both the same
-  std::vector<std::uint64_t> sides_;      ///< SolidCut::findSides() of both layers where the cut reaches
+  SolidCut::Volumes near_;                ///< of the cut
+  std::vector<std::uint64_t> sides_;      ///< on which sides of those the points of both layers are
   std::vector<SolidTriangle> triangles_;  ///< those of the frame's vertices
   CutterSolid cut_part_;                  ///< the pieces of what is cut
 };
@@ -281,7 +284,14 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
   std::vector<std::optional<Piece>> pieces(last + 2);  // one end, what is between two layers, the other end
   onAllCores(pieces.size(), [&](std::size_t i) { pieces[i].emplace(frame, i > 0 ? i - 1 : 0, std::min(i, last)); });
   CutterSolid solid;
+  std::size_t vertices = frame.vertices.size(), triangles = 0;
+  for (const auto& piece : pieces) {
+    vertices += piece->ownVertices();
+    triangles += piece->triangles();
+  }
   solid.vertices = std::move(frame.vertices);
+  solid.vertices.reserve(vertices);
+  solid.triangles.reserve(triangles);
   for (const auto& piece : pieces) piece->addTo(solid);
   if (!cut.isEmpty()) closeSeams(solid);
   return solid;

@@ -1,11 +1,13 @@
 #include "flute_grinder/tool/ground_cutter.h"
 
+#include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/units.h"
 #include "flute_grinder/tool/relief_section.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -316,13 +318,13 @@ std::optional<Range> GroundCutter::completeRange(double from, double to) const {
 }
 
 double GroundCutter::volumeRemoved(double from, double to, int sections) const {
-  double volume = 0;
+  std::vector<double> areas(static_cast<std::size_t>(sections));
   const double step = (to - from) / sections;
-  for (int i = 0; i < sections; ++i) {
-    const double x = from + (i + 0.5) * step;
-    volume += areaRemoved(x, coreRadius(x)) * step;
-  }
-  return volume;
+  onAllCores(areas.size(), [&](std::size_t i) {
+    const double x = from + (static_cast<double>(i) + 0.5) * step;
+    areas[i] = areaRemoved(x, coreRadius(x));
+  });
+  return std::accumulate(areas.begin(), areas.end(), 0.0) * step;
 }
 
 }  // namespace grinder

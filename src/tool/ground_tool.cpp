@@ -1,6 +1,7 @@
 #include "flute_grinder/tool/ground_tool.h"
 
 #include "flute_grinder/base/format.h"
+#include "flute_grinder/base/on_all_cores.h"
 #include "flute_grinder/base/units.h"
 #include "tool/end_check.h"
 
@@ -37,10 +38,11 @@ std::optional<Reason> reasonOf(const ValidJob& job, const std::vector<Gouge>& go
 GroundTool withSections(const ValidJob& job, const std::string& source, GroundCutter cutter,
                         const std::vector<double>& at) {
   GroundTool tool{job, source, std::move(cutter), {}, {}, {}, 0, false, false, {}, {}};
-  for (const double x : at) {
-    const GroundSection section = tool.cutter.section(x);
-    tool.sections.push_back({section, tool.cutter.areaRemoved(section)});
-  }
+  tool.sections.resize(at.size());
+  onAllCores(at.size(), [&](std::size_t i) {
+    const GroundSection section = tool.cutter.section(at[i]);
+    tool.sections[i] = {section, tool.cutter.areaRemoved(section)};
+  });
   tool.volume_removed = tool.cutter.volumeRemoved(0, job->cutter.flute_length, kVolumeSections);
   return tool;
 }

@@ -49,6 +49,7 @@ Polygon around(std::vector<Vector3d> points, const Vector3d& normal) {
 
 Polygon clipped(const Polygon& polygon, const Plane& plane, bool in_front) {
   Polygon result;
+  result.reserve(polygon.size() + 1);
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vector3d& a = polygon[i];
     const Vector3d& b = polygon[(i + 1) % polygon.size()];

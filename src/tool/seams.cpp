@@ -7,7 +7,6 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -27,7 +26,13 @@ constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 class Welder {
  public:
   /// @param same distance up to which points are one [m].
-  Welder(std::size_t points, double same) : same_(same), cell_(64 * same) { first_.reserve(points); }
+  Welder(std::size_t points, double same) : same_(same), cell_(64 * same) {
+    std::size_t drawers = 1;
+    while (drawers < points) drawers *= 2;
+    last_.resize(drawers, kNoVertex);
+    points_.reserve(points);
+    before_.reserve(points);
+  }
 
   std::uint32_t add(const Vector3d& point) {
     const std::array<std::int64_t, 3> cell = cellOf(point);
@@ -50,9 +55,7 @@ class Welder {
     }
     const auto index = static_cast<std::uint32_t>(points_.size());
     points_.push_back(point);
-    const auto [in_cell, is_first] = first_.emplace(keyOf(cell), index);
-    next_.push_back(is_first ? kNoVertex : in_cell->second);
-    in_cell->second = index;
+    before_.push_back(std::exchange(last_[drawerOf(cell)], index));
     return index;
   }
 
@@ -64,15 +67,17 @@ class Welder {
             static_cast<std::int64_t>(std::floor(point[1] / cell_)),
             static_cast<std::int64_t>(std::floor(point[2] / cell_))};
   }
-  static std::uint64_t keyOf(const std::array<std::int64_t, 3>& cell) {
+  /// Cells may share one.
+  std::size_t drawerOf(const std::array<std::int64_t, 3>& cell) const {
     std::uint64_t key = 0;
-    for (const std::int64_t part : cell)
-      key = (key ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u ^ key >> 29;
-    return key;
+    for (const std::int64_t part : cell) {
+      key = (key ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u;
+      key ^= key >> 29;
+    }
+    return key & (last_.size() - 1);
   }
   std::uint32_t find(const std::array<std::int64_t, 3>& cell, const Vector3d& point) const {
-    const auto found = first_.find(keyOf(cell));
-    for (std::uint32_t i = found == first_.end() ? kNoVertex : found->second; i != kNoVertex; i = next_[i]) {
+    for (std::uint32_t i = last_[drawerOf(cell)]; i != kNoVertex; i = before_[i]) {
       if ((points_[i] - point).cwiseAbs().maxCoeff() <= same_) return i;
     }
     return kNoVertex;
@@ -80,8 +85,8 @@ class Welder {
 
   double same_, cell_;
   std::vector<Vector3d> points_;
-  std::unordered_map<std::uint64_t, std::uint32_t> first_;  ///< last point of each cell
-  std::vector<std::uint32_t> next_;                         ///< the point before of the same cell
+  std::vector<std::uint32_t> last_;    ///< last point of each drawer; their number is a power of two
+  std::vector<std::uint32_t> before_;  ///< of each point, the one before it in its drawer
 };
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -241,11 +246,12 @@ void weld(CutterSolid& solid, double same) {
   solid.triangles = std::move(triangles);
 }
 
-/// Joins what is the same.
+/// Joins what is the same, and counts the edges that stay open.
 void join(CutterSolid& solid, double same) {
   weld(solid, same);
   std::vector<Edge> open = openEdges(solid);
   for (int i = 0; i < kRounds && !open.empty() && divide(solid, open, same); ++i) open = openEdges(solid);
+  solid.open_edges = open.size();
 }
 
 }  // namespace
@@ -254,7 +260,8 @@ void closeSeams(CutterSolid& solid) {
   CutterSolid whole;
   for (const double same : kSamePoint) {
     join(solid, same);
-    whole = solid;  // a chip may be what only the next distance joins
+    if (solid.open_edges == 0) return dropChips(solid);  // closed in themselves, as is the rest
+    whole = solid;                                       // a chip may be what only the next distance joins
     dropChips(whole);
     whole.open_edges = openEdges(whole).size();
     if (whole.open_edges == 0) break;

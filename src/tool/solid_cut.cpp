@@ -11,9 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kSides = 63;                      ///< planes of a volume that have a bit of their own
-constexpr std::uint64_t kOtherPlanes = 1ull << kSides;  ///< the bit of all other planes
-constexpr double kSamePlane = 1e-11;                    ///< difference between planes that are the same [m], [1]
+constexpr std::size_t kFirstPlane = 6;  ///< bit of the first plane of a volume, after its box's sides
+constexpr std::size_t kLastBit = 63;    ///< the bit of all planes that have none of their own
+constexpr std::uint64_t kOtherPlanes = 1ull << kLastBit;
+constexpr double kSamePlane = 1e-11;  ///< difference between planes that are the same [m], [1]
 
 /// The planes that bound a convex part of a box.
 /// @param part gets the part in front of all planes.
@@ -33,13 +34,14 @@ std::vector<Plane> turned(std::vector<Plane> planes) {
 }
 
 /// The part of a volume in a box, with the planes that it needs there; nothing if there is no part.
-std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box, double& reach) {
+/// @param bounds gets the box about its body.
+std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box, Box& bounds) {
   ConvexPart body(box);
   RemovedVolume result{needed(volume.body, body), {}, volume.kind, volume.tooth};
   if (body.isEmpty()) return std::nullopt;
-  reach = std::max(reach, body.bounds().most[0]);
+  bounds = body.bounds();
   if (volume.hollow.empty()) return result;
-  ConvexPart hollow(body.bounds());
+  ConvexPart hollow(bounds);
   result.hollow = turned(needed(turned(volume.hollow), hollow));
   if (hollow.isEmpty()) {
     result.hollow.clear();
@@ -47,6 +49,22 @@ std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box,
     return std::nullopt;
   }
   return result;
+}
+
+/// The sides of a box beyond which a point is, in the lowest bits.
+std::uint64_t beyond(const Box& box, const Vector3d& at) {
+  std::uint64_t sides = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) sides |= (at[i] < box.least[i] ? 1u : at[i] > box.most[i] ? 2u : 0u) << (2 * i);
+  return sides;
+}
+
+/// The planes of a volume behind which a point is, in the bits after those.
+std::uint64_t behind(const RemovedVolume& volume, const Vector3d& at) {
+  std::uint64_t planes = volume.hollow.empty() ? 0 : kOtherPlanes;
+  for (std::size_t i = 0; i < volume.body.size(); ++i) {
+    if (!(volume.body[i].height(at) > 0)) planes |= 1ull << std::min(kFirstPlane + i, kLastBit);
+  }
+  return planes;
 }
 
 /// The part of a polygon in front of all planes, or behind them all. What is not there is added to the rest.
@@ -97,35 +115,47 @@ RemovedVolume without(const Plane& plane, RemovedVolume volume) {
 SolidCut::SolidCut(const std::vector<RemovedVolume>& volumes, const Box& box)
     : reach_(-std::numeric_limits<double>::infinity()) {
   for (const RemovedVolume& volume : volumes) {
-    if (std::optional<RemovedVolume> part = within(volume, box, reach_)) volumes_.push_back(*std::move(part));
+    Box bounds;
+    std::optional<RemovedVolume> part = within(volume, box, bounds);
+    if (!part) continue;
+    reach_ = std::max(reach_, bounds.most[0]);
+    volumes_.push_back(*std::move(part));
+    boxes_.push_back(bounds);
   }
 }
 
-void SolidCut::findSides(const Vector3d& at, std::uint64_t* sides) const noexcept {
-  for (const RemovedVolume& volume : volumes_) {
-    std::uint64_t behind = volume.hollow.empty() ? 0 : kOtherPlanes;
-    for (std::size_t i = 0; i < volume.body.size(); ++i) {
-      if (!(volume.body[i].height(at) > 0)) behind |= i < kSides ? 1ull << i : kOtherPlanes;
-    }
-    *sides++ = behind;
+SolidCut::Volumes SolidCut::between(double from, double to) const {
+  Volumes found;
+  for (std::size_t i = 0; i < boxes_.size(); ++i) {
+    if (boxes_[i].least[0] <= to && boxes_[i].most[0] >= from) found.push_back(i);
+  }
+  return found;
+}
+
+void SolidCut::findSides(const Volumes& of, const Vector3d& at, std::uint64_t* sides) const noexcept {
+  for (const std::size_t i : of) {
+    *sides = beyond(boxes_[i], at);
+    if (*sides == 0) *sides = behind(volumes_[i], at);
+    ++sides;
   }
 }
 
-std::optional<SolidCut::Touched> SolidCut::touched(std::initializer_list<const std::uint64_t*> corners) const {
-  Touched found;
-  for (std::size_t i = 0; i < volumes_.size(); ++i) {
+std::optional<SolidCut::Volumes> SolidCut::touched(const Volumes& of,
+                                                   std::initializer_list<const std::uint64_t*> corners) {
+  Volumes found;
+  for (std::size_t i = 0; i < of.size(); ++i) {
     std::uint64_t all = ~kOtherPlanes, any = 0;
     for (const std::uint64_t* corner : corners) {
       all &= corner[i];
       any |= corner[i];
     }
     if (any == 0) return std::nullopt;
-    if (all == 0) found.push_back(i);
+    if (all == 0) found.push_back(of[i]);
   }
   return found;
 }
 
-std::vector<Polygon> SolidCut::outside(const Touched& touched, Polygon triangle) const {
+std::vector<Polygon> SolidCut::outside(const Volumes& touched, Polygon triangle) const {
   std::vector<Polygon> left{std::move(triangle)};
   for (const std::size_t i : touched) {
     std::vector<Polygon> next;
@@ -135,12 +165,12 @@ std::vector<Polygon> SolidCut::outside(const Touched& touched, Polygon triangle)
   return left;
 }
 
-void SolidCut::addFaces(const Touched& touched, const TetrahedronCorners& tetrahedron,
+void SolidCut::addFaces(const Volumes& touched, const TetrahedronCorners& tetrahedron,
                         std::vector<CutFace>& faces) const {
   for (const std::size_t i : touched) addFacesOf(i, touched, tetrahedron, faces);
 }
 
-void SolidCut::addFacesOf(std::size_t volume, const Touched& touched, const TetrahedronCorners& tetrahedron,
+void SolidCut::addFacesOf(std::size_t volume, const Volumes& touched, const TetrahedronCorners& tetrahedron,
                           std::vector<CutFace>& faces) const {
   const RemovedVolume& own = volumes_[volume];
   RemovedVolume reduced;

@@ -20,38 +20,42 @@ struct CutFace {
 /// Takes volumes out of flat-faced pieces.
 class SolidCut {
  public:
-  /// The volumes that pieces of a solid reach into, by their index.
-  using Touched = std::vector<std::size_t>;
+  /// Some of the volumes, by their index, ascending.
+  using Volumes = std::vector<std::size_t>;
 
   /// @param box of the solid.
   SolidCut(const std::vector<RemovedVolume>& volumes, const Box& box);
 
   bool isEmpty() const noexcept { return volumes_.empty(); }
-  std::size_t volumes() const noexcept { return volumes_.size(); }
 
   /// Largest X at which a volume is in the solid's box [m].
   double reach() const noexcept { return reach_; }
 
-  /// Finds behind which planes of each volume a point is.
-  /// @param sides gets a number for each volume.
-  void findSides(const Eigen::Vector3d& at, std::uint64_t* sides) const noexcept;
+  /// The volumes in a range of X [m].
+  Volumes between(double from, double to) const;
 
-  /// The volumes that a piece with these corners may reach into; nothing if one of them removes all of it.
+  /// Finds on which sides of each of some volumes a point is: beyond which sides of its box; of a point in there,
+  /// behind which planes.
+  /// @param sides gets a number for each volume.
+  void findSides(const Volumes& of, const Eigen::Vector3d& at, std::uint64_t* sides) const noexcept;
+
+  /// Those of some volumes that a piece with these corners may reach into; nothing if one of them removes all of it.
   /// @param corners as from findSides().
-  std::optional<Touched> touched(std::initializer_list<const std::uint64_t*> corners) const;
+  static std::optional<Volumes> touched(const Volumes& of, std::initializer_list<const std::uint64_t*> corners);
 
   /// The parts of a triangle that are left.
-  std::vector<Polygon> outside(const Touched& touched, Polygon triangle) const;
+  std::vector<Polygon> outside(const Volumes& touched, Polygon triangle) const;
 
   /// Adds the faces that volumes leave on a tetrahedron, facing into the volumes.
   /// @param tetrahedron tetrahedron of positive volume; if it is turned inside out, so are its faces.
-  void addFaces(const Touched& touched, const TetrahedronCorners& tetrahedron, std::vector<CutFace>& faces) const;
+  void addFaces(const Volumes& touched, const TetrahedronCorners& tetrahedron, std::vector<CutFace>& faces) const;
 
  private:
-  void addFacesOf(std::size_t volume, const Touched& touched, const TetrahedronCorners& tetrahedron,
+  void addFacesOf(std::size_t volume, const Volumes& touched, const TetrahedronCorners& tetrahedron,
                   std::vector<CutFace>& faces) const;
 
   std::vector<RemovedVolume> volumes_;
+  std::vector<Box> boxes_;  ///< about each of them
   double reach_;
 };
 

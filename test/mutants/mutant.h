@@ -25,7 +25,9 @@ class Process {
     const char* folder = std::getenv("MUTANTS_REACHED");
     if (!folder) return;
     const std::string name = std::string(folder) + "/" + std::to_string(getpid());
-    reached_file_ = open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    reached_file_ = fcntl(file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);  // in place of no standard stream that is closed
+    close(file);
   }
   bool comesBy(int number) {
     // Written at once: a program may end without destroying its statics.

@@ -63,7 +63,7 @@ TEST(CutterSolid, IsClosedAndHasTheVolumeOfTheSectionsAlsoInAnStlFile) {
     EXPECT_NEAR(solid.volume(), volume, 1e-3 * volume);
 
     std::ofstream out(path, std::ios::binary);
-    writeStl(out, solid);
+    out << stlOf(solid);
     out.close();
     EXPECT_TRUE(out.good());
     const std::string said = admesh(path);

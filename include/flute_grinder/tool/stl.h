@@ -2,14 +2,13 @@
 
 #include "flute_grinder/tool/cutter_solid.h"
 
-#include <ostream>
+#include <string>
 
 namespace grinder {
 
-/// Writes a solid as binary STL in millimetres: the format has no units, and millimetres are customary. Leaves out
-/// triangles with two corners equal in single precision. The stream's state tells whether it succeeded.
-/// @param out stream opened in binary mode.
+/// A solid as binary STL in millimetres: the format has no units, and millimetres are customary. Leaves out triangles
+/// with two corners equal in single precision.
 /// @throw std::invalid_argument if the solid has open edges.
-void writeStl(std::ostream& out, const CutterSolid& solid);
+std::string stlOf(const CutterSolid& solid);
 
 }  // namespace grinder

@@ -40,9 +40,12 @@ class StandIn:
 
     def publish(self):
         while not rospy.is_shutdown():
-            with self.lock:
-                self.states.publish(copy.deepcopy(self.state))  # a subscriber that comes later gets it as it was
+            self.publish_state()
             rospy.rostime.wallsleep(0.1)
+
+    def publish_state(self):
+        with self.lock:
+            self.states.publish(copy.deepcopy(self.state))  # a subscriber that comes later gets it as it was
 
     def set(self, state, name, **fields):
         with self.lock:
@@ -62,7 +65,7 @@ class StandIn:
     def await_goal(self):
         gc.poll(lambda: self.goals, 'a goal')
         client = self.goals[-1].get_goal_id().id.split('-')[0]
-        for topic in (self.server.feedback_pub, self.server.result_pub):
+        for topic in (self.server.feedback_pub, self.server.result_pub, self.setpoints):
             # rospy sends its header before it publishes to a connection.
             gc.poll(lambda: client in [connection.endpoint_id for connection in topic.impl.connections], topic.name)
         return self.goals[-1]
@@ -110,6 +113,11 @@ class TestStandIn(RunTest):
         command = self.grind('run', PAPER_JOB, *arguments, **options)
         return command, self.node.await_goal()
 
+    @staticmethod
+    def show(command, goal, text, **feedback):
+        """Repeats a feedback until its text is there: the command forgets it where no state comes for a second."""
+        gc.poll(lambda: goal.publish_feedback(GrindFeedback(**feedback)) or text in command.text, text, interval=0.1)
+
     def test_planning_is_shown_and_canceled_by_signals_but_by_no_hangup_under_nohup(self):
         def nohup():
             default_signals()
@@ -119,8 +127,7 @@ class TestStandIn(RunTest):
             self.node.goals.clear()
             self.node.canceled.clear()
             command, goal = self.start_run(before=before)
-            goal.publish_feedback(GrindFeedback(state='planning', planned=0.43))
-            command.wait_text('planning 43 %\n')
+            self.show(command, goal, 'planning 43 %\n', state='planning', planned=0.43)
             self.assertRegex(command.text, r'(?m)^\[#{12}\.{18}\]  planning 43 %$')
             for number in signals:
                 command.send(number)
@@ -154,8 +161,7 @@ class TestStandIn(RunTest):
             self.assertNotIn('\x1b', done.stdout + done.stderr)
             self.assertGreaterEqual(done.stdout.count(shown), times, done.stdout)
         command, goal = self.start_run()
-        goal.publish_feedback(GrindFeedback(state=bad))
-        command.wait_text('  ' + shown)
+        self.show(command, goal, '  ' + shown, state=bad)
         command.wait_text('held: ' + shown)
         statistics = PathStatistics(setpoints=1, feed_limits=[FeedLimit(cause=bad)])
         goal.set_succeeded(GrindResult(plan=PlanReport(statistics=statistics, closest_bodies=[bad] * 2, needs=[Need(text=bad)])))
@@ -165,8 +171,7 @@ class TestStandIn(RunTest):
 
     def test_planning_on_a_terminal(self):
         command, goal = self.start_run('--dry-run', columns=30)
-        goal.publish_feedback(GrindFeedback(state='planning', planned=0.5))
-        command.wait_text('planning 50 %')
+        self.show(command, goal, 'planning 50 %', state='planning', planned=0.5)
         goal.set_succeeded(GrindResult(plan=PlanReport(statistics=PathStatistics(setpoints=1), complete=[0, 0.03])))
         self.assertEqual(command.end(), 0, command.text)
         self.assertRegex(command.text, r'\r\x1b\[K\[#{6}\.{6}\]  planning 50 %\r\n$')
@@ -174,8 +179,7 @@ class TestStandIn(RunTest):
 
     def test_hold_while_a_job_is_planned_holds_its_start(self):
         command, goal = self.start_run()
-        goal.publish_feedback(GrindFeedback(state='planning', planned=0.1))
-        command.wait_text('planning 10 %')
+        self.show(command, goal, 'planning 10 %', state='planning', planned=0.1)
         command.send(signal.SIGTSTP)
         gc.poll(lambda: self.node.stops == [Stop.HOLD], 'the hold')
         self.node.set(GrinderState.STARTING, 'starting')
@@ -223,15 +227,24 @@ class TestStandIn(RunTest):
         listener = Listener()
         self.node.states.impl.add_subscriber_listener(listener)
         self.addCleanup(self.node.states.impl.subscriber_listeners.remove, listener)
-        self.assertRegex(gc.grind('status').stdout, '(?m)^state           held$')
+
+        def is_held():
+            self.node.set(GrinderState.READY, 'ready')
+            self.node.publish_state()
+            return '\nstate           held\n' in gc.grind('status').stdout
+
+        # It waits a second for the one after the first.
+        gc.poll(is_held, 'the state held')
 
     def test_lift_waits_until_the_wheel_is_off_the_work(self):
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=True)
+        self.node.publish_state()
         text, reported = self.status()
         self.assertRegex(text, r'(?m)^wheel in work   yes$')
         self.assertIs(reported['wheel_in_work'], True)
         command = self.grind('lift')
         gc.poll(lambda: self.node.state.state == GrinderState.LIFTING, 'the lift')
+        self.node.publish_state()
         self.assertRegex(self.status()[0], r'(?m)^state           lifting$')
         self.assertIsNone(command.process.poll())
         self.node.set(GrinderState.READY, 'ready', wheel_in_work=False)

@@ -238,6 +238,9 @@ def paper(**changes):
 
 # Over soon.
 SHORT = paper(flute_length=5 * MM, feed=3000 * MM_MIN, clearance=1 * MM)
+# With a depth that changes along the flute, no pass is like another: it takes longer to plan than any test waits, of a node whose
+# max_job_duration allows it.
+ENDLESS = paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
 
 
 def job_file(path, **changes):

@@ -122,7 +122,7 @@ class TestEnd(JournalTest):
         self.start()
         self.client.make_ready()
         self.client.confirm_swivel(gc.process_of(self.goal).setup_swivel)
-        journal = self.read_journal()
+        journal = self.wait_lifted()
         self.assertEqual([journal[key] for key in ('operation', 'finished', 'tooth', 'pass', 'wheel_in_work')], [OPERATION, False, 1, 0, False])
         self.assertRegex(self.said('status'), r'(?m)^last job .*mill\.yaml, %s.*tooth 2, pass 1 not finished' % OPERATION)
         self.assertTrue(self.client.set_feed_override(1).success)

@@ -19,7 +19,7 @@ from flute_grinder.srv import JogStep
 from visualization_msgs.msg import Marker, MarkerArray
 
 import grinder_client as gc
-from grinder_client import DEG, MM, Y
+from grinder_client import DEG, MM, STROKE, Y
 
 
 class TestLoopback(unittest.TestCase):
@@ -146,7 +146,7 @@ class TestFaults(gc.OwnNode):
         alone, of_job = 'fault without a job: emergency stop', 'goal aborted: emergency stop'
         gc.poll(lambda: alone in self.node.output, 'the fault in the log')
         g.make_ready(0.02)
-        run = g.send(gc.SHORT).wait_in_stroke(0)
+        run = g.send(gc.paper()).wait_past(lambda s: s.move == STROKE, 'the stroke')
         g.inject('emergency_stop')
         run.wait_complete()
         gc.poll(lambda: of_job in self.node.output, 'the end of the job in the log')
@@ -191,9 +191,9 @@ class TestMemory(gc.OwnNode):
         run.wait_complete()
         g.wait_state(GrinderState.READY)
         self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01).success)
-        g.make_ready(0.1)
+        g.make_ready(0.002)
         self.assertEqual(g.send(self.TOOL, dry_run=True).wait().status, 'SUCCEEDED')
-        run = g.send(self.SHORT_TOOL).wait_in_stroke(0)
+        run = g.send(self.SHORT_TOOL).wait_past(lambda s: s.move == STROKE, 'the stroke')
         self.assertTrue(g.hold().success)
         g.wait_state(GrinderState.HELD)
         self.assertTrue(g.retract().success)

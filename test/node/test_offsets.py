@@ -34,7 +34,8 @@ class OffsetsTest(gc.OwnNode):
     def start(self, environment=(), **changes):
         """Starts a node on the folder."""
         parameters = gc.machine(pace=self.pace)
-        parameters.update(journal=os.path.join(self.folder, 'journal'), offsets=self.file, control_rate=5000.0 / self.pace)
+        parameters.update(journal=os.path.join(self.folder, 'journal'), offsets=self.file, control_rate=5000.0 / self.pace,
+                          max_job_duration=1e9, homing_timeout=3600.0)
         parameters['hardware']['spindle_run_up_time'] = 0.0
         parameters['hardware'].update(changes)
         super().start(parameters, environment=environment)
@@ -115,8 +116,7 @@ class TestSetting(OffsetsTest):
         self.check_both_refused('the machine is in state running; allowed: ready, disabled')
         run.cancel()
         run.wait()
-        # A plan of a second or more: no pass is like another.
-        run = self.client.send(gc.paper(feed=1 * MM_MIN, infeed=0.2 * MM, depth_end=1.59 * MM))
+        run = self.client.send(gc.ENDLESS)
         self.client.wait_for(lambda: run.feedback, 'feedback')
         self.check_both_refused('a job is being planned')
         run.cancel()
@@ -145,8 +145,8 @@ class TestSetting(OffsetsTest):
         self.assertEqual([tuple(offsets.values[Y:A]) for offsets in heard], [(0, 0), (0.0015, -0.007), (0.0014, 0.001)])
 
     def test_refused_without_the_reference_and_while_homing(self):
-        # Y homes first, and needs a second.
-        self.start(absolute_encoders=False, axis_y=dict(gc.machine()['hardware']['axis_y'], start_position=0.03))
+        # Y homes first, and needs minutes.
+        self.start(absolute_encoders=False, axis_y=dict(gc.machine()['hardware']['axis_y'], start_position=0.03, homing_velocity=1e-5))
         self.check_both_refused('the axes are not homed')
         self.assertTrue(self.client.enable().success)
         self.client.wait_state(GrinderState.READY)
@@ -300,12 +300,14 @@ class TestToolOfSeveralOperations(OffsetsTest):
                       self.grind(1, 'touch-off', 'z', '--job', self.job, '--operation', 'primary').stderr)
         # Flutes that go on after a homing.
         self.set_zeros('flute')
+        self.assertTrue(self.client.set_feed_override(0.1).success)
         run = threading.Thread(target=gc.grind, args=('--node', self.node.name, 'run', self.job, '--operation', 'flute'))
         run.start()
-        self.client.wait_for(lambda: self.client.batches and self.client.batches[-1].setpoints[-1].tooth == 1, 'the second tooth')
+        self.client.wait_for(lambda: any(s.tooth == 1 for batch in self.client.batches for s in batch.setpoints), 'the second tooth')
         self.assertTrue(self.client.hold().success)
         self.grind(0, 'cancel')
         run.join()
+        self.assertTrue(self.client.set_feed_override(1).success)
         self.client.wait_state(GrinderState.READY)
         self.grind(0, 'home')
         self.grind(0, 'run', self.job, '--operation', 'flute', '--continue')

@@ -19,8 +19,6 @@ from grinder_client import A, LIFT, MM, MM_MIN, STROKE, X, Y, Z
 
 SEED = 20
 
-# With a depth that changes along the flute, no pass is like another: it takes longer to plan than any test waits.
-ENDLESS = gc.paper(feed=0.1 * MM_MIN, infeed=0.001 * MM, depth_end=1.59 * MM)
 # Time enough to do something in a stroke.
 SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.
@@ -39,7 +37,7 @@ class NodeTest(gc.OwnNode):
         parameters['max_job_duration'] = 1e9
         return super().start(parameters, clean_up, **arguments)
 
-    def send_planning(self, job=ENDLESS, **fields):
+    def send_planning(self, job=gc.ENDLESS, **fields):
         run = self.client.send(job, **fields)
         self.client.wait_for(lambda: run.feedback, 'the word that it is planned')
         self.assertEqual(run.feedback[0].state, 'planning')

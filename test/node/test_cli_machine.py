@@ -88,7 +88,8 @@ class TestMachine(CommandLine):
         duration = '%.3f' % (new[-1].end_stamp - new[0].header.stamp).to_sec()
         self.assertRegex(printed.stdout, r'streamed +%d setpoints in %s s, 0 missed\n' % (len(planned) - 1, re.escape(duration)))
         self.assertRegex(printed.stderr, r'100 %')
-        last = self.json(0, 'status')[0]['last_job']
+        # The journal may be a little later than the end.
+        last = gc.poll(lambda: (lambda last: last['finished'] and last)(self.json(0, 'status')[0]['last_job']), 'the end in the journal')
         self.assertEqual((last['name'], last['operation'], last['finished'], last['end']),
                          ('reamer.yaml', 'secondary relief', True, 'done'))
         kept = self.path('ros/flute_grinder/history/grinder')
@@ -109,11 +110,13 @@ class TestMachine(CommandLine):
         reported, _ = self.json(0, 'status')
         self.assertEqual((reported['state'], reported['tooth'], reported['pass'], reported['last_job']['finished'], reported['coolant_on']),
                          ('running', 1, 1, False, True))
+        command.wait_text('  running  ')
         grinder().fresh_state()
         self.assertIn(reported['feed_mm_min'], {s.feed / MM_MIN for batch in grinder().batches[batches:] for s in batch.setpoints})
         with unittest.mock.patch.dict(os.environ, HOME='/dev/null'):  # in which root makes no folder either
             self.grind(0, 'hold')
             grinder().wait_state(GrinderState.HELD)
+            command.wait_text('  held  ')
             self.assertRegex(self.grind(0, 'status').stdout, r'(?ms)^state +held$.*^feed +0\.0 mm/min, override 20 %$')
             self.grind(0, 'resume')
             grinder().wait_state(GrinderState.RUNNING)
@@ -133,6 +136,7 @@ class TestMachine(CommandLine):
             grinder().wait_state(GrinderState.HELD)
             self.grind(0, 'retract')
             grinder().wait_state(GrinderState.RETRACTED)
+            command.wait_text('  retracted  ')
             self.grind(0, 'cancel')
             self.assertIn('flutes complete', self.grind(0, 'plan', PAPER_JOB).stdout)
         self.assertEqual(command.end(), 1, command.text)

@@ -66,8 +66,9 @@ class TestRecords(gc.OwnNode):
         done = self.record_of(lambda: self.grinder.run(JOB, job_name='two.yaml'))
 
         def cancel():
-            self.grinder.make_ready(0.3)  # a client of a busy computer is to see the second pass
-            run = self.grinder.send(JOB).wait_past(lambda s: s.move == STROKE and s.pass_ == 1, 'the second pass')
+            self.grinder.make_ready(0.3)  # two strokes more are to take seconds
+            run = self.grinder.send(JOB)
+            self.grinder.wait_for(lambda: any(s.move == STROKE and s.pass_ == 1 for s in run.setpoints), 'the second pass')
             run.cancel()
             run.wait_complete()
 

@@ -62,7 +62,7 @@ class TestRest(unittest.TestCase):
         g = grinder()
         wait_for_fewer(g.joints)
         seen = len(g.joints)
-        step = g._call('jog_step', JogStep, Y, 2 * MM, 120 * MM_MIN)
+        step = g._call('jog_step', JogStep, Y, 2 * MM, 60 * MM_MIN)
         self.assertTrue(step.success, step.message)
         g.wait_state(GrinderState.READY)
         moving = [j for j in g.joints[seen:] if j.velocity[Y] != 0]

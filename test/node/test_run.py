@@ -2,6 +2,7 @@
 stops the machine cleanly, and what it says when the grinder is gone. And the same of `grind home`."""
 
 import contextlib
+import itertools
 import os
 import re
 import signal
@@ -34,6 +35,7 @@ class SlowRun(RunTest):
         client.make_ready(AHEAD)
         seen = len(client.batches)
         command = self.grind('--node', client.name, *RUN, PAPER_JOB, *arguments, **options)
+        command.wait_text('the feed override is 10 %')  # before it is another
         self.slow_down(client, seen)
         return command, seen
 
@@ -101,26 +103,28 @@ class TestBar(SlowRun):
         return [line for line in lines if line]
 
     def test_line_fits_a_terminal_that_gets_narrow(self):
-        grinder().make_ready(0.2)
+        def from_first(fits, begin):
+            """The lines, each complete, from the first that fits: others may have been drawn before the change was seen."""
+            return list(itertools.dropwhile(lambda line: not fits(line), command.text[begin:].split(CLEAR_LINE)[1:-1]))
+
+        grinder().make_ready(SLOW)
         command = self.grind(*RUN, PAPER_JOB, columns=200)
         command.wait_text('tooth 1/1')
         wide = len(command.text)
         command.resize(80)
-        gc.poll(lambda: command.text.count(CLEAR_LINE, wide) > 10, 'more of it')
+        at_80 = gc.poll(lambda: (lambda lines: len(lines) > 7 and lines)(from_first(lambda line: len(line) == 79, wide)), 'more of it')
         middle = len(command.text)
         command.resize(30)
+        gc.poll(lambda: len(from_first(lambda line: len(line) < 30, middle)) > 3, 'some short ones')
+        self.assertTrue(grinder().set_feed_override(1).success)
         self.assertEqual(command.end(), 0, command.text)
         drawn = self.drawn(command)
-        self.assertIn('the feed override is 20 %', drawn)
+        self.assertIn('the feed override is 3 %', drawn)
         first = next(line for line in drawn if 'tooth' in line)
         self.assertTrue(LINE.fullmatch(first), first)
-        # The first two after each change may have been drawn before it was seen.
-        at_80 = command.text[wide:middle].split(CLEAR_LINE)[3:-1]
         self.assertTrue(all(len(line) == 79 for line in at_80), at_80)
         self.assertTrue(all(re.match(r'\[#*\.*\]  [ \d]{2}\d %  \w+  tooth 1/1  pass 1/1  ', s) for s in at_80), at_80)
-        at_30 = command.text[middle:].rstrip('\r\n').split(CLEAR_LINE)[3:]
-        self.assertGreater(len(at_30), 3)
-        for line in at_30:
+        for line in from_first(lambda line: len(line) < 30, middle):
             self.assertLess(len(line), 30)
             self.assertRegex(line, r'^[ \d]{2}\d %  \w+')
         self.assertRegex(drawn[-1], r'^100 %')
@@ -202,9 +206,8 @@ class TestRecord(SlowRun):
         os.mkfifo(path)
         reader = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
         command = self.grind(*RUN, PAPER_JOB, '--csv', path)
-        grinder().wait_state(GrinderState.RUNNING)
         # The job ends while the disk takes nothing.
-        command.wait_text('100 %')
+        command.wait_text('100 %  ')  # and not 'planning 100 %'
         grinder().wait_state(GrinderState.READY)
         os.set_blocking(reader, True)
         with open(reader) as file:

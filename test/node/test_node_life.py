@@ -146,7 +146,7 @@ class TestFaults(gc.OwnNode):
         alone, of_job = 'fault without a job: emergency stop', 'goal aborted: emergency stop'
         gc.poll(lambda: alone in self.node.output, 'the fault in the log')
         g.make_ready(0.02)
-        run = g.send(gc.paper()).wait_past(lambda s: s.move == STROKE, 'the stroke')
+        run = g.send(gc.paper(clearance=1 * MM)).wait_past(lambda s: s.move == STROKE, 'the stroke')
         g.inject('emergency_stop')
         run.wait_complete()
         gc.poll(lambda: of_job in self.node.output, 'the end of the job in the log')
@@ -191,7 +191,7 @@ class TestMemory(gc.OwnNode):
         run.wait_complete()
         g.wait_state(GrinderState.READY)
         self.assertTrue(g._call('jog_step', JogStep, Y, 1 * MM, 0.01).success)
-        g.make_ready(0.002)
+        g.make_ready(0.03)
         self.assertEqual(g.send(self.TOOL, dry_run=True).wait().status, 'SUCCEEDED')
         run = g.send(self.SHORT_TOOL).wait_past(lambda s: s.move == STROKE, 'the stroke')
         self.assertTrue(g.hold().success)

@@ -57,8 +57,8 @@ class Recording:
             self.wait_for_recorder()
             self.node.make_ready()
             self.grind_with_hold_and_override()
-            self.node.make_ready(0.1)
-            self.node.send(gc.PAPER).wait_in_stroke(1 * MM)
+            self.node.make_ready(0.2)
+            self.node.send(gc.PAPER).wait_in_stroke(2 * MM)
         finally:
             launch.send_signal(signal.SIGINT)
             launch.wait(timeout=gc.PATIENCE)

@@ -66,7 +66,7 @@ class TestRecords(gc.OwnNode):
         done = self.record_of(lambda: self.grinder.run(JOB, job_name='two.yaml'))
 
         def cancel():
-            self.grinder.make_ready(0.3)  # two strokes more are to take seconds
+            self.grinder.make_ready(0.3)  # what is left then is to take seconds
             run = self.grinder.send(JOB)
             self.grinder.wait_for(lambda: any(s.move == STROKE and s.pass_ == 1 for s in run.setpoints), 'the second pass')
             run.cancel()
@@ -75,9 +75,11 @@ class TestRecords(gc.OwnNode):
         canceled = self.record_of(cancel)
         self.check_command(done, canceled)
         self.grinder.make_ready()
-        record = self.record_of(lambda: self.grinder.run(JOB, first_pass=1))
-        self.assertEqual(record['first'], {'tooth': 1, 'pass': 2})
-        self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], [(1, 2), (2, 1), (2, 2)])
+        left = self.grinder.fresh_state().progress
+        record = self.record_of(lambda: self.grinder.run(JOB, first_tooth=left.tooth, first_pass=left.pass_))
+        self.assertEqual(record['first'], {'tooth': left.tooth + 1, 'pass': left.pass_ + 1})
+        passes = [(1, 1), (1, 2), (2, 1), (2, 2)]
+        self.assertEqual([(s['tooth'], s['pass']) for s in record['strokes']], passes[passes.index((left.tooth + 1, left.pass_ + 1)):])
 
         record = self.record_of(lambda: (self.send_into_stroke(job_name='broken off'), self.node.end(signal.SIGTERM)))
         self.assertEqual((record['outcome'], record['job']), ('canceled', 'broken off'))

@@ -300,7 +300,7 @@ class TestToolOfSeveralOperations(OffsetsTest):
                       self.grind(1, 'touch-off', 'z', '--job', self.job, '--operation', 'primary').stderr)
         # Flutes that go on after a homing.
         self.set_zeros('flute')
-        self.assertTrue(self.client.set_feed_override(0.05).success)
+        self.assertTrue(self.client.set_feed_override(0.02).success)
         run = threading.Thread(target=gc.grind, args=('--node', self.node.name, 'run', self.job, '--operation', 'flute'))
         run.start()
         self.client.wait_for(lambda: any(s.tooth == 1 for batch in self.client.batches for s in batch.setpoints), 'the second tooth')

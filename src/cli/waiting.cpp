@@ -7,6 +7,7 @@ namespace grinder {
 namespace {
 
 const ros::WallDuration kTimeout(3);
+const ros::WallDuration kReading(0.5);  ///< time to read what has come while the whole computer stood still
 
 }  // namespace
 
@@ -21,6 +22,8 @@ bool awaitNext(const States& states) {
   return await(kTimeout, [&] { return states.count() >= enough; });
 }
 
-bool isLost(const States& states) { return !ros::ok() || !states.isFresh(kTimeout); }
+bool isLost(const States& states) {
+  return !ros::ok() || !await(kReading, [&] { return states.isFresh(kTimeout); });
+}
 
 }  // namespace grinder

@@ -1,9 +1,12 @@
 #pragma once
 
 #include "flute_grinder/GrinderState.h"
+#include "flute_grinder/base/await.h"
 #include "flute_grinder/client/latest.h"
 
 #include <ros/ros.h>
+
+#include <chrono>
 
 namespace grinder {
 
@@ -13,12 +16,12 @@ bool inJob(const flute_grinder::GrinderState& state);
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
 bool await(const ros::WallDuration& timeout, Condition condition) {
-  const ros::SteadyTime end = ros::SteadyTime::now() + timeout;
-  while (ros::ok() && !condition()) {
-    if (ros::SteadyTime::now() > end) return false;
-    ros::WallDuration(0.005).sleep();
-  }
-  return condition();
+  bool is_true = false;
+  await(std::chrono::nanoseconds(timeout.toNSec()), std::chrono::milliseconds(5), [&] {
+    is_true = condition();
+    return is_true || !ros::ok();
+  });
+  return is_true;
 }
 
 const ros::WallDuration kPatience(10);       ///< longest wait for a node that is still starting

@@ -1,32 +1,33 @@
 #include "flute_grinder/control/request_box.h"
 
+#include "flute_grinder/base/await.h"
+
 #include <chrono>
 #include <cmath>
 #include <string>
-#include <thread>
 
 namespace grinder {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Seconds = std::chrono::duration<double>;
 
-/// Timeout of a request's answer, in addition to the time that the request itself may take [s].
-constexpr double kAnswerTimeout = 2;
-/// Timeout of a stop's answer [s].
-constexpr double kStopTimeout = 0.1;
+/// Timeout of a request's answer, in addition to the time that the request itself may take.
+constexpr Seconds kAnswerTimeout(2);
+/// Timeout of a stop's answer.
+constexpr Seconds kStopTimeout(0.1);
+constexpr std::chrono::microseconds kAnswerLook(500);  ///< time between looks for an answer
 
 /// Polls for an answer until one is available or the timeout expires.
 /// @param poll returns the answer, or nothing yet.
-/// @param timeout [s].
 template <typename Poll>
-RequestReply await(const char* request, double timeout, const Poll& poll) {
-  const auto deadline = Clock::now() + std::chrono::duration<double>(timeout);
-  while (Clock::now() < deadline) {
-    if (const std::optional<RequestReply> answer = poll()) return *answer;
-    std::this_thread::sleep_for(std::chrono::microseconds(100));
-  }
-  return {false, std::string(request) + ": the control loop does not answer", false};
+RequestReply awaitReply(const char* request, Seconds timeout, const Poll& poll) {
+  std::optional<RequestReply> answer;
+  await(std::chrono::duration_cast<std::chrono::nanoseconds>(timeout), kAnswerLook, [&] {
+    answer = poll();
+    return answer.has_value();
+  });
+  return answer.value_or(RequestReply{false, std::string(request) + ": the control loop does not answer", false});
 }
 
 std::optional<RequestReply> toReply(const std::optional<Answer>& answer) {
@@ -36,9 +37,9 @@ std::optional<RequestReply> toReply(const std::optional<Answer>& answer) {
 
 /// Posts a request, and waits for its answer.
 template <typename Request>
-RequestReply ask(const char* name, double timeout, RequestSlot<Request>& slot, const Request& request) {
+RequestReply ask(const char* name, Seconds timeout, RequestSlot<Request>& slot, const Request& request) {
   bool posted = false;
-  RequestReply reply = await(name, timeout, [&]() -> std::optional<RequestReply> {
+  RequestReply reply = awaitReply(name, timeout, [&]() -> std::optional<RequestReply> {
     // The slot may still contain a request that timed out.
     if (posted) return toReply(slot.reply());
     posted = slot.post(request);
@@ -55,7 +56,7 @@ RequestReply RequestBox::request(MachineEvent event) {
   if (!isTrigger(event)) {
     return {false, std::string(toString(event)) + " refused: allowed: " + namesOf<MachineEvent>(isTrigger), true};
   }
-  return ask(toString(event), kAnswerTimeout + enable_timeout_, requests_, event);
+  return ask(toString(event), kAnswerTimeout + Seconds(enable_timeout_), requests_, event);
 }
 
 std::optional<RequestReply> RequestBox::reply() { return toReply(requests_.reply()); }
@@ -78,7 +79,7 @@ RequestReply RequestBox::stop(MachineEvent event) {
     return {false, std::string(toString(event)) + " refused: allowed: hold, cancel, disable", true};
   }
   const std::uint32_t ticket = postStopWithReply(event);
-  return await(toString(event), kStopTimeout, [&] { return stopReply(event, ticket); });
+  return awaitReply(toString(event), kStopTimeout, [&] { return stopReply(event, ticket); });
 }
 
 std::optional<RequestReply> RequestBox::stopReply(MachineEvent event, std::uint32_t ticket) const {

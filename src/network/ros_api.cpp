@@ -15,7 +15,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 
 constexpr std::chrono::seconds kTimeout(1), kParameterTimeout(10);
-constexpr double kSlice = 0.02;  ///< time between looks at `stop` [s]
+constexpr std::chrono::milliseconds kSlice(20);  ///< time between looks at `stop`
 
 struct Answer {
   bool success;
@@ -39,9 +39,9 @@ std::optional<Answer> call(const std::string& host, unsigned port, const char* m
   if (!client.executeNonBlock(method, all)) return std::nullopt;
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  const auto due = std::chrono::steady_clock::now() + timeout;
-  while (!stop && client.getfd() >= 0 && std::chrono::steady_clock::now() < due) {
-    dispatch.work(kSlice);
+  // Counted in slices: a stall of the whole computer is not the other's.
+  for (auto left = timeout / kSlice; !stop && client.getfd() >= 0 && left > 0; --left) {
+    dispatch.work(std::chrono::duration<double>(kSlice).count());
     XmlRpcValue response;
     if (client.executeCheckDone(response)) return answerOf(response);
   }

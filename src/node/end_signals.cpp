@@ -1,5 +1,7 @@
 #include "node/end_signals.h"
 
+#include "flute_grinder/base/await.h"
+
 #include <pthread.h>
 #include <ros/ros.h>
 
@@ -50,13 +52,9 @@ EndAtOnce::~EndAtOnce() {
 
 EndInTime::EndInTime(std::string what)
     : thread_([this, what = std::move(what)] {
-        const auto deadline = std::chrono::steady_clock::now() + kShutdown;
-        while (!over_) {
-          std::this_thread::sleep_for(kLook);
-          if (std::chrono::steady_clock::now() < deadline) continue;
-          ROS_FATAL_STREAM("the process ends without the return of " << what);
-          std::_Exit(1);
-        }
+        if (await(kShutdown, kLook, [this] { return over_.load(); })) return;
+        ROS_FATAL_STREAM("the process ends without the return of " << what);
+        std::_Exit(1);
       }) {}
 
 EndInTime::~EndInTime() {

@@ -1,5 +1,6 @@
 #include "node/goal_server.h"
 
+#include "flute_grinder/base/await.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/plan_result.h"
@@ -13,11 +14,12 @@ namespace grinder {
 
 namespace {
 
-constexpr double kPollPeriod = 0.001;             ///< period with a goal [s]
-constexpr double kIdlePollPeriod = 0.02;          ///< period without a goal [s]
-constexpr double kStartPollPeriod = 0.0001;       ///< period while a job starts and waits for its entry [s]
-const ros::WallDuration kPlanningInterval(0.05);  ///< time between feedback messages while planning
-const ros::WallDuration kLoopTimeout(1);          ///< time after which the control loop counts as hung
+constexpr double kPollPeriod = 0.001;               ///< period with a goal [s]
+constexpr double kIdlePollPeriod = 0.02;            ///< period without a goal [s]
+constexpr double kStartPollPeriod = 0.0001;         ///< period while a job starts and waits for its entry [s]
+const ros::WallDuration kPlanningInterval(0.05);    ///< time between feedback messages while planning
+constexpr std::chrono::seconds kLoopTimeout(1);     ///< longest wait for a cycle of the control loop
+constexpr std::chrono::milliseconds kCycleLook(1);  ///< time between looks for it
 /// How long the result waits for the last setpoints to be published and the journal to be written.
 const ros::WallDuration kEndTimeout(0.5);
 
@@ -129,7 +131,10 @@ void GoalServer::onGoal(GoalHandle handle) {
 }
 
 std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const {
-  if (ros::SteadyTime::now() - last_cycle_ > kLoopTimeout) return "the control loop does not answer";
+  const std::uint64_t before = loop_.status().cycles;
+  if (!await(kLoopTimeout, kCycleLook, [&] { return loop_.status().cycles != before; })) {
+    return "the control loop does not answer";
+  }
   const LoopStatus status = loop_.status();
   if (status.state != MachineState::kReady) {
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);
@@ -295,8 +300,6 @@ void GoalServer::startJob() {
 
 void GoalServer::poll() {
   const LoopStatus status = loop_.status();
-  if (status.cycles != cycles_) last_cycle_ = ros::SteadyTime::now();
-  cycles_ = status.cycles;
   tracker_.update(status);
   if (!goal_) return;
   publishFeedback();

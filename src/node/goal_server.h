@@ -94,8 +94,6 @@ class GoalServer {
   OffsetServer& offsets_;
   ProgressTracker tracker_;
 
-  std::uint64_t cycles_ = 0;    ///< the loop's count of cycles when last seen
-  ros::SteadyTime last_cycle_;  ///< time at which `cycles_` was last seen to change
   std::optional<Goal> goal_;
   std::atomic<bool> busy_{false};
   /// Its queue serves the callbacks of the members below. A cancel on its way in another thread may still know it.

@@ -1,6 +1,7 @@
 #include "node/grinder_node.h"
 
 #include "flute_grinder/MachineInfo.h"
+#include "flute_grinder/base/await.h"
 #include "node/crash_guard.h"
 #include "node/node_files.h"
 
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
-#include <thread>
 
 namespace grinder {
 
@@ -20,18 +20,8 @@ namespace {
 constexpr std::chrono::seconds kStopTimeout(10);
 constexpr std::chrono::seconds kGoalEndTimeout(2);
 constexpr std::chrono::seconds kLoopEndTimeout(1);
+constexpr std::chrono::milliseconds kEndLook(2);
 constexpr double kRounding = 1e-9;  ///< rounding of a period that is the inverse of a rate
-
-/// Waits for a condition. @return whether it came true in time.
-template <typename Condition>
-bool await(std::chrono::seconds timeout, Condition condition) {
-  const auto deadline = std::chrono::steady_clock::now() + timeout;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
 
 /// Refuses a drive whose capabilities are not finite, that cannot keep the control period, or that buffers more than
 /// the loop keeps.
@@ -135,13 +125,13 @@ std::string GrinderNode::shutDown() {
   gate_.shut();
   loop_->postStop(MachineEvent::kDisable);
   const auto or_hangs = [this](bool done) { return done || watchdog_->loopHangs(); };
-  await(kStopTimeout, [&] { return or_hangs(!isPowered(loop_->status().state)); });
-  await(kGoalEndTimeout, [&] { return or_hangs(!goals_->busy()); });
+  await(kStopTimeout, kEndLook, [&] { return or_hangs(!isPowered(loop_->status().state)); });
+  await(kGoalEndTimeout, kEndLook, [&] { return or_hangs(!goals_->busy()); });
   // The markers in rviz must not outlive the node.
   telemetry_->clearScene();
   planner_->end();
   loop_->requestEnd();
-  await(kLoopEndTimeout, [this] { return hangingFunction().empty(); });
+  await(kLoopEndTimeout, kEndLook, [this] { return hangingFunction().empty(); });
   const std::string hanging = hangingFunction();
   if (hanging.empty()) loop_->stopThread();
   return hanging;

@@ -396,6 +396,10 @@ class TestUsage(CommandLine):
             self.assertEqual(self.grind(2, *arguments).stderr.splitlines()[0], said +
                              '; allowed: a number, with a point as in 124.7, or a whole one where it counts')
 
+    def test_probe_looks_as_far_as_its_documentation_says(self):
+        for cycle, within in (('end-face', 'MM=5 '), ('diameter', 'MM=5 '), ('tooth', r'DEG:.*=90\n')):
+            self.assertRegex(self.grind(0, 'probe', cycle, '--help').stdout, '--within ' + within)
+
     def test_texts_of_files_control_no_terminal(self):
         bad = self.write('bad.yaml', 'cutter: "\\\x1b[2J"\n')
         self.assertEqual(self.grind(2, 'plan', bad).stderr, bad + ':1: unknown escape character: \\x1b\n')

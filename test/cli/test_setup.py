@@ -6,9 +6,6 @@ import math
 import os
 import pathlib
 import re
-import resource
-import signal
-import subprocess
 import sys
 
 import rostest
@@ -16,7 +13,7 @@ import rostest
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
-from grind_command import CommandLine  # noqa: E402
+from grind_command import CommandLine, full_disk  # noqa: E402
 from grinder_client import DEG  # noqa: E402
 
 JOBS = gc.package_file('jobs')
@@ -39,16 +36,10 @@ class TestSetup(CommandLine):
         job = self.job()
         self.assertRegex(self.grind(2, 'plan', job).stderr, "job.setup.yaml: cannot be read: .*; 'grind setup --write' solves it")
         found, said = self.json(0, 'setup', job, '--write')
-        self.assertEqual((said, found['wheel_above_swivel_mm']), ('', None))
+        self.assertEqual((said, found['wheel_above_swivel_mm'], found['complete_from_mm'], found['complete_to_mm']), ('', None, 0, 30))
         self.grind(0, 'plan', job)
         written = self.text(self.path('job.setup.yaml'))
-
-        def full_disk():
-            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-            resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
-
-        done = subprocess.run([gc.program('grind'), 'setup', job, '--write'], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, universal_newlines=True, timeout=gc.PATIENCE, preexec_fn=full_disk)
+        done = gc.grind('setup', job, '--write', preexec_fn=full_disk)
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, 'job.setup.yaml: cannot be written: File too large\n$')
         self.assertEqual(self.text(self.path('job.setup.yaml')), written)
@@ -90,6 +81,16 @@ class TestSetup(CommandLine):
         lowered = 20 * (1 - math.cos(higher['swivel_deg'] * DEG))
         self.assertAlmostEqual(higher['touch_z_mm'], 1.5 - higher['height_mm'] - lowered, delta=1e-9)
 
+    def test_a_relief_is_on_the_sheet(self):
+        relief = 'setup', JOBS + '/end_mill_d10_t4.yaml', '--operation', 'primary'
+        found, sheet = self.json(0, *relief)[0], self.grind(0, *relief).stdout
+        # Of a wheel of 6 mm.
+        self.assertAlmostEqual(found['upper_face_mm'], found['height_mm'] + 3 / math.cos(found['swivel_deg'] * DEG), delta=1e-6)
+        for line in ('upper face %(upper_face_mm).3f mm, lower face %(lower_face_mm).3f mm', 'stays %(next_edge_deg).3f deg or more',
+                     '%(rim_mm).3f of 6.000 mm of its width', 'X %(complete_from_mm).3f to %(complete_to_mm).3f mm'):
+            self.assertIn(line % found, sheet)
+        self.assertIn('clearance %.3f to %.3f deg there' % tuple(found['land_end_clearance_deg']), sheet)
+
     def end_mill(self):
         """Writes the shipped end mill, its flutes set up, with operations on its end instead of the reliefs."""
         name = 'end_mill_d10_t4'
@@ -108,15 +109,20 @@ class TestSetup(CommandLine):
         job = self.end_mill()
         self.assertRegex(self.grind(2, 'setup', job, '--operation', 'chamfer').stderr,
                          "no set-up of the gash; 'grind setup --operation gash --write' solves it")
-        for operation, swivel in (('gash', 3.0), ('end_primary', 81.76), ('chamfer', None)):
+        # Of a gash from the blank's circle to 0.2 mm past the axis, at 45 deg on a blank that is 0.1 mm longer.
+        for operation, swivel, stock in (('gash', 3.0, 10 / 2 + 0.2 + 0.1), ('end_primary', 81.76, None), ('chamfer', None, None)):
             found, _ = self.json(0, 'setup', job, '--operation', operation, '--write')
             self.assertNotIn('limit', found)
             self.assertAlmostEqual(found['to_mm'][2], 0, delta=1e-5)
-            if swivel:
-                self.assertAlmostEqual(found['swivel_deg'], swivel, delta=1e-4)
+            for key, asked in (('swivel_deg', swivel), ('stock_mm', stock)):
+                if asked:
+                    self.assertAlmostEqual(found[key], asked, delta=1e-4)
             self.assertIn('\n%s:\n  swivel_deg: %g\n  height_mm: %.8g\n' % (operation, found['swivel_deg'], found['height_mm']),
                           self.text(self.path('end_mill_d10_t4.setup.yaml')))
-            self.assertRegex(self.grind(0, 'setup', job, '--operation', operation).stdout, '(?m)^  first tooth +A %.3f deg$' % found['a_deg'])
+            sheet = self.grind(0, 'setup', job, '--operation', operation).stdout
+            for line in ('first tooth +A %.3f deg' % found['a_deg'], 'passes +%d of each tooth, which remove %.3f mm .*' % (
+                    found['passes'], found['stock_mm'])):
+                self.assertRegex(sheet, '(?m)^  %s$' % line)
         self.write('end_mill_d10_t4.yaml', self.text(job).replace('dish_deg: 2', 'dish_deg: 3'))
         self.assertRegex(self.grind(2, 'plan', job, '--operation', 'chamfer').stderr, 'solved for cutter.end.dish_deg = 2; the job now has cutter.end.dish_deg = 3')
 

@@ -52,8 +52,10 @@ class TestShop(CommandLine):
         self.assertIn(self.path('none') + ': cannot be read: No such file or directory', missing)
         lines = self.grind(2, 'history', '--from', *self.folders).stdout.splitlines()
         self.assertRegex(lines[0], '^start +grinder +job +tool +outcome')
-        self.assertEqual([self.path(grinder) in line for line, grinder in
-                          zip(lines[1:], ('old', 'left/grinder', 'right/grinder', 'left/grinder'))], [True] * 4)
+        good, bad = '  passed as far as measured', '  FAILED: the job ended as '
+        for line, grinder, verdict in zip(lines[1:], ('old', 'left/grinder', 'right/grinder', 'left/grinder'),
+                                          (good, good, bad + 'canceled', bad + 'fault')):
+            self.assertRegex(line, r'  %s/?  .*%s$' % (self.path(grinder), verdict))
         self.assertNotIn('grinder ', self.grind(0, 'history', '--from', self.folders[0]).stdout.splitlines()[0])
 
     def test_those_of_a_grinder_are_in_its_order_whatever_its_clock_was(self):

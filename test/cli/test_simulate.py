@@ -37,7 +37,9 @@ class TestSimulate(CommandLine):
         rows = iter(self.csv(self.path('tool.csv')))
         for section in reported['sections']:
             radius = section['diameter_mm'] / 2
-            self.assertGreater(section['area_removed_mm2'], 0)
+            outline = section['outline_mm']
+            area = abs(sum(x * v - u * y for (x, y), (u, v) in zip(outline, outline[1:] + outline[:1]))) / 2
+            self.assertAlmostEqual(section['area_removed_mm2'], math.pi * radius ** 2 - area, delta=1e-4 * area)
             self.assertAlmostEqual(section['core_diameter_mm'] / 2,
                                    radius - max(tooth['depth_mm'] for tooth in section['teeth']), delta=1e-9)
             self.assertEqual([tooth['tooth'] for tooth in section['teeth']], [0, 1, 2])
@@ -60,7 +62,10 @@ class TestSimulate(CommandLine):
         least, largest = min(rakes), max(rakes)
         line = 'rake, deg %.3f %.3f 1 %.3f %.3f 1 8.000 %+.3f to %+.3f' % (
             *least, *largest, least[0] - 8, largest[0] - 8)
-        self.assertIn(line, re.sub(' +', ' ', printed).split('\n'))
+        lines = re.sub(' +', ' ', printed).split('\n')
+        for words in (line, ' min at X mm tooth max at X mm tooth asked difference', ' X mm tooth rake deg chordal deg normal deg core mm '
+                      'depth mm flute deg flute mm land deg land mm spiral deg area mm^2'):
+            self.assertIn(words, lines)
         self.assertEqual(len(reported['sections']), 9)
         for section in reported['sections']:
             self.assertAlmostEqual(section['diameter_mm'] / 2, 5 + section['x_mm'] * math.tan(5 * DEG), delta=1e-9)

@@ -17,7 +17,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'node'))
 
 import grinder_client as gc  # noqa: E402
-from grind_command import CommandLine  # noqa: E402
+from grind_command import CommandLine, full_disk  # noqa: E402
 
 WORN = gc.package_file('wheels/straight_d125_w2.yaml')
 NEW = gc.package_file('wheels/straight_d100_w3.yaml')
@@ -77,6 +77,10 @@ class TestMeasure(WheelTest):
             if wheel == WORN:
                 self.assertIn('wear 0.15 mm\n', printed)
                 self.assertIn('set X and Z anew', printed)
+            before = text_of(path)
+            done = gc.grind('wheel', 'measure', path, '--diameter', '90', preexec_fn=full_disk)
+            self.assertEqual((done.returncode, done.stderr), (2, path + ': cannot be written: File too large\n'))
+            self.assertEqual((text_of(path), os.listdir(self.folder)), (before, ['wheel.yaml']))
 
     def test_larger_wheel_is_refused_unless_forced(self):
         path = self.copy(WORN)

@@ -181,7 +181,7 @@ class TestRecords(gc.OwnNode):
         self.assertAlmostEqual(tool['measured'], self.planned_core(job) + 0.03, delta=1e-4)
         self.assertEqual((tool['tool'], tool['y_mm'], tool['zero_points']), (1, 0, 'found'))
         text = self.command(0, 'history', '--figure', 'core@15', '--job', job).stdout
-        self.assertRegex(text, r'(?m)^ +1  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d +%.4f +0\.0000 ' % tool['measured'])
+        self.assertRegex(text, r'(?m)^ +1  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d +%.4f +0\.0000 .* found$' % tool['measured'])
         picture, = (element.text for element in xml.parse(svg).iter() if (element.text or '').startswith('core diameter at'))
         self.assertEqual(picture, 'core diameter at X = 15 mm')
         report = json.loads(self.command(0, 'report', '--last', '--json').stdout)

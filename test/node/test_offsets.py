@@ -368,12 +368,12 @@ class TestCommandLine(OffsetsTest):
         self.assertAlmostEqual(axes['x']['work_mm'], -62.5, delta=0.001)
         self.assertAlmostEqual(axes['x']['offset_mm'], 12.5, delta=1e-9)
         self.assertAlmostEqual(axes['a']['offset_deg'], -90, delta=1e-9)
-        self.assertEqual((axes['y']['set_by'], axes['y']['set_at']), (None, None))
+        self.assertEqual((axes['y']['set_by'], axes['y']['set_at'], axes['x']['set_for']['method']), (None, None, 'by_hand'))
         self.assertRegex(axes['x']['set_at'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ$')
         status = self.json('status')
         self.assertAlmostEqual(status['machine']['x_mm'], -50, delta=0.001)
         self.assertAlmostEqual(status['work']['x_mm'], -62.5, delta=0.001)
-        self.assertRegex(self.said('status'), r'(?m)^work position +X -62\.500, Y 50\.000')
+        self.assertRegex(self.said('status'), r'(?m)^work position +X -62\.500, Y 50\.000, .*\nof the machine +X -50\.000, Y 50\.000, ')
 
         self.assertEqual(self.said('touch-off', 'x', '--at', '1.5', '--answer', 'set-offset'),
                          'axis X: work offset -51.5 mm; it is at 1.5 mm of the work\n')

@@ -82,9 +82,9 @@ class TestBar(SlowRun):
 
     def test_file_and_dumb_terminal_get_lines_without_control_characters(self):
         grinder().make_ready(SLOW)
-        # The newlines are the terminal's.
+        # The newlines are the terminal's, whose keyboard is not asked whether to go on.
         for newline, of_two, options in (('\n', dict(teeth=2, depth_mm=0.4, infeed_mm=0.2), {}),
-                                         ('\r\n', {}, dict(columns=80, term='dumb'))):
+                                         ('\r\n', {}, dict(columns=80, term='dumb', typed=''))):
             command = self.grind(*RUN, self.short_job(**of_two), **options)
             self.assertEqual(command.end(), 0, command.text)
             self.assertNotRegex(command.text.replace(newline, '\n'), '[^\n -~]')

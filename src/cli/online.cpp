@@ -297,8 +297,10 @@ int cancelJob(const std::string& node) {
     return fail("cancel refused: the machine is in state " + before.state_name + "; allowed: " +
                 allowedIn(static_cast<MachineState>(before.state)) + "; a job that was being planned is canceled");
   }
-  while (takesCancel(*states.newest()) && !isLost(states)) ros::WallDuration(0.02).sleep();
-  if (isLost(states)) return fail(kLinkLost);
+  while (takesCancel(*states.newest())) {
+    if (isLost(states)) return fail(kLinkLost);
+    ros::WallDuration(0.02).sleep();
+  }
   const flute_grinder::GrinderState state = *states.newest();
   return state.fault.empty() ? 0 : fail(state.fault);
 }

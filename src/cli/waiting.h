@@ -1,12 +1,9 @@
 #pragma once
 
 #include "flute_grinder/GrinderState.h"
-#include "flute_grinder/base/await.h"
 #include "flute_grinder/client/latest.h"
 
 #include <ros/ros.h>
-
-#include <chrono>
 
 namespace grinder {
 
@@ -16,12 +13,12 @@ bool inJob(const flute_grinder::GrinderState& state);
 /// Waits for a condition. @return whether it came true in time.
 template <typename Condition>
 bool await(const ros::WallDuration& timeout, Condition condition) {
-  bool is_true = false;
-  await(std::chrono::nanoseconds(timeout.toNSec()), std::chrono::milliseconds(5), [&] {
-    is_true = condition();
-    return is_true || !ros::ok();
-  });
-  return is_true;
+  const ros::SteadyTime end = ros::SteadyTime::now() + timeout;
+  while (ros::ok() && !condition()) {
+    if (ros::SteadyTime::now() > end) return false;
+    ros::WallDuration(0.005).sleep();
+  }
+  return condition();
 }
 
 const ros::WallDuration kPatience(10);       ///< longest wait for a node that is still starting
@@ -32,7 +29,7 @@ using States = Latest<flute_grinder::GrinderState>;
 
 /// Waits for a state sent after this call. @return false if the connection is lost.
 bool awaitNext(const States& states);
-/// Whether nothing has been received for too long.
+/// Whether nothing has been received for 3 s. If so it waits half a second more for what may not have been read.
 bool isLost(const States& states);
 
 /// Error text for a lost connection.

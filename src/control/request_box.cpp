@@ -16,7 +16,7 @@ using Seconds = std::chrono::duration<double>;
 constexpr Seconds kAnswerTimeout(2);
 /// Timeout of a stop's answer.
 constexpr Seconds kStopTimeout(0.1);
-constexpr std::chrono::microseconds kAnswerLook(500);  ///< time between looks for an answer
+constexpr std::chrono::microseconds kAnswerLook(100);  ///< time between looks for an answer
 
 /// Polls for an answer until one is available or the timeout expires.
 /// @param poll returns the answer, or nothing yet.

@@ -4,6 +4,7 @@
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>
 
+#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -39,9 +40,12 @@ std::optional<Answer> call(const std::string& host, unsigned port, const char* m
   if (!client.executeNonBlock(method, all)) return std::nullopt;
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  // Counted in slices: a stall of the whole computer is not the other's.
-  for (auto left = timeout / kSlice; !stop && client.getfd() >= 0 && left > 0; --left) {
+  // No slice counts for more than two: while this computer stands still, the other cannot answer.
+  auto last = std::chrono::steady_clock::now();
+  for (std::chrono::nanoseconds waited(0); !stop && client.getfd() >= 0 && waited < timeout;) {
     dispatch.work(std::chrono::duration<double>(kSlice).count());
+    const auto now = std::chrono::steady_clock::now();
+    waited += std::min<std::chrono::nanoseconds>(now - std::exchange(last, now), 2 * kSlice);
     XmlRpcValue response;
     if (client.executeCheckDone(response)) return answerOf(response);
   }

@@ -1,6 +1,5 @@
 #include "node/goal_server.h"
 
-#include "flute_grinder/base/await.h"
 #include "flute_grinder/messages/conversions.h"
 #include "flute_grinder/messages/offset_basis.h"
 #include "flute_grinder/messages/plan_result.h"
@@ -14,12 +13,10 @@ namespace grinder {
 
 namespace {
 
-constexpr double kPollPeriod = 0.001;               ///< period with a goal [s]
-constexpr double kIdlePollPeriod = 0.02;            ///< period without a goal [s]
-constexpr double kStartPollPeriod = 0.0001;         ///< period while a job starts and waits for its entry [s]
-const ros::WallDuration kPlanningInterval(0.05);    ///< time between feedback messages while planning
-constexpr std::chrono::seconds kLoopTimeout(1);     ///< longest wait for a cycle of the control loop
-constexpr std::chrono::milliseconds kCycleLook(1);  ///< time between looks for it
+constexpr double kPollPeriod = 0.001;             ///< period with a goal [s]
+constexpr double kIdlePollPeriod = 0.02;          ///< period without a goal [s]
+constexpr double kStartPollPeriod = 0.0001;       ///< period while a job starts and waits for its entry [s]
+const ros::WallDuration kPlanningInterval(0.05);  ///< time between feedback messages while planning
 /// How long the result waits for the last setpoints to be published and the journal to be written.
 const ros::WallDuration kEndTimeout(0.5);
 
@@ -66,12 +63,14 @@ Reason endReason(const LoopStatus& status, const Place& at, const GrindProgram& 
 }  // namespace
 
 GoalServer::GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops,
-                       Planner& planner, Telemetry& telemetry, Journal& journal, OffsetServer& offsets)
+                       Planner& planner, Telemetry& telemetry, Journal& journal, OffsetServer& offsets,
+                       const LoopWatchdog& watchdog)
     : loop_(loop),
       gate_(gate),
       planner_(planner),
       telemetry_(telemetry),
       offsets_(offsets),
+      watchdog_(watchdog),
       tracker_(journal),
       thread_(std::make_shared<ServedQueue>(kIdlePollPeriod, [this] { poll(); })) {
   offsets_.noteFinished(tracker_.progress());
@@ -131,10 +130,7 @@ void GoalServer::onGoal(GoalHandle handle) {
 }
 
 std::string GoalServer::refusal(const flute_grinder::GrindGoal& goal, const std::string& digest) const {
-  const std::uint64_t before = loop_.status().cycles;
-  if (!await(kLoopTimeout, kCycleLook, [&] { return loop_.status().cycles != before; })) {
-    return "the control loop does not answer";
-  }
+  if (watchdog_.loopHangs()) return "the control loop does not answer";
   const LoopStatus status = loop_.status();
   if (status.state != MachineState::kReady) {
     return std::string("the machine is in state ") + toString(status.state) + "; allowed: " + allowedIn(status.state);

@@ -28,7 +28,7 @@ class GoalServer {
  public:
   /// The parameters must outlive this object, except private_nh.
   GoalServer(const ros::NodeHandle& private_nh, ControlLoop& loop, JobGate& gate, StopServer& stops, Planner& planner,
-             Telemetry& telemetry, Journal& journal, OffsetServer& offsets);
+             Telemetry& telemetry, Journal& journal, OffsetServer& offsets, const LoopWatchdog& watchdog);
   ~GoalServer();
 
   /// Whether there is a goal that has not ended. Thread safe.
@@ -92,6 +92,7 @@ class GoalServer {
   Planner& planner_;
   Telemetry& telemetry_;
   OffsetServer& offsets_;
+  const LoopWatchdog& watchdog_;
   ProgressTracker tracker_;
 
   std::optional<Goal> goal_;

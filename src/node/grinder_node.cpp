@@ -116,7 +116,7 @@ GrinderNode::GrinderNode(const ros::NodeHandle& nh, const ros::NodeHandle& priva
   requests_ = std::make_unique<RequestServer>(private_nh_, *loop_, gate_, *offset_server_);
   probes_ = std::make_unique<ProbeServer>(private_nh_, *loop_, gate_, *offset_server_);
   goals_ = std::make_unique<GoalServer>(private_nh_, *loop_, gate_, *stops_, *planner_, *telemetry_, *journal_,
-                                        *offset_server_);
+                                        *offset_server_, *watchdog_);
 }
 
 GrinderNode::~GrinderNode() { endCrashGuard(); }

@@ -135,8 +135,9 @@ class Piece {
     sides_ = {};  // there are as many pieces as layers
   }
 
-  std::size_t ownVertices() const { return cut_part_.vertices.size(); }
-  std::size_t triangles() const { return triangles_.size() + cut_part_.triangles.size(); }
+  /// How many addTo() adds.
+  std::size_t vertexCount() const { return cut_part_.vertices.size(); }
+  std::size_t triangleCount() const { return triangles_.size() + cut_part_.triangles.size(); }
 
   /// Adds it to a solid that begins with the frame's vertices.
   void addTo(CutterSolid& solid) const {
@@ -286,8 +287,8 @@ CutterSolid cutterSolid(const GroundCutter& cutter, const SolidExtent& extent, c
   CutterSolid solid;
   std::size_t vertices = frame.vertices.size(), triangles = 0;
   for (const auto& piece : pieces) {
-    vertices += piece->ownVertices();
-    triangles += piece->triangles();
+    vertices += piece->vertexCount();
+    triangles += piece->triangleCount();
   }
   solid.vertices = std::move(frame.vertices);
   solid.vertices.reserve(vertices);

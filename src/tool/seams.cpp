@@ -246,12 +246,12 @@ void weld(CutterSolid& solid, double same) {
   solid.triangles = std::move(triangles);
 }
 
-/// Joins what is the same, and counts the edges that stay open.
-void join(CutterSolid& solid, double same) {
+/// Joins what is the same. @return how many edges stay open.
+std::size_t join(CutterSolid& solid, double same) {
   weld(solid, same);
   std::vector<Edge> open = openEdges(solid);
   for (int i = 0; i < kRounds && !open.empty() && divide(solid, open, same); ++i) open = openEdges(solid);
-  solid.open_edges = open.size();
+  return open.size();
 }
 
 }  // namespace
@@ -259,9 +259,12 @@ void join(CutterSolid& solid, double same) {
 void closeSeams(CutterSolid& solid) {
   CutterSolid whole;
   for (const double same : kSamePoint) {
-    join(solid, same);
-    if (solid.open_edges == 0) return dropChips(solid);  // closed in themselves, as is the rest
-    whole = solid;                                       // a chip may be what only the next distance joins
+    if (join(solid, same) == 0) {
+      dropChips(solid);  // without open edges each of them is closed, and so is the rest
+      solid.open_edges = 0;
+      return;
+    }
+    whole = solid;  // a chip may be what only the next distance joins
     dropChips(whole);
     whole.open_edges = openEdges(whole).size();
     if (whole.open_edges == 0) break;

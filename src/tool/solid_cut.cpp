@@ -11,9 +11,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kFirstPlane = 6;  ///< bit of the first plane of a volume, after its box's sides
-constexpr std::size_t kLastBit = 63;    ///< the bit of all planes that have none of their own
-constexpr std::uint64_t kOtherPlanes = 1ull << kLastBit;
+constexpr std::size_t kSides = 63;                      ///< planes of a volume that have a bit of their own
+constexpr std::uint64_t kOtherPlanes = 1ull << kSides;  ///< the bit of all other planes
+/// The rounding of a corner is the larger, the more nearly parallel its planes are [m].
+constexpr double kRounding = 1e-6;
 constexpr double kSamePlane = 1e-11;  ///< difference between planes that are the same [m], [1]
 
 /// The planes that bound a convex part of a box.
@@ -49,22 +50,6 @@ std::optional<RemovedVolume> within(const RemovedVolume& volume, const Box& box,
     return std::nullopt;
   }
   return result;
-}
-
-/// The sides of a box beyond which a point is, in the lowest bits.
-std::uint64_t beyond(const Box& box, const Vector3d& at) {
-  std::uint64_t sides = 0;
-  for (Eigen::Index i = 0; i < 3; ++i) sides |= (at[i] < box.least[i] ? 1u : at[i] > box.most[i] ? 2u : 0u) << (2 * i);
-  return sides;
-}
-
-/// The planes of a volume behind which a point is, in the bits after those.
-std::uint64_t behind(const RemovedVolume& volume, const Vector3d& at) {
-  std::uint64_t planes = volume.hollow.empty() ? 0 : kOtherPlanes;
-  for (std::size_t i = 0; i < volume.body.size(); ++i) {
-    if (!(volume.body[i].height(at) > 0)) planes |= 1ull << std::min(kFirstPlane + i, kLastBit);
-  }
-  return planes;
 }
 
 /// The part of a polygon in front of all planes, or behind them all. What is not there is added to the rest.
@@ -120,23 +105,26 @@ SolidCut::SolidCut(const std::vector<RemovedVolume>& volumes, const Box& box)
     if (!part) continue;
     reach_ = std::max(reach_, bounds.most[0]);
     volumes_.push_back(*std::move(part));
-    boxes_.push_back(bounds);
+    reaches_.push_back({bounds.least[0] - kRounding, bounds.most[0] + kRounding});
   }
 }
 
 SolidCut::Volumes SolidCut::between(double from, double to) const {
   Volumes found;
-  for (std::size_t i = 0; i < boxes_.size(); ++i) {
-    if (boxes_[i].least[0] <= to && boxes_[i].most[0] >= from) found.push_back(i);
+  for (std::size_t i = 0; i < reaches_.size(); ++i) {
+    if (reaches_[i].from <= to && reaches_[i].to >= from) found.push_back(i);
   }
   return found;
 }
 
 void SolidCut::findSides(const Volumes& of, const Vector3d& at, std::uint64_t* sides) const noexcept {
   for (const std::size_t i : of) {
-    *sides = beyond(boxes_[i], at);
-    if (*sides == 0) *sides = behind(volumes_[i], at);
-    ++sides;
+    const RemovedVolume& volume = volumes_[i];
+    std::uint64_t behind = volume.hollow.empty() ? 0 : kOtherPlanes;
+    for (std::size_t k = 0; k < volume.body.size(); ++k) {
+      if (!(volume.body[k].height(at) > 0)) behind |= k < kSides ? 1ull << k : kOtherPlanes;
+    }
+    *sides++ = behind;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "flute_grinder/curve/conical_cutter.h"
 #include "tool/polygon.h"
 
 #include <cstddef>
@@ -34,13 +35,12 @@ class SolidCut {
   /// The volumes in a range of X [m].
   Volumes between(double from, double to) const;
 
-  /// Finds on which sides of each of some volumes a point is: beyond which sides of its box; of a point in there,
-  /// behind which planes.
+  /// Finds behind which planes of each of some volumes a point is.
   /// @param sides gets a number for each volume.
   void findSides(const Volumes& of, const Eigen::Vector3d& at, std::uint64_t* sides) const noexcept;
 
   /// Those of some volumes that a piece with these corners may reach into; nothing if one of them removes all of it.
-  /// @param corners as from findSides().
+  /// @param of,corners as in findSides().
   static std::optional<Volumes> touched(const Volumes& of, std::initializer_list<const std::uint64_t*> corners);
 
   /// The parts of a triangle that are left.
@@ -55,7 +55,7 @@ class SolidCut {
                   std::vector<CutFace>& faces) const;
 
   std::vector<RemovedVolume> volumes_;
-  std::vector<Box> boxes_;  ///< about each of them
+  std::vector<Range> reaches_;  ///< X of each of them, wider by the rounding of corners [m]
   double reach_;
 };
 

@@ -6,15 +6,28 @@ namespace grinder {
 namespace test_await {
 
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
-TEST(Await, LooksOncePerStepAndAtTheEndAndNoMoreOnceItIsTrue) {
+TEST(Await, EndsOnceItIsTrueAndLooksOnceMoreWhenTheTimeIsOver) {
   int looks = 0;
-  EXPECT_FALSE(await(microseconds(30), microseconds(10), [&] { return ++looks, false; }));
-  EXPECT_EQ(looks, 4);
-  EXPECT_TRUE(await(microseconds(30), microseconds(10), [&] { return ++looks == 8; })) << "the last look counts, too";
-  EXPECT_TRUE(await(microseconds(0), microseconds(10), [&] { return ++looks == 9; }));
-  EXPECT_FALSE(await(microseconds(25), microseconds(10), [&] { return ++looks, false; }));
-  EXPECT_EQ(looks, 13);
+  EXPECT_TRUE(await(milliseconds(300000), microseconds(10), [&] { return ++looks == 3; }));
+  EXPECT_EQ(looks, 3);
+  EXPECT_TRUE(await(microseconds(0), microseconds(10), [&] { return ++looks == 4; }));
+  EXPECT_FALSE(await(microseconds(0), microseconds(10), [&] { return ++looks == 6; }));
+  EXPECT_EQ(looks, 5);
+  EXPECT_TRUE(await(microseconds(1), microseconds(10), [&] { return ++looks == 7; })) << "the last look";
+}
+
+TEST(Await, AStallCountsAsTenSteps) {
+  int looks = 0;
+  // Each look takes as long as all of the time that there is.
+  const auto stalled = [&] {
+    std::this_thread::sleep_for(milliseconds(5));
+    return ++looks == 6;
+  };
+  EXPECT_TRUE(await(milliseconds(5), microseconds(100), stalled));
+  EXPECT_FALSE(await(milliseconds(5), milliseconds(1), [&] { return stalled() || looks > 20; })) << looks;
+  EXPECT_GE(looks, 8);
 }
 
 }  // namespace test_await

@@ -114,15 +114,19 @@ class TestSetup(CommandLine):
             found, _ = self.json(0, 'setup', job, '--operation', operation, '--write')
             self.assertNotIn('limit', found)
             self.assertAlmostEqual(found['to_mm'][2], 0, delta=1e-5)
-            for key, asked in (('swivel_deg', swivel), ('stock_mm', stock)):
+            for key, asked in (('swivel_deg', swivel), ('stock_mm', stock), ('travel_a_deg', 3 * 90)):
                 if asked:
                     self.assertAlmostEqual(found[key], asked, delta=1e-4)
             self.assertIn('\n%s:\n  swivel_deg: %g\n  height_mm: %.8g\n' % (operation, found['swivel_deg'], found['height_mm']),
                           self.text(self.path('end_mill_d10_t4.setup.yaml')))
             sheet = self.grind(0, 'setup', job, '--operation', operation).stdout
             for line in ('first tooth +A %.3f deg' % found['a_deg'], 'passes +%d of each tooth, which remove %.3f mm .*' % (
-                    found['passes'], found['stock_mm'])):
+                    found['passes'], found['stock_mm']), *('%s +X %.3f, Y %.3f, Z %.3f mm.*' % (
+                        name, *(round(length, 3) + 0.0 for length in found[key])) for name, key in (
+                        ('last stroke +from', 'from_mm'), (' +to', 'to_mm'), ('travel', 'travel_mm')))):
                 self.assertRegex(sheet, '(?m)^  %s$' % line)
+            if operation != 'gash':
+                self.assertIn('reads %.3f mm for D = 10 mm, ' % found['touch_x_mm'], sheet)
         self.write('end_mill_d10_t4.yaml', self.text(job).replace('dish_deg: 2', 'dish_deg: 3'))
         self.assertRegex(self.grind(2, 'plan', job, '--operation', 'chamfer').stderr, 'solved for cutter.end.dish_deg = 2; the job now has cutter.end.dish_deg = 3')
 

@@ -83,7 +83,9 @@ class TestRun(BagTest):
         self.assertEqual(section['teeth'][2]['depth_mm'], 0)
         printed = self.grind(1, 'simulate', bag, '--at', '15').stdout
         self.assertRegex(printed, r'(?m)^beyond the flute +%s0\.100 mm at X ' % place)
-        self.assertRegex(printed, r'(?m)^tooth 3 +not in the record$')
+        strokes = [float(row['x_mm']) for row in rows if row['move'] == 'stroke']
+        self.assertRegex(printed, r'(?m)^tooth 1 +pass 1-%d, X %.3f to %.3f mm\ntooth 2 .*\ntooth 3 +not in the record$' % (
+            int(last) + 1, min(strokes), max(strokes)))
 
     def test_bag_without_its_goal_needs_the_job(self):
         bag = self.bag((None, '', self.plan(PAPER_JOB), {}))

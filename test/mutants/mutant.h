@@ -26,7 +26,7 @@ class Process {
     if (!folder) return;
     const std::string name = std::string(folder) + "/" + std::to_string(getpid());
     const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    reached_file_ = fcntl(file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);  // in place of no standard stream that is closed
+    reached_file_ = fcntl(file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);  // a standard stream that is closed stays so
     close(file);
   }
   bool comesBy(int number) {

@@ -42,7 +42,7 @@ class TestClient(CommandLine):
         self.grind(0, 'run', job, '--answer', 'discard', '--answer', 'ignore-offsets')
         of_run = self.bits_of_job(answers=['ignore-offsets'], sent_by='')
         seen = len(grinder().batches)
-        self.assertTrue(grinder().set_feed_override(0.05).success)  # or the job might be over before it is heard of
+        self.assertTrue(grinder().set_feed_override(0.05).success)  # before it is over, something is to be heard of it
         done = self.run_client(job)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.bits_of_job(), of_run)

@@ -10,7 +10,7 @@ import rospy
 from std_msgs.msg import Empty
 from std_srvs.srv import Trigger
 
-from flute_grinder.msg import GrinderState
+from flute_grinder.msg import GrinderState, GrindResult
 
 import grinder_client as gc
 
@@ -87,15 +87,19 @@ class TestDrivePlugin(unittest.TestCase):
         node = self.awkward(how)
         grinder = node.client()
         self.addCleanup(grinder.close)
-        return node, grinder.wait_state(state)
+        grinder.wait_state(state)
+        return node, grinder
 
     def test_what_hangs_delays_the_end_and_does_not_prevent_it(self):
         node, _ = self.running('hangs in prepare')
         self.assertIn('the drive has not become ready in time',
                       rospy.ServiceProxy('/%s/enable' % node.name, Trigger)().message)
         self.check_end(node, "the process ends without the return of the drive's prepare()")
-        node, state = self.running('hangs in read, hangs in powerOff', GrinderState.FAULT)
-        self.assertIn('it does not return to the control loop; its powerOff() has not returned either', state.fault)
+        node, grinder = self.running('hangs in read, hangs in powerOff', GrinderState.FAULT)
+        self.assertIn('it does not return to the control loop; its powerOff() has not returned either', grinder.states[-1].fault)
+        refused = grinder.send(gc.SHORT).wait()
+        self.assertEqual((refused.status, refused.code, refused.text),
+                         ('REJECTED', GrindResult.NOT_READY, 'the control loop does not answer'))
         self.check_end(node, "the process ends without the return of the drive's powerOff()")
         self.check_end(self.running('hangs in destructor')[0], DESTRUCTOR)
 

@@ -153,7 +153,11 @@ class TestRecords(gc.OwnNode):
         self.assertEqual((y['found_at'], z['found_at']), (y['set_at'], z['set_at']))
         self.record_of(lambda: self.command(0, 'run', job, '--answer', 'confirm-wheel', '--answer', 'confirm-swivel'))
         self.assertIn('no tool has been measured', self.command(2, 'correct', job, '--apply').stderr)
-        self.command(0, 'measured', job, 'core@15=%.4f' % (self.planned_core(job) + 0.03))
+        for off, said in ((0.2, '; OUT OF TOLERANCE'), (0.03, '')):  # the second corrects the first
+            core = '%.4f' % (self.planned_core(job) + off)
+            self.command(0, 'measured', job, 'core@15=' + core)
+            self.assertRegex(self.command(0, 'history', '--figure', 'core@15', '--job', job).stdout,
+                             r'(?m)^ +1  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d +%s +0\.0000 .* found%s$' % (core, said))
         self.check_shown(job)
         said = json.loads(self.command(0, 'correct', job, '--json').stdout)
         self.assertLess(said['turn']['y_mm'], -0.002)
@@ -180,8 +184,6 @@ class TestRecords(gc.OwnNode):
         tool, = said['tools']
         self.assertAlmostEqual(tool['measured'], self.planned_core(job) + 0.03, delta=1e-4)
         self.assertEqual((tool['tool'], tool['y_mm'], tool['zero_points']), (1, 0, 'found'))
-        text = self.command(0, 'history', '--figure', 'core@15', '--job', job).stdout
-        self.assertRegex(text, r'(?m)^ +1  \d{4}-\d\d-\d\d \d\d:\d\d:\d\d +%.4f +0\.0000 .* found$' % tool['measured'])
         picture, = (element.text for element in xml.parse(svg).iter() if (element.text or '').startswith('core diameter at'))
         self.assertEqual(picture, 'core diameter at X = 15 mm')
         report = json.loads(self.command(0, 'report', '--last', '--json').stdout)

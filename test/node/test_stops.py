@@ -19,6 +19,7 @@ from grinder_client import A, LIFT, MM, MM_MIN, STROKE, X, Y, Z
 
 SEED = 20
 
+HELD_AHEAD = 'the job will be held before it moves'
 # Time enough to do something in a stroke.
 SLOW = gc.paper(feed=60 * MM_MIN, clearance=1 * MM)
 # Y at which the wheel is clear of its whole stroke: the cutter grows toward its shank.
@@ -85,6 +86,7 @@ class TestStops(NodeTest):
         self.assertIn("'grind plan' plans without the grinder", other.text)
         self.assertFalse(first.done)
         self.client.wait_for(lambda: any(0 < f.planned < 1 for f in first.feedback), 'how far it is')
+        self.assertEqual(self.client.hold().message, HELD_AHEAD)
         first.cancel()
         self.assertIn(first.wait().status, ENDED_BY_CANCEL)
         self.assert_rests()
@@ -96,7 +98,7 @@ class TestStops(NodeTest):
         self.disk.stop()
         self.addCleanup(self.disk.release)
         run = self.send_planning(SLOW, answers=['discard', 'confirm-wheel', 'ignore-offsets'])
-        self.assertTrue(self.client.hold().success)
+        self.assertEqual(self.client.hold().message, HELD_AHEAD)
         self.disk.release()
         self.client.wait_state(GrinderState.HELD)
         self.assert_rests()

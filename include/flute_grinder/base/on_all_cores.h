@@ -16,7 +16,7 @@ template <typename Function>
 void onAllCores(std::size_t count, const Function& f) {
   const std::size_t threads = std::min<std::size_t>(count, std::max(1U, std::thread::hardware_concurrency()));
   std::vector<std::exception_ptr> errors(count);
-  std::atomic<std::size_t> next{0};  // to whoever is free: calls may take longer than others
+  std::atomic<std::size_t> next{0};  // a call goes to the thread that is free first: some take longer than others
   std::vector<std::future<void>> workers;
   for (std::size_t t = 0; t < threads; ++t) {
     workers.push_back(std::async(std::launch::async, [&] {

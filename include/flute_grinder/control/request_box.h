@@ -54,8 +54,8 @@ class RequestBox {
   /// The answer to the last postSwivel(), once available.
   std::optional<RequestReply> swivelReply();
 
-  /// Requests a stop - hold, cancel or disable - and waits for the answer; for some 100 ms, during which the computer
-  /// does not stand still. For one thread at a time.
+  /// Requests a stop - hold, cancel or disable - and waits at most 100 ms for the answer, see await(). For one thread
+  /// at a time.
   ///
   /// Hold stops a job on its path, even before its first setpoint. Cancel stops the job on its path, lifts the wheel
   /// off the workpiece and ends the job. Disable cancels the job and then switches the power off. Each of them also

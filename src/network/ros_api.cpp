@@ -1,10 +1,11 @@
 #include "flute_grinder/network/ros_api.h"
 
+#include "flute_grinder/base/await.h"
+
 #include <ros/master.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpc.h>
 
-#include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
@@ -40,16 +41,14 @@ std::optional<Answer> call(const std::string& host, unsigned port, const char* m
   if (!client.executeNonBlock(method, all)) return std::nullopt;
   XmlRpc::XmlRpcDispatch dispatch;
   dispatch.addSource(&client, XmlRpc::XmlRpcDispatch::WritableEvent | XmlRpc::XmlRpcDispatch::Exception);
-  // No slice counts for more than two: while this computer stands still, the other cannot answer.
-  auto last = std::chrono::steady_clock::now();
-  for (std::chrono::nanoseconds waited(0); !stop && client.getfd() >= 0 && waited < timeout;) {
-    dispatch.work(std::chrono::duration<double>(kSlice).count());
-    const auto now = std::chrono::steady_clock::now();
-    waited += std::min<std::chrono::nanoseconds>(now - std::exchange(last, now), 2 * kSlice);
-    XmlRpcValue response;
-    if (client.executeCheckDone(response)) return answerOf(response);
-  }
-  return std::nullopt;
+  XmlRpcValue response;
+  bool done = false;
+  const auto ended = [&] {
+    done = client.executeCheckDone(response);
+    return done || stop || client.getfd() < 0;
+  };
+  await(timeout, kSlice, ended, [&](std::chrono::duration<double> time) { dispatch.work(time.count()); });
+  return done ? answerOf(response) : std::nullopt;
 }
 
 }  // namespace

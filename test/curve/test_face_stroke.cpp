@@ -390,8 +390,8 @@ TEST(FaceStroke, GashesAnyEndToothInFrontOfItsFace) {
     const EndTooth tooth{between(3, 8) * kMillimetre, kPi / 2, cut};
     const FaceStroke stroke = gashStroke(tooth, gashNormal(rake, dish), angle, past, wheel, 1 * kMillimetre);
     SCOPED_TRACE(testing::Message() << "rake " << rake / kDegree << ", dish " << dish / kDegree << ", hand " << hand);
-    EXPECT_NEAR(stroke.to[kY] + wheel.nominal_radius, -past - tooth.radius + wheel.radius * std::cos(angle),
-                1e-12);                                        // the bottom, less its sagitta
+    // The bottom, less its sagitta.
+    EXPECT_NEAR(stroke.to[kY] + wheel.nominal_radius, -past - tooth.radius + wheel.radius * std::cos(angle), 1e-12);
     EXPECT_TRUE(stroke.per_stock.isApprox(Axes(0, 1, 0, 0)));  // its passes step along the radius
     expectClear(stroke, wheel, tooth, 1 * kMillimetre);
     BruteForce tool(wheel, tooth.radius, cut == CutDirection::kLeftHand);

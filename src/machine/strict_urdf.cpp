@@ -34,7 +34,7 @@ struct Rule {
   std::vector<std::string> once, often;  ///< elements that may occur once, or often
 };
 
-/// Rules by element, from http://wiki.ros.org/urdf/XML.
+/// Rules by element, from http://wiki.ros.org/urdf/XML; urdfdom takes no material without a name.
 const std::map<std::string, Rule>& rules() {
   static const Rule::Attribute kName{"name", kText, false}, kNeedsName{"name", kText, true};
   static const std::map<std::string, Rule> kRules{
@@ -54,7 +54,7 @@ const std::map<std::string, Rule>& rules() {
       {"cylinder", {{{"radius", 1, true}, {"length", 1, true}}, {}, {}}},
       {"sphere", {{{"radius", 1, true}}, {}, {}}},
       {"mesh", {{{"filename", kText, true}, {"scale", 3, false}}, {}, {}}},
-      {"material", {{kName}, {"color", "texture"}, {}}},
+      {"material", {{kNeedsName}, {"color", "texture"}, {}}},
       {"color", {{{"rgba", 4, true}}, {}, {}}},
       {"texture", {{{"filename", kText, true}}, {}, {}}},
       {"joint",

@@ -242,6 +242,11 @@ TEST(Reason, OfEveryFaultHasText) {
     EXPECT_NE(fault.text(), "") << kind;
   }
   EXPECT_EQ(LoopFault().text(), "");
+  LoopFault underrun;
+  underrun.kind = FaultKind::kUnderrun;
+  underrun.value = 3;
+  underrun.cycle = 77;
+  EXPECT_EQ(underrun.text(), "the axes found no setpoint in 3 servo cycles, after setpoint 77");
 }
 
 TEST(Reason, OfAViolationInTheLoopHasItsPlace) {

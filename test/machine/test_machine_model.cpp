@@ -7,6 +7,7 @@
 #include <tinyxml2.h>
 
 #include <functional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -31,17 +32,49 @@ void expectRefused(const std::string& urdf, const std::string& words) {
   EXPECT_NE(said.find(words), std::string::npos) << said << "\nnot: " << words;
 }
 
-/// The shipped URDF, of which one place after the other is changed.
+/// The shipped machine, and beside it a link and a joint with all that a URDF may have.
+std::string complete() {
+  return replaced(shipped(), "</robot>", R"(
+  <link name="box" type="part">
+    <inertial>
+      <origin xyz="0 0 0" rpy="0 0 0"/>
+      <mass value="1"/>
+      <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>
+    </inertial>
+    <visual name="seen">
+      <geometry><box size="1 1 1"/></geometry>
+      <material name="grey"><color rgba="0.5 0.5 0.5 1"/><texture filename="grey.png"/></material>
+    </visual>
+    <collision name="hit"><geometry><sphere radius="1"/></geometry></collision>
+    <collision><geometry><mesh filename="box.stl" scale="1 1 1"/></geometry></collision>
+  </link>
+  <joint name="to_box" type="revolute">
+    <origin xyz="0 0 0" rpy="0 0 0"/>
+    <parent link="base"/>
+    <child link="box"/>
+    <axis xyz="1 0 0"/>
+    <limit lower="-1" upper="1" velocity="1" effort="1"/>
+    <dynamics damping="0" friction="0"/>
+    <calibration rising="0" falling="0"/>
+    <mimic joint="axis_a" multiplier="1" offset="0"/>
+    <safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_position="1" k_velocity="1"/>
+  </joint>
+</robot>)");
+}
+
+/// complete(), of which one place after the other is changed.
 class Changed {
  public:
-  Changed() { document_.Parse(shipped().c_str()); }
+  Changed() { document_.Parse(complete().c_str()); }
 
   void forEach(const std::function<void(XMLElement&)>& change) { visit(*document_.RootElement(), change); }
 
-  void expectRefused(const std::string& words) const {
-    tinyxml2::XMLPrinter text;
-    document_.Print(&text);
-    test_machine_model::expectRefused(text.CStr(), words);
+  void expectRefused(const std::string& words) const { test_machine_model::expectRefused(text(), words); }
+
+  std::string text() const {
+    tinyxml2::XMLPrinter printed;
+    document_.Print(&printed);
+    return printed.CStr();
   }
 
  private:
@@ -117,6 +150,45 @@ TEST(MachineModel, RefusesEveryWordThatItDoesNotKnow) {
   expectRefused(
       replaced(shipped(), "<origin xyz=\"0.05 0.22 -0.6325\"/>", "<origin xzy=\"0.05 0.22 -0.6325\"/>"),
       "line 56: link base, <visual> cabinet, <origin> xzy is not known; did you mean 'xyz'?; allowed: xyz, rpy");
+}
+
+/// What may be left out, by http://wiki.ros.org/urdf/XML.
+TEST(MachineModel, LeavesOutWhatAUrdfMayLeaveOutAndNothingElse) {
+  const std::set<std::string> may{"link type",
+                                  "visual name",
+                                  "collision name",
+                                  "origin xyz",
+                                  "origin rpy",
+                                  "mesh scale",
+                                  "limit lower",
+                                  "limit upper",
+                                  "dynamics damping",
+                                  "dynamics friction",
+                                  "calibration rising",
+                                  "calibration falling",
+                                  "mimic multiplier",
+                                  "mimic offset",
+                                  "safety_controller soft_lower_limit",
+                                  "safety_controller soft_upper_limit",
+                                  "safety_controller k_position"};
+  Changed urdf;
+  bool of_box = false;
+  std::set<std::string> left_out;
+  urdf.forEach([&](XMLElement& element) {
+    of_box = of_box || element.Attribute("name", "box");
+    if (!of_box) return;
+    for (const auto& [name, value] : attributesOf(element)) {
+      const std::string attribute = element.Name() + (' ' + name);
+      element.DeleteAttribute(name.c_str());
+      if (may.count(attribute) == 0) {
+        urdf.expectRefused("has no " + name);
+      } else if (left_out.insert(attribute).second) {
+        EXPECT_NO_THROW(MachineModel(urdf.text())) << attribute;
+      }
+      element.SetAttribute(name.c_str(), value.c_str());
+    }
+  });
+  EXPECT_EQ(left_out, may);
 }
 
 TEST(MachineModel, NeedsTheJointsAndLinksOfAGrinder) {

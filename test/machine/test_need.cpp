@@ -16,6 +16,8 @@ const Need kZeros{NeedKind::kOffsets,
 
 TEST(Need, IsAnsweredByTheIdOfWhatWasShownAndByNoOther) {
   const std::string id = answerId(kZeros, NeedAnswer::kIgnoreOffsets);
+  // printf 'offsets\nY was set for D 6 mm\nY\nD 10 mm\nD 6 mm\n2 mm' | sha256sum
+  EXPECT_EQ(id, "ignore-offsets#45efcd4a");
   EXPECT_TRUE(isAnswered(kZeros, {id}));
   EXPECT_TRUE(isAnswered(kZeros, NeedAnswer::kIgnoreOffsets, {"discard", id}));
   EXPECT_FALSE(isAnswered(kZeros, NeedAnswer::kFitOffsets, {id}));

@@ -117,7 +117,7 @@ TEST(OffsetFit, EveryFigureCountsForItsAxesAlone) {
       {"XZ", "swivel 30.06 deg", [](OffsetBasis& b) { b.swivel += 0.06 * kDegree; }},
       {"XZ", "width of the wheel 2.9 mm", [](OffsetBasis& b) { b.wheel_width -= 1e-4; }},
       {"XYZ", "another wheel a.yaml, D 100 mm", [](OffsetBasis& b) { b.wheel_digest[63] = 'b'; }},
-      {"XYZ", "wheel b.yaml, D 100 mm", [](OffsetBasis& b) { b.wheel_name = "b.yaml"; }},
+      {"XYZ", "wheel b.yaml, D 100 mm", [](OffsetBasis& b) { b.wheel_name = "b.yaml", b.wheel_width = 0.002; }},
       {"Y", "D nan mm", [](OffsetBasis& b) { b.end_diameter = kNan; }},
       {"Z", "height nan mm", [](OffsetBasis& b) { b.height = kNan; }},
       {"XZ", "swivel nan deg", [](OffsetBasis& b) { b.swivel = kNan; }},
@@ -214,6 +214,10 @@ TEST(OffsetFit, TheWheelIsOneNeedAndTheOffsetsAreAnother) {
   EXPECT_EQ(needs[0].answers, (std::vector{NeedAnswer::kFitOffsets, NeedAnswer::kIgnoreOffsets}));
   ASSERT_EQ(needs[0].figures.size(), 1U);
   EXPECT_EQ(needs[0].figures[0].what + " " + needs[0].figures[0].difference, "Y 2 mm");
+  job.height += 0.001;
+  const std::vector<std::string> reasons = reasonsOf(mismatches(offsets, job));
+  ASSERT_EQ(reasons.size(), 2U);
+  EXPECT_EQ(needsOf(mismatches(offsets, job))[0].text, reasons[0] + "; " + reasons[1]);
   job.wheel_name = "b.yaml";
   needs = needsOf(mismatches(offsets, job));
   ASSERT_EQ(needs.size(), 2U);
@@ -261,6 +265,9 @@ TEST(OffsetFit, AReliefWantsAAsItsOperationsBeforeHaveLeftIt) {
     EXPECT_EQ(refusalOf(offsets, primary), unknown + said + remedy);
     EXPECT_EQ(refusalOf(offsets, basisOf()), "");
   }
+  OffsetBasis nameless = primary;
+  nameless.tool_digest = "";
+  EXPECT_EQ(refusalOf(offsets, nameless), refusalOf(offsets, primary)) << "two unknown tools are not the same";
   is(std::string(64, 'd'), 0b1);
   EXPECT_EQ(refusalOf(offsets, primary), unknown + "A is as for d6.yaml with flute" + remedy);
   is(primary.tool_digest, 0);
@@ -336,7 +343,7 @@ TEST(OffsetLimits, AreTheTravelAndOfAOneTurnMoreAndAnyOffsetIfItTurnsForEver) {
     int axis;
     std::vector<double> good, wrong;
   } rows[]{{limits, kY, {-0.02, 0.0, 0.15}, {-0.0201, 6.203, 1000.0, kNan, kInf, -kInf}},
-           {limits, kA, {1 + kTurn}, {1.001 + kTurn}},
+           {limits, kA, {1 + kTurn, -1 - kTurn}, {1.001 + kTurn, -1.001 - kTurn}},
            {for_ever, kA, {kMaxOffset}, {kMaxOffset * 1.001, kNan}}};
   for (const auto& row : rows) {
     for (const double good : row.good) EXPECT_EQ(travelRefusal(row.limits, row.axis, good), "");

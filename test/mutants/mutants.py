@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Breaks a module in some hundred small ways, one at a time, and notes which tests see each: a measure of what the tests
+"""Breaks modules in some hundred small ways, one at a time, and notes which tests see each: a measure of what the tests
 prove, and of which of them nobody would miss. Works in the user's cache, on the files as they are."""
 
 import argparse
@@ -82,6 +82,11 @@ def configure():
     make('flute_grinder_generate_messages_cpp')
 
 
+def module_of(name):
+    """The module of a file src/<module>/... or include/flute_grinder/<module>/..."""
+    return name.replace('include/flute_grinder/', 'src/').split('/')[1]
+
+
 def arguments_of(module):
     """The compiler's, of all of a module's sources together: some have definitions of their own."""
     arguments = []
@@ -92,17 +97,38 @@ def arguments_of(module):
     if not arguments:
         raise SystemExit('no module ' + module)
     resources = subprocess.run(['clang', '-print-resource-dir'], check=True, stdout=subprocess.PIPE)
-    return arguments + ['-resource-dir', resources.stdout.decode().strip()]
+    # The messages' constants are compared in more steps than clang takes by itself.
+    return arguments + ['-fconstexpr-steps=100000000', '-resource-dir', resources.stdout.decode().strip()]
 
 
-def build_with(finder):
-    """Builds everything with all breaks in it. @return the numbers of those that compile."""
+def add_all(finder, module):
+    """Finds the breaks of a module's sources."""
+    compiler = arguments_of(module)
+    for source in sorted((TREE / 'src' / module).glob('*.cpp')):
+        try:
+            finder.add(source, compiler)
+        except RuntimeError as error:
+            if 'file not found' not in str(error):
+                raise
+            print('left out, e.g. a drive whose library is not installed: %s' % error)
+
+
+def targets_of(arguments):
+    """What is built: the test programs that are asked, or for a command everything."""
+    if arguments.also:
+        return ['all']
+    names = re.findall(r'(?m)^\.\.\. (%s\w+)$' % PREFIX, make('help')) + [RIDES]
+    return ['flute_grinder_' + RIDES if name == RIDES else name for name in names if re.search(arguments.tests, name)]
+
+
+def build_with(finder, targets):
+    """Builds with all breaks. @return the numbers of those that compile."""
     without, header = set(), ROOT / 'test/mutants/mutant.h'
     for _ in range(ROUNDS):
         texts = finder.rewritten(header, without)
         for name, text in texts.items():
             write(TREE / name, text.encode())
-        log = make('-k', 'all')
+        log = make('-k', *targets)
         (WORK / 'build.log').write_text(log)
         places = re.findall(r'(?m)^(?:In file included from |\s+inlined from )?\S*?((?:src|include)/\S+?):(\d+):.*', log)
         wrong = {(name, int(line)) for name, line in places if name in texts and line != '0'} - without
@@ -237,13 +263,26 @@ def enough(seen):
     return chosen
 
 
+def drawn(numbers, finder, arguments):
+    """So many numbers of each module's breaks, at random."""
+    for module in arguments.modules:
+        of = [n for n in numbers if module_of(finder.breaks[n].file) == module]
+        yield from sorted(random.Random(arguments.seed).sample(of, min(arguments.most, len(of))))
+
+
+def share(seen, of):
+    """How many of some breaks are seen, as text."""
+    good = sum(bool(seen[n]) for n in of)
+    return 'asked about: %d, seen: %d (%.1f %%)' % (len(of), good, 100 * good / max(1, len(of)))
+
+
 def report(finder, numbers, reached, seen, took, own):
     """The result, as text."""
     unseen = [n for n in sorted(seen) if not seen[n]]
     everywhere = set().union(*reached.values())
-    print('breaks: %d, reached by tests: %d, asked about: %d, seen: %d (%.1f %%)' % (
-        len(numbers), len(numbers & everywhere), len(seen), len(seen) - len(unseen),
-        100 * (1 - len(unseen) / max(1, len(seen)))))
+    print('breaks: %d, reached by tests: %d, %s' % (len(numbers), len(numbers & everywhere), share(seen, list(seen))))
+    for module in sorted({module_of(finder.breaks[n].file) for n in seen}):
+        print('%s: %s' % (module, share(seen, [n for n in seen if module_of(finder.breaks[n].file) == module])))
     print('\nNo test sees:')
     for n in unseen:
         b = finder.breaks[n]
@@ -260,8 +299,8 @@ def report(finder, numbers, reached, seen, took, own):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('module', help='a folder of src/, e.g. motion')
-    parser.add_argument('--most', metavar='N', type=int, default=400, help='mutants to ask about, drawn at random (default 400)')
+    parser.add_argument('modules', metavar='MODULE', nargs='+', help='a folder of src/, e.g. motion')
+    parser.add_argument('--most', metavar='N', type=int, default=400, help='mutants of each module to ask about, drawn at random (default 400)')
     parser.add_argument('--seed', metavar='S', type=int, default=1, help='of the draw')
     parser.add_argument('--files', metavar='REGEX', default='', help='only breaks of these files')
     parser.add_argument('--tests', metavar='REGEX', default='', help='only test programs with these names')
@@ -270,7 +309,6 @@ def main():
     parser.add_argument('--headers', action='store_true', help="also the module's headers: all is built anew")
     parser.add_argument('--json', metavar='FILE', help='write which tests see which mutants')
     arguments = parser.parse_args()
-    module = arguments.module
 
     WORK.mkdir(parents=True, exist_ok=True)
     lock = open(WORK / 'lock', 'w')
@@ -280,19 +318,13 @@ def main():
         raise SystemExit('%s: another run works there' % WORK) from None
     copy_tree()
     configure()
-    folders = ['src/%s/' % module] + (['include/flute_grinder/%s/' % module] if arguments.headers else [])
-    finder = breaks.Finder(TREE, folders)
-    compiler = arguments_of(module)
-    for source in sorted((TREE / 'src' / module).glob('*.cpp')):
-        try:
-            finder.add(source, compiler)
-        except RuntimeError as error:
-            if 'file not found' not in str(error):
-                raise
-            print('left out, e.g. a drive whose library is not installed: %s' % error)
+    roots = ['src'] + (['include/flute_grinder'] if arguments.headers else [])
+    finder = breaks.Finder(TREE, ['%s/%s/' % (root, module) for module in arguments.modules for root in roots])
+    for module in arguments.modules:
+        add_all(finder, module)
     for program in BINARIES.glob(PREFIX + '*'):
         program.unlink()  # one that is not built any more would see breaks, against libraries that it does not fit
-    numbers = build_with(finder)
+    numbers = build_with(finder, targets_of(arguments))
     print('%d breaks, %d compile' % (len(finder.breaks), len(numbers)), file=sys.stderr)
 
     suites = [s for s in sorted(p.name for p in BINARIES.glob(PREFIX + '*')) + [RIDES] if re.search(arguments.tests, s)]
@@ -303,14 +335,15 @@ def main():
         reached = {case: result[0] for case, result in results.items()}
         took = {case: result[1] for case, result in results.items()}
         asked = [n for n in sorted(numbers) if re.search(arguments.files, finder.breaks[n].file)]
-        asked = sorted(random.Random(arguments.seed).sample(asked, min(arguments.most, len(asked))))
+        asked = list(drawn(asked, finder, arguments))
         print('%d tests, %.0f s; asking about %d' % (len(cases), sum(took.values()), len(asked)), file=sys.stderr)
-        seen, own = {}, own_suites(module)
-        for n, by in zip(asked, pool.map(lambda n: ask(n, [c for c in cases if n in reached[c]], took, own), asked)):
+        seen, own = {}, {module: own_suites(module) for module in arguments.modules}
+        near = {n: own[module_of(finder.breaks[n].file)] for n in asked}
+        for n, by in zip(asked, pool.map(lambda n: ask(n, [c for c in cases if n in reached[c]], took, near[n]), asked)):
             seen[n] = by
             if len(seen) % 50 == 0:
                 print('%d asked' % len(seen), file=sys.stderr)
-    report(finder, numbers, reached, seen, took, own)
+    report(finder, numbers, reached, seen, took, set().union(*own.values()))
     if arguments.json:
         found = [dict(finder.breaks[n]._asdict(), seen_by=sorted((c.suite.replace(PREFIX, '') + ' ' + c.name).strip() for c in seen[n]))
                  for n in asked]

@@ -46,10 +46,16 @@ class Process {
   int reached_file_ = -1;
   std::array<std::atomic<bool>, MUTANTS> reached_{};
 };
-inline Process process;
+
+/// Made by whichever static asks first, and before main(), where the heap may be used.
+inline Process& process() {
+  static Process process;
+  return process;
+}
+inline const Process& kMade = process();
 
 /// Whether this process has a mutant. The compiler, which may compute an expression itself, has none.
-constexpr bool at(int number) { return !__builtin_is_constant_evaluated() && process.comesBy(number); }
+constexpr bool at(int number) { return !__builtin_is_constant_evaluated() && process().comesBy(number); }
 
 template <typename T>
 constexpr T value(int number, T v) {

@@ -184,7 +184,9 @@ def cases_of(suite):
     if not suite.startswith(PREFIX):
         yield Case(suite, '')
         return
-    text, _ = run([BINARIES / suite, '--gtest_list_tests'], {}, {'': LEAST})
+    text, good = run([BINARIES / suite, '--gtest_list_tests'], {}, {'': LEAST})
+    if not good:
+        raise SystemExit('%s does not say which tests it has' % suite)
     group = ''
     for line in text.splitlines():
         name = line.split('#')[0].rstrip()
